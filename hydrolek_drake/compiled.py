@@ -1,0 +1,34 @@
+"""Where the machine code of the compiled physics is kept between runs.
+
+Numba notices a change in the file of a cached function, but not in the files of the functions that it
+calls. The cache folder is therefore named after a hash of everything that is compiled: after any edit of
+the physics, an effect or the rollout, a fresh folder is used.
+"""
+
+import hashlib
+import os
+import tempfile
+from pathlib import Path
+
+import numba
+
+_COMPILED_PARTS = ("physics", "effects", "rollout")
+
+
+def use_cache_for_this_source() -> None:
+    """Point numba's cache at a folder that belongs to exactly this source (unless the user chose one)."""
+    if os.environ.get("NUMBA_CACHE_DIR"):
+        return
+    package = Path(__file__).parent
+    digest = hashlib.sha256(numba.__version__.encode())
+    for part in _COMPILED_PARTS:
+        for file in sorted((package / part).glob("*.py")):
+            digest.update(file.name.encode())
+            digest.update(file.read_bytes())
+    home = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
+    folder = home / "hydrolek_drake" / digest.hexdigest()[:16]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:  # a read-only home: compile anew in each run rather than fail
+        folder = Path(tempfile.mkdtemp(prefix="hydrolek_drake_"))
+    numba.config.CACHE_DIR = str(folder)

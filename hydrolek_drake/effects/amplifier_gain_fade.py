@@ -1,0 +1,35 @@
+"""The coils warm up and draw less current."""
+
+import math
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="amplifier.gain_fade",
+    title="gain falls as the coil warms",
+    equation="currents times 1 - fraction (1 - e^(-t/time_constant))",
+    parameters=(
+        Parameter("fraction", "1", "share of the current that is lost when warm", neutral=0.0, highest=1.0),
+        Parameter("time_constant_s", "s", "time constant of the warming", neutral=1.0, lowest=0.0),
+    ),
+    size="fraction",
+    source="copper's resistance rises 0.39 % per kelvin while the amplifier holds its voltage",
+    confused_with={
+        "fluid.warm_up": "warming oil speeds the joint up and leaves the dead-zone alone",
+        "sensor.drift": "a drifting sensor also drifts at rest",
+    },
+    needs={'amplifier': ('proportional',)},
+)
+
+@EFFECT.hook("coil_gain")
+@njit
+def coil_gain(time: float, joint: Any) -> float:
+    """Factor on both coil currents after `time` seconds."""
+    p = joint.effects.amplifier_gain_fade
+    if p.fraction == 0.0:
+        return 1.0
+    return 1.0 - p.fraction * (1.0 - math.exp(-time / p.time_constant_s))

@@ -1,0 +1,37 @@
+"""The base rocks against a spring."""
+
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="base.compliance",
+    title="rocking base",
+    equation="J_b b'' = -(actuator moment) - k b - 2 zeta sqrt(k J_b) b'; cylinder and sensor see q - b",
+    parameters=(
+        Parameter("stiffness_Nm_per_rad", "N m/rad", "spring of the base (0: rigid)", neutral=0.0, lowest=0.0),
+        Parameter("inertia_kg_m2", "kg m^2", "inertia of the base", neutral=1.0, lowest=0.0),
+    ),
+    size="stiffness_Nm_per_rad",
+    source="thesis 6.1.5: moving faster 'could lead to some movement of the platform base'",
+    confused_with={
+        "fluid.entrained_air": "air softens most where the pressure is low",
+        "linkage.backlash": "a spring gives in proportion to the load, play does not",
+    },
+)
+
+@EFFECT.hook("base_stiffness")
+@njit
+def base_stiffness(joint: Any) -> float:
+    """Spring of the base [N m/rad], 0 where it is rigid."""
+    return joint.effects.base_compliance.stiffness_Nm_per_rad
+
+
+@EFFECT.hook("base_inertia")
+@njit
+def base_inertia(joint: Any) -> float:
+    """Inertia of the base [kg m^2]."""
+    return joint.effects.base_compliance.inertia_kg_m2

@@ -1,0 +1,44 @@
+"""Finds every effect file of this folder."""
+
+import difflib
+import importlib
+import pkgutil
+from pathlib import Path
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.errors import InputError
+
+
+def _found() -> dict[str, Effect]:
+    effects = {}
+    for module_info in sorted(pkgutil.iter_modules([str(Path(__file__).parent)]), key=lambda m: m.name):
+        module = importlib.import_module(f"hydrolek_drake.effects.{module_info.name}")
+        effect = getattr(module, "EFFECT", None)
+        if isinstance(effect, Effect):
+            effects[effect.id] = effect
+    return effects
+
+
+EFFECTS: dict[str, Effect] = {}
+"""Id -> effect, in alphabetical order of the files."""
+
+
+def _fill() -> None:
+    EFFECTS.update(_found())
+
+
+_fill()
+
+
+def effect_named(effect_id: str) -> Effect:
+    """The effect of this id.
+
+    Raises:
+        InputError: no such effect; names the nearest ones.
+    """
+    if effect_id not in EFFECTS:
+        near = difflib.get_close_matches(effect_id, EFFECTS, n=3, cutoff=0.4)
+        raise InputError(
+            f"no effect '{effect_id}'; " + (f"did you mean {' or '.join(near)}? " if near else "") + "'hydrolek effects' lists all"
+        )
+    return EFFECTS[effect_id]

@@ -1,0 +1,28 @@
+"""More transport delay than modelled."""
+
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="command.delay",
+    title="longer dead time",
+    equation="T_d + delay_s",
+    parameters=(
+        Parameter("delay_s", "s", "added transport delay", neutral=0.0),
+    ),
+    size="delay_s",
+    source="thesis 6.1.3 (time delay of 0.15 s and 0.25 s, read by eye)",
+    confused_with={
+        "valve.spool_stiction": "stiction delays small commands more than large ones, a delay all alike",
+    },
+)
+
+@EFFECT.hook("command_delay")
+@njit
+def command_delay(joint: Any) -> float:
+    """Seconds added to the transport delay."""
+    return joint.effects.command_delay.delay_s

@@ -1,0 +1,36 @@
+"""Dry friction of the seals."""
+
+import math
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="cylinder.coulomb_friction",
+    title="seal friction",
+    equation="coulomb tanh(v / friction_velocity) against the rod",
+    parameters=(
+        Parameter("coulomb_N", "N", "Coulomb friction of the seals (N m for a vane)", neutral=0.0, lowest=0.0),
+    ),
+    size="coulomb_N",
+    source="thesis (4.1), F_c; Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
+    confused_with={
+        "cylinder.stribeck_friction": "with Stribeck the friction falls as the rod starts to move",
+        "valve.asymmetric_overlap": "overlap leaves the pressures' step at reversals alone",
+    },
+    needs={'cylinder': ('cylinder', 'vane', 'hydraulic_motor')},
+)
+
+@EFFECT.hook("rod_friction")
+@njit
+def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, float]:
+    """Friction [N] and its slope [N s/m] at a rod velocity [m/s]."""
+    coulomb = joint.effects.cylinder_coulomb_friction.coulomb_N
+    if coulomb == 0.0:
+        return 0.0, 0.0
+    smooth = joint.cylinder.friction_velocity
+    share = math.tanh(velocity / smooth)
+    return coulomb * share, coulomb / smooth * (1.0 - share * share)

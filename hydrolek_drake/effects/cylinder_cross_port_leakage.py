@@ -1,0 +1,30 @@
+"""Oil leaks past the piston or vane."""
+
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="cylinder.cross_port_leakage",
+    title="leakage past the piston",
+    equation="conductance (P_A - P_B) from A to B",
+    parameters=(
+        Parameter("conductance_m3_per_s_Pa", "m^3/(s Pa)", "laminar conductance past the piston", neutral=0.0, lowest=0.0),
+    ),
+    size="conductance_m3_per_s_Pa",
+    source="Merritt, Hydraulic Control Systems (1967), ch. 6: laminar leakage of pistons",
+    confused_with={
+        "valve.null_leakage": "leaking lands also let both pressures settle near half the supply",
+        "supply.pressure_droop": "droop leaves the joint at rest alone",
+    },
+    needs={'cylinder': ('cylinder', 'vane', 'hydraulic_motor')},
+)
+
+@EFFECT.hook("cross_conductance")
+@njit
+def cross_conductance(joint: Any) -> float:
+    """Conductance from A to B [m^3/(s Pa)]."""
+    return joint.effects.cylinder_cross_port_leakage.conductance_m3_per_s_Pa

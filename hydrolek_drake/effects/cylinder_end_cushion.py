@@ -1,0 +1,34 @@
+"""The cylinder brakes itself at the end of retraction."""
+
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="cylinder.end_cushion",
+    title="end cushion",
+    equation="damping v (1 - s/length) against the rod while s < length and v < 0",
+    parameters=(
+        Parameter("damping_N_s_per_m", "N s/m", "damping at the very end", neutral=0.0, lowest=0.0),
+        Parameter("length_m", "m", "stroke over which it acts", neutral=1.0, lowest=0.0),
+    ),
+    size="damping_N_s_per_m",
+    source="cushioning spears of differential cylinders (Merritt 1967, ch. 6)",
+    confused_with={
+        "sensor.nonlinearity": "a bow of the sensor shows at both ends and at rest",
+    },
+    needs={'cylinder': ('cylinder', 'vane')},
+)
+
+@EFFECT.hook("rod_friction")
+@njit
+def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, float]:
+    """Braking force [N] and its slope [N s/m]."""
+    p = joint.effects.cylinder_end_cushion
+    if p.damping_N_s_per_m == 0.0 or velocity >= 0.0 or stroke >= p.length_m:
+        return 0.0, 0.0
+    slope = p.damping_N_s_per_m * (1.0 - stroke / p.length_m)
+    return slope * velocity, slope

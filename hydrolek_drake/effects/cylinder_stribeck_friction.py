@@ -1,0 +1,40 @@
+"""Seal friction that falls as the rod starts to move."""
+
+import math
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="cylinder.stribeck_friction",
+    title="Coulomb and Stribeck friction of the seals",
+    equation="(coulomb + stribeck e^(-(v/v_s)^2)) tanh(v / friction_velocity) against the rod",
+    parameters=(
+        Parameter("coulomb_N", "N", "Coulomb friction of the seals", neutral=0.0, lowest=0.0),
+        Parameter("stribeck_N", "N", "further friction near zero speed", neutral=0.0, lowest=0.0),
+        Parameter("stribeck_velocity_m_per_s", "m/s", "speed over which it fades", neutral=1.0, lowest=0.0),
+    ),
+    size="stribeck_N",
+    source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083, Stribeck curve",
+    confused_with={
+        "cylinder.coulomb_friction": "Coulomb friction does not fall with speed: stick-slip at creeping speed decides",
+        "valve.spool_stiction": "a sticking spool shows in the pressures only after the command reverses",
+    },
+    needs={'cylinder': ('cylinder', 'vane', 'hydraulic_motor')},
+)
+
+@EFFECT.hook("rod_friction")
+@njit
+def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, float]:
+    """Friction [N] and the positive part of its slope [N s/m] at a rod velocity [m/s]."""
+    p = joint.effects.cylinder_stribeck_friction
+    if p.coulomb_N == 0.0 and p.stribeck_N == 0.0:
+        return 0.0, 0.0
+    smooth = joint.cylinder.friction_velocity
+    share = math.tanh(velocity / smooth)
+    ratio = velocity / p.stribeck_velocity_m_per_s
+    level = p.coulomb_N + p.stribeck_N * math.exp(-ratio * ratio)
+    return level * share, level / smooth * (1.0 - share * share)

@@ -1,0 +1,79 @@
+"""What an effect is: a named piece of physics that the nominal model leaves out.
+
+Each effect is one file of this folder. It declares its identity and parameters and registers the compiled
+functions with which it enters the physics at a hook. A new file is found by itself; nothing else changes.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from hydrolek_drake.physics.parameters import Parameter
+
+HOOKS = {
+    "command_delay": "(joint) -> s added to the transport delay",
+    "coil_gain": "(time, joint) -> factor on both coil currents",
+    "land_shift": "(joint) -> m by which the spool's null is shifted towards B",
+    "spool_friction": "(velocity, joint) -> N against the spool, and its slope in N s/m",
+    "edge_conductance": "(joint) -> m^3/(s Pa) added to each of the four edges",
+    "flow_gain": "(time, joint) -> factor on the flow coefficient",
+    "viscous_gain": "(time, joint) -> factor on the cylinder's viscous friction",
+    "supply_drop": "(flow, joint) -> Pa by which the supply falls",
+    "compressibility": "(pressure, joint) -> 1/Pa added to the oil's compressibility",
+    "cross_conductance": "(joint) -> m^3/(s Pa) from chamber A to B",
+    "rod_friction": "(velocity, stroke, joint) -> N against the rod, and its slope in N s/m",
+    "load_friction": "(velocity, joint) -> N or N m against the load, and its slope",
+    "payload": "(time, joint) -> kg carried at the tool",
+    "reading_error": "(angle, time, joint) -> rad or m added to the reading",
+    "reading_play": "(joint) -> rad or m of half width of play in the reading",
+    "linkage_gap": "(joint) -> rad of play in all between cylinder side and link",
+    "base_stiffness": "(joint) -> N m/rad of the base's spring, 0 for a rigid base",
+    "base_inertia": "(joint) -> kg m^2 of the base",
+}
+
+
+@dataclass(frozen=True)
+class Effect:
+    """One effect: identity, equation, parameters and the hooks by which it enters the physics.
+
+    Attributes:
+        id: `stage.name` as in reports and rig files.
+        title: what it is, in a few words.
+        equation: how it enters the model.
+        parameters: all with a neutral value.
+        size: the parameter that switches it on (its neutral value means: not there).
+        source: where the law comes from.
+        confused_with: ids of effects with a similar signature, and what tells them apart.
+        needs: the variants it can act on, as `section: names`; empty for all.
+    """
+
+    id: str
+    title: str
+    equation: str
+    parameters: tuple[Parameter, ...]
+    size: str
+    source: str
+    confused_with: dict[str, str] = field(default_factory=dict)
+    needs: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    hooks: dict[str, Callable[..., Any]] = field(default_factory=dict)
+
+    @property
+    def stage(self) -> str:
+        """The stage of the chain at which it acts."""
+        return self.id.split(".")[0]
+
+    @property
+    def key(self) -> str:
+        """Its field in the joint's record."""
+        return self.id.replace(".", "_")
+
+    def hook(self, name: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+        """Decorator: register a compiled function at a hook of `HOOKS`."""
+        if name not in HOOKS:
+            raise ValueError(f"effect {self.id}: no hook '{name}'; there are {', '.join(HOOKS)}")
+
+        def register(function: Callable[..., Any]) -> Callable[..., Any]:
+            self.hooks[name] = function
+            return function
+
+        return register

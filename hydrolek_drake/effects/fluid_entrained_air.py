@@ -1,0 +1,34 @@
+"""Air in the oil: soft where the pressure is low."""
+
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="fluid.entrained_air",
+    title="entrained air",
+    equation="1/B_eff = 1/B + air_fraction p_atm / p^2, p at least p_atm",
+    parameters=(
+        Parameter("air_fraction", "1", "volume share of air at atmospheric pressure", neutral=0.0, lowest=0.0),
+    ),
+    size="air_fraction",
+    source="isothermal compression of free air: V_air = fraction p_atm / p, so its compressibility is fraction p_atm / p^2",
+    confused_with={
+        "base.compliance": "a soft base rings at a frequency that does not depend on the pressures",
+    },
+    needs={'cylinder': ('cylinder', 'vane', 'hydraulic_motor')},
+)
+
+@EFFECT.hook("compressibility")
+@njit
+def compressibility(pressure: float, joint: Any) -> float:
+    """Compressibility added to the oil's [1/Pa]."""
+    fraction = joint.effects.fluid_entrained_air.air_fraction
+    if fraction == 0.0:
+        return 0.0
+    atmosphere = joint.fluid.atmospheric_pressure
+    absolute = max(pressure, atmosphere)
+    return fraction * atmosphere / (absolute * absolute)

@@ -1,0 +1,35 @@
+"""Friction that differs between the two directions."""
+
+import math
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="load.friction_asymmetry",
+    title="friction depends on direction",
+    equation="(coulomb + damping |v|) tanh(v / friction_velocity)^2 against the positive direction",
+    parameters=(
+        Parameter("coulomb_N", "N", "half the difference of Coulomb friction, forward less backward", neutral=0.0),
+        Parameter("damping_N_s_per_m", "N s/m", "half the difference of viscous friction, forward less backward", neutral=0.0),
+    ),
+    size="damping_N_s_per_m",
+    source="Janot, Young, Gautier, Int. J. Control 90 (2017) 643: fatigue of the screw",
+    confused_with={
+        "load.offset_force": "an offset acts at rest too",
+    },
+)
+
+@EFFECT.hook("load_friction")
+@njit
+def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
+    """Force [N] and its slope [N s/m]."""
+
+    p = joint.effects.load_friction_asymmetry
+    if p.coulomb_N == 0.0 and p.damping_N_s_per_m == 0.0:
+        return 0.0, 0.0
+    share = math.tanh(velocity / joint.load.friction_velocity)
+    return (p.coulomb_N + p.damping_N_s_per_m * abs(velocity)) * share * share, 0.0

@@ -1,0 +1,29 @@
+"""A constant force at the load."""
+
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="load.offset_force",
+    title="constant force",
+    equation="force against the positive direction",
+    parameters=(
+        Parameter("force_N", "N", "constant force against the positive direction", neutral=0.0),
+    ),
+    size="force_N",
+    source="Janot, Gautier, Brunot, EMPS benchmark (2019): offset of the drive",
+    confused_with={
+        "load.friction_asymmetry": "an offset acts at rest too",
+    },
+)
+
+@EFFECT.hook("load_friction")
+@njit
+def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
+    """Force [N] and its slope, which is zero."""
+
+    return joint.effects.load_offset_force.force_N, 0.0

@@ -1,0 +1,33 @@
+"""A load at the tool that the model does not know."""
+
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="load.payload",
+    title="unknown payload",
+    equation="inertia + mass r^2 and gravity moment + mass g r from time_s on",
+    parameters=(
+        Parameter("mass_kg", "kg", "mass at the tool", neutral=0.0, lowest=0.0),
+        Parameter("time_s", "s", "when it is picked up", neutral=0.0),
+    ),
+    size="mass_kg",
+    source="rigid-body mechanics, thesis (4.1)",
+    confused_with={
+        "valve.asymmetric_overlap": "a shifted null leaves the pressures at rest alone",
+    },
+    needs={'load': ('rotating', 'arm', 'sliding')},
+)
+
+@EFFECT.hook("payload")
+@njit
+def payload(time: float, joint: Any) -> float:
+    """Mass carried at the tool [kg]."""
+    p = joint.effects.load_payload
+    if time >= p.time_s:
+        return p.mass_kg
+    return 0.0

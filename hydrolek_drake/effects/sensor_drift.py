@@ -1,0 +1,31 @@
+"""The reading drifts with time."""
+
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="sensor.drift",
+    title="drifting sensor",
+    equation="reading + rate t",
+    parameters=(
+        Parameter("rate_rad_per_min", "rad/min", "drift", neutral=0.0),
+    ),
+    size="rate_rad_per_min",
+    source="thesis 4.7: joint 5 'drifting that can be clearly seen'",
+    confused_with={
+        "cylinder.cross_port_leakage": "leakage moves the joint itself, and only under load",
+    },
+)
+
+SECONDS_PER_MINUTE = 60.0
+
+
+@EFFECT.hook("reading_error")
+@njit
+def reading_error(position: float, time: float, joint: Any) -> float:
+    """Error of the reading [rad] after `time` seconds."""
+    return joint.effects.sensor_drift.rate_rad_per_min * time / SECONDS_PER_MINUTE

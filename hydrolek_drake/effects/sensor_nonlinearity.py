@@ -1,0 +1,33 @@
+"""The potentiometer's track is bowed."""
+
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="sensor.nonlinearity",
+    title="bowed sensor",
+    equation="reading + amplitude (1 - z^2), z from -1 to 1 over the travel",
+    parameters=(
+        Parameter("amplitude_rad", "rad", "bow in the middle of the travel", neutral=0.0),
+    ),
+    size="amplitude_rad",
+    source="conformity error of potentiometers; lowest even term that vanishes at the calibrated ends",
+    confused_with={
+        "cylinder.end_cushion": "a cushion acts only while moving inwards",
+    },
+)
+
+@EFFECT.hook("reading_error")
+@njit
+def reading_error(position: float, time: float, joint: Any) -> float:
+    """Error of the reading [rad]."""
+    amplitude = joint.effects.sensor_nonlinearity.amplitude_rad
+    if amplitude == 0.0:
+        return 0.0
+    p = joint.sensor
+    z = 2.0 * (position - p.travel_lower) / (p.travel_upper - p.travel_lower) - 1.0
+    return amplitude * (1.0 - z * z)

@@ -1,0 +1,30 @@
+"""The spool's null is not where the amplifier thinks it is."""
+
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="valve.asymmetric_overlap",
+    title="spool null shifted",
+    equation="x - (overlap + shift) opens towards A, -x - (overlap - shift) towards B",
+    parameters=(
+        Parameter("shift_m", "m", "shift of the null towards B", neutral=0.0),
+    ),
+    size="shift_m",
+    source="Merritt, Hydraulic Control Systems (1967), ch. 5: null shift of spool valves",
+    confused_with={
+        "valve.null_leakage": "leakage lets the joint creep at zero command",
+        "load.payload": "a load acts on pressures at rest as well",
+    },
+    needs={'valve': ('plain', 'pressure_compensated')},
+)
+
+@EFFECT.hook("land_shift")
+@njit
+def land_shift(joint: Any) -> float:
+    """Metres by which the null is shifted."""
+    return joint.effects.valve_asymmetric_overlap.shift_m

@@ -1,0 +1,36 @@
+"""Coulomb friction on the spool: hysteresis of the opening against the current."""
+
+import math
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="valve.spool_stiction",
+    title="spool sticks",
+    equation="force tanh(x'/stiction_velocity) against the spool",
+    parameters=(
+        Parameter("force_N", "N", "Coulomb friction of the spool", neutral=0.0, lowest=0.0),
+    ),
+    size="force_N",
+    source="Merritt, Hydraulic Control Systems (1967), ch. 5; smoothed as in the solenoid's stiction_velocity",
+    confused_with={
+        "command.delay": "a delay is the same for large and small commands",
+        "linkage.backlash": "play shows in the angle at reversals of the load, stiction at reversals of the command",
+    },
+    needs={'solenoid': ('spool_pair',)},
+)
+
+@EFFECT.hook("spool_friction")
+@njit
+def spool_friction(velocity: float, joint: Any) -> tuple[float, float]:
+    """Friction [N] and its slope [N s/m] at a spool velocity [m/s]."""
+    force = joint.effects.valve_spool_stiction.force_N
+    if force == 0.0:
+        return 0.0, 0.0
+    smooth = joint.solenoid.stiction_velocity
+    share = math.tanh(velocity / smooth)
+    return force * share, force / smooth * (1.0 - share * share)

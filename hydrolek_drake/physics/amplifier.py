@@ -1,0 +1,43 @@
+"""Proportional amplifiers A and B: voltage to coil current, equation (4.4)."""
+
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.physics import hooks
+from hydrolek_drake.physics.parameters import Parameter, Stage
+
+STAGE = Stage(
+    "amplifier",
+    "voltage to coil current",
+    (),
+    {
+        "proportional": (
+            Parameter("min_current", "A", "coil current at 0 V, I_min in (4.4)", lowest=0.0),
+            Parameter("max_current_a", "A", "current of coil A at full voltage, I_maxA in (4.4)", lowest=0.0),
+            Parameter("max_current_b", "A", "current of coil B at full voltage, I_maxB in (4.4)", lowest=0.0),
+            Parameter("full_voltage", "V", "voltage of full current, 10 V in (4.4)", lowest=0.0),
+        ),
+        "none": (),
+    },
+)
+PROPORTIONAL = float(STAGE.code("proportional"))
+
+
+@njit
+def coil_currents(voltage: float, time: float, joint: Any) -> tuple[float, float]:
+    """Currents of coils A and B [A], equation (4.4); a positive voltage drives A, a negative one B.
+
+    Args:
+        voltage: at the amplifier, positive towards chamber A [V].
+        time: since the machine was switched on [s], for coils that warm up.
+        joint: parameter record.
+    """
+    p = joint.amplifier
+    gain = hooks.coil_gain(time, joint)
+    share = min(abs(voltage) / p.full_voltage, 1.0)
+    if voltage >= 0.0:
+        driven = p.min_current + share * (p.max_current_a - p.min_current)
+        return gain * driven, gain * p.min_current
+    driven = p.min_current + share * (p.max_current_b - p.min_current)
+    return gain * p.min_current, gain * driven

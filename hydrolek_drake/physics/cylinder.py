@@ -1,0 +1,134 @@
+"""Actuators with two chambers: cylinder, equation (4.9), rotary vane and hydraulic motor; electric motor.
+
+A vane actuator and a hydraulic motor are the same equations with a displacement [m^3/rad] in place of the
+piston area and an angle in place of the stroke.
+"""
+
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.physics import hooks
+from hydrolek_drake.physics.fluid import effective_bulk_modulus
+from hydrolek_drake.physics.parameters import Parameter, Stage
+
+_CHAMBERS = (
+    Parameter("dead_volume_a", "m^3", "oil on side A at zero stroke, with its hose", lowest=0.0),
+    Parameter("dead_volume_b", "m^3", "oil on side B at full stroke, with its hose", lowest=0.0),
+    Parameter("initial_pressure_b", "Pa", "pressure on side B at the start; side A balances the load", lowest=0.0),
+)
+STAGE = Stage(
+    "cylinder",
+    "oil flow to force",
+    (),
+    {
+        "cylinder": (
+            Parameter("area_a", "m^2", "piston area on the bore side, A_A in (4.9)", lowest=0.0),
+            Parameter("area_b", "m^2", "piston area on the rod side, A_B in (4.9)", lowest=0.0),
+            *_CHAMBERS,
+            Parameter("stroke", "m", "stroke over which side B's oil volume is counted, S in (4.9)", lowest=0.0),
+            Parameter("viscous_friction", "N s/m", "viscous friction of the seals, B_D in (4.9)", lowest=0.0),
+            Parameter("friction_velocity", "m/s", "below this Coulomb friction is smoothed", lowest=0.0),
+            Parameter("rod_mass", "kg", "rod and piston, M_R in (4.9)", neutral=0.0, lowest=0.0),
+            Parameter("stop_penetration", "N s/m^2", "hard stop's penetration coefficient, K_p in (4.9)", neutral=0.0, lowest=0.0),
+        ),
+        "vane": (
+            Parameter("area_a", "m^3/rad", "displacement of side A", lowest=0.0),
+            Parameter("area_b", "m^3/rad", "displacement of side B", lowest=0.0),
+            *_CHAMBERS,
+            Parameter("stroke", "rad", "travel over which side B's oil volume is counted", lowest=0.0),
+            Parameter("viscous_friction", "N m s/rad", "viscous friction of the seals", lowest=0.0),
+            Parameter("friction_velocity", "rad/s", "below this Coulomb friction is smoothed", lowest=0.0),
+            Parameter("stop_penetration", "N m s/rad^2", "hard stop's penetration coefficient", neutral=0.0, lowest=0.0),
+        ),
+        "hydraulic_motor": (
+            Parameter("area_a", "m^3/rad", "displacement of side A", lowest=0.0),
+            Parameter("area_b", "m^3/rad", "displacement of side B", lowest=0.0),
+            *_CHAMBERS,
+            Parameter("viscous_friction", "N m s/rad", "viscous friction of the seals", lowest=0.0),
+            Parameter("friction_velocity", "rad/s", "below this Coulomb friction is smoothed", lowest=0.0),
+        ),
+        "electric_motor": (
+            Parameter("force_constant", "N/V", "force over command voltage", lowest=0.0),
+        ),
+    },
+)
+CYLINDER = float(STAGE.code("cylinder"))
+VANE = float(STAGE.code("vane"))
+HYDRAULIC_MOTOR = float(STAGE.code("hydraulic_motor"))
+ELECTRIC_MOTOR = float(STAGE.code("electric_motor"))
+
+
+@njit
+def chamber_volumes(stroke: float, joint: Any) -> tuple[float, float]:
+    """Oil volumes on sides A and B [m^3]; a continuously turning motor keeps its dead volumes."""
+    p = joint.cylinder
+    if p.variant == HYDRAULIC_MOTOR:
+        return p.dead_volume_a, p.dead_volume_b
+    return (
+        p.dead_volume_a + p.area_a * max(stroke, 0.0),
+        p.dead_volume_b + p.area_b * max(p.stroke - stroke, 0.0),
+    )
+
+
+@njit
+def pressure_rates(
+    p_a: float, p_b: float, flow_a: float, flow_b: float, stroke: float, velocity: float, joint: Any
+) -> tuple[float, float, float, float]:
+    """Rates of the chamber pressures [Pa/s] and the chambers' stiffness B/V [Pa/m^3], from continuity.
+
+    P_A' = B/V_A (Q_A - A_A v), P_B' = B/V_B (Q_B + A_B v); pressures do not fall below zero.
+
+    Args:
+        p_a: pressure on side A [Pa].
+        p_b: pressure on side B [Pa].
+        flow_a: oil flowing into side A [m^3/s].
+        flow_b: oil flowing into side B [m^3/s].
+        stroke: rod position [m].
+        velocity: rod velocity, positive out [m/s].
+        joint: parameter record.
+    """
+    p = joint.cylinder
+    volume_a, volume_b = chamber_volumes(stroke, joint)
+    stiffness_a = effective_bulk_modulus(p_a, joint) / volume_a
+    stiffness_b = effective_bulk_modulus(p_b, joint) / volume_b
+    rate_a = stiffness_a * (flow_a - p.area_a * velocity)
+    rate_b = stiffness_b * (flow_b + p.area_b * velocity)
+    if p_a <= 0.0 and rate_a < 0.0:
+        rate_a = 0.0
+    if p_b <= 0.0 and rate_b < 0.0:
+        rate_b = 0.0
+    return rate_a, rate_b, stiffness_a, stiffness_b
+
+
+@njit
+def hard_stop_force(stroke: float, velocity: float, joint: Any) -> float:
+    """Force of the cylinder's own end stops against the rod [N], F_C in (4.9)."""
+    p = joint.cylinder
+    if p.variant == CYLINDER or p.variant == VANE:
+        if stroke > p.stroke and velocity > 0.0:
+            return (stroke - p.stroke) * p.stop_penetration * velocity
+        if stroke < 0.0 and velocity < 0.0:
+            return -stroke * p.stop_penetration * velocity
+    return 0.0
+
+
+@njit
+def pressure_force(p_a: float, p_b: float, joint: Any) -> float:
+    """Force of the oil on the piston [N], A_A P_A - A_B P_B in (4.9)."""
+    return joint.cylinder.area_a * p_a - joint.cylinder.area_b * p_b
+
+
+@njit
+def friction_force(stroke: float, velocity: float, time: float, joint: Any) -> tuple[float, float]:
+    """All that opposes the rod [N] and its slope over velocity [N s/m]: friction, cushion, end stops (4.9)."""
+    viscous = joint.cylinder.viscous_friction * hooks.viscous_gain(time, joint)
+    friction, slope = hooks.rod_friction(velocity, stroke, joint)
+    stop = hard_stop_force(stroke, velocity, joint)
+    return viscous * velocity + friction + stop, viscous + slope
+
+
+@njit
+def motor_force(voltage: float, joint: Any) -> float:
+    """Force of an electric motor with its drive [N]: force constant times command."""
+    return joint.cylinder.force_constant * voltage

@@ -1,0 +1,45 @@
+"""The oil: orifice flow and compressibility."""
+
+import math
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.physics import hooks
+from hydrolek_drake.physics.parameters import Parameter, Stage
+
+STAGE = Stage(
+    "fluid",
+    "the oil",
+    (
+        Parameter("density", "kg/m^3", "rho in (4.7)", lowest=0.0),
+        Parameter("bulk_modulus", "Pa", "stiffness of oil with hoses", lowest=0.0),
+        Parameter("laminar_transition", "Pa", "pressure drop below which orifice flow turns laminar", lowest=0.0),
+        Parameter("atmospheric_pressure", "Pa", "pressure to which an air content refers", lowest=0.0),
+    ),
+    {"oil": ()},
+)
+
+
+@njit
+def orifice_conductance(area: float, drop: float, coefficient: float, joint: Any) -> float:
+    """Flow over pressure drop [m^3/(s Pa)] of an orifice, equation (4.7) made smooth through zero.
+
+    Q = C_q A sqrt(2/rho) dp / (dp^2 + dp_t^2)^(1/4), which is (4.7) for |dp| well above the laminar
+    transition dp_t and linear below it.
+
+    Args:
+        area: [m^2].
+        drop: pressure drop dp [Pa].
+        coefficient: contraction coefficient C_q.
+        joint: parameter record.
+    """
+    fluid = joint.fluid
+    smooth = math.sqrt(math.sqrt(drop * drop + fluid.laminar_transition * fluid.laminar_transition))
+    return coefficient * area * math.sqrt(2.0 / fluid.density) / smooth
+
+
+@njit
+def effective_bulk_modulus(pressure: float, joint: Any) -> float:
+    """Bulk modulus at a pressure [Pa]; entrained air softens the oil where the pressure is low."""
+    return 1.0 / (1.0 / joint.fluid.bulk_modulus + hooks.compressibility(pressure, joint))

@@ -1,0 +1,105 @@
+"""What the actuator moves: a link that turns or a mass that slides, with gravity, damping and end stops."""
+
+import math
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.physics import hooks
+from hydrolek_drake.physics.parameters import Parameter, Stage
+
+_ROTATING_STOPS = (
+    Parameter("lower_stop", "rad", "where the lower end stop begins"),
+    Parameter("upper_stop", "rad", "where the upper end stop begins"),
+    Parameter("stop_stiffness", "N m/rad", "stiffness of the end stops", lowest=0.0),
+    Parameter("stop_damping", "N m s/rad", "damping of the end stops", lowest=0.0),
+)
+_ROTATING = (
+    Parameter("damping", "N m s/rad", "viscous damping of the joint", lowest=0.0),
+    *_ROTATING_STOPS,
+    Parameter("initial_position", "rad", "joint angle at the start, where the recording does not tell"),
+    Parameter("friction_velocity", "rad/s", "below this Coulomb friction of the load is smoothed", neutral=1.0, lowest=0.0),
+)
+_MOMENTS = (
+    Parameter("inertia", "kg m^2", "moment of inertia about the joint axis", lowest=0.0),
+    Parameter("gravity_cos", "N m", "gravity moment at joint angle zero", neutral=0.0),
+    Parameter("gravity_sin", "N m", "gravity moment at joint angle 90 deg", neutral=0.0),
+    Parameter("payload_inertia", "kg m^2/kg", "moment of inertia per kilogram of payload", neutral=0.0, lowest=0.0),
+    Parameter("payload_gravity_cos", "N m/kg", "gravity moment at angle zero per kilogram of payload", neutral=0.0),
+    Parameter("payload_gravity_sin", "N m/kg", "gravity moment at 90 deg per kilogram of payload", neutral=0.0),
+)
+STAGE = Stage(
+    "load",
+    "what the actuator moves",
+    (),
+    {
+        "rotating": (*_MOMENTS, *_ROTATING),
+        "arm": (*_MOMENTS, *_ROTATING),
+        "sliding": (
+            Parameter("inertia", "kg", "moving mass", lowest=0.0),
+            Parameter("gravity_cos", "N", "constant force against the positive direction", neutral=0.0),
+            Parameter("payload_inertia", "kg/kg", "1", neutral=1.0, lowest=0.0),
+            Parameter("damping", "N s/m", "viscous friction of the guides", lowest=0.0),
+            Parameter("lower_stop", "m", "where the lower end stop begins"),
+            Parameter("upper_stop", "m", "where the upper end stop begins"),
+            Parameter("stop_stiffness", "N/m", "stiffness of the end stops", lowest=0.0),
+            Parameter("stop_damping", "N s/m", "damping of the end stops", lowest=0.0),
+            Parameter("initial_position", "m", "position at the start, where the recording does not tell"),
+            Parameter("friction_velocity", "m/s", "below this Coulomb friction of the load is smoothed", neutral=1.0, lowest=0.0),
+        ),
+    },
+)
+ROTATING = float(STAGE.code("rotating"))
+SLIDING = float(STAGE.code("sliding"))
+ARM = float(STAGE.code("arm"))
+
+
+@njit
+def gravity_load(position: float, time: float, joint: Any) -> float:
+    """Gravity's moment (or force) against the positive direction [N m or N].
+
+    Everything beyond one moving joint is a rigid body that turns about a fixed axis, so the moment is
+    exactly g_c cos q + g_s sin q.
+    """
+    p = joint.load
+    if p.variant == SLIDING:
+        return p.gravity_cos
+    mass = hooks.payload(time, joint)
+    along = p.gravity_cos + mass * p.payload_gravity_cos
+    across = p.gravity_sin + mass * p.payload_gravity_sin
+    return along * math.cos(position) + across * math.sin(position)
+
+
+@njit
+def moving_inertia(time: float, joint: Any) -> float:
+    """Inertia of the load with its payload [kg m^2 or kg]."""
+    return joint.load.inertia + hooks.payload(time, joint) * joint.load.payload_inertia
+
+
+@njit
+def stop_load(position: float, velocity: float, joint: Any) -> float:
+    """Moment of the end stops on the load [N m]: stiffness times overtravel and damping times speed."""
+    p = joint.load
+    if position > p.upper_stop:
+        return -p.stop_stiffness * (position - p.upper_stop) - p.stop_damping * velocity
+    if position < p.lower_stop:
+        return -p.stop_stiffness * (position - p.lower_stop) - p.stop_damping * velocity
+    return 0.0
+
+
+@njit
+def stop_slope(position: float, joint: Any) -> float:
+    """Damping of the end stops where they are touched [N m s/rad]."""
+    p = joint.load
+    if position > p.upper_stop or position < p.lower_stop:
+        return p.stop_damping
+    return 0.0
+
+
+@njit
+def resisting_load(position: float, velocity: float, time: float, joint: Any) -> tuple[float, float]:
+    """All that opposes the actuator at the joint [N m or N], and its slope over velocity."""
+    friction, slope = hooks.load_friction(velocity, joint)
+    damping = joint.load.damping
+    load = gravity_load(position, time, joint) + damping * velocity + friction - stop_load(position, velocity, joint)
+    return load, damping + slope + stop_slope(position, joint)

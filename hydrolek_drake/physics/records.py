@@ -1,0 +1,43 @@
+"""The parameter record of one joint: one field per stage, and one per effect.
+
+All numbers are float64, so a record is also a flat vector (`flat`), which is how parameters are fitted and
+how they are stored in a Drake context.
+"""
+
+import numpy as np
+
+from hydrolek_drake.effects.catalogue import EFFECTS
+from hydrolek_drake.physics import amplifier, base, command, cylinder, fluid, linkage, load, sensor, solenoid, supply, valve
+from hydrolek_drake.physics.parameters import Stage
+
+SHARED_STAGES: dict[str, Stage] = {s.STAGE.name: s.STAGE for s in (supply, fluid)}
+"""Stages that all joints of a rig share."""
+
+JOINT_STAGES: dict[str, Stage] = {
+    s.STAGE.name: s.STAGE for s in (command, amplifier, solenoid, valve, cylinder, linkage, load, base, sensor)
+}
+"""Stages that each joint has of its own, in the order from command to sensor."""
+
+STAGES: dict[str, Stage] = {**SHARED_STAGES, **JOINT_STAGES}
+
+EFFECT_RECORD = np.dtype(
+    [(effect.key, [(p.name, np.float64) for p in effect.parameters]) for effect in EFFECTS.values()]
+)
+JOINT = np.dtype([(stage.name, stage.dtype()) for stage in STAGES.values()] + [("effects", EFFECT_RECORD)])
+
+
+def flat(joints: np.ndarray) -> np.ndarray:
+    """The records (n,) as vectors (n, numbers per joint) that share their memory."""
+    return joints.view(np.float64).reshape(len(joints), JOINT.itemsize // 8)
+
+
+def position_of(section: str, name: str) -> int:
+    """Where a parameter stands in a flat record; `section` is a stage or an effect's key."""
+    if section in STAGES:
+        outer = JOINT.fields[section][1]  # type: ignore[index]
+        inner = JOINT[section].fields[name][1]  # type: ignore[index]
+        return int(outer + inner) // 8
+    outer = JOINT.fields["effects"][1]  # type: ignore[index]
+    middle = EFFECT_RECORD.fields[section][1]  # type: ignore[index]
+    inner = EFFECT_RECORD[section].fields[name][1]  # type: ignore[index]
+    return int(outer + middle + inner) // 8

@@ -1,0 +1,116 @@
+"""The four-way directional valve, equations (4.7), (4.8) with overlap, for both directions."""
+
+import math
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.physics import hooks
+from hydrolek_drake.physics.fluid import orifice_conductance
+from hydrolek_drake.physics.parameters import Parameter, Stage
+
+STAGE = Stage(
+    "valve",
+    "spool position to oil flow",
+    (),
+    {
+        "plain": (
+            Parameter("overlap_a", "m", "spool travel before P opens to A", lowest=0.0),
+            Parameter("overlap_b", "m", "spool travel before P opens to B", lowest=0.0),
+            Parameter("full_opening_a", "m", "spool travel of the largest opening towards A, w in (4.7)", lowest=0.0),
+            Parameter("full_opening_b", "m", "spool travel of the largest opening towards B, w in (4.7)", lowest=0.0),
+            Parameter("max_area_a", "m^2", "largest orifice area when A is fed, A_max in (4.7)", lowest=0.0),
+            Parameter("max_area_b", "m^2", "largest orifice area when B is fed, A_max in (4.7)", lowest=0.0),
+            Parameter("discharge", "1", "contraction coefficient C_q in (4.7)", lowest=0.0),
+        ),
+        "pressure_compensated": (
+            Parameter("overlap_a", "m", "spool travel before P opens to A", lowest=0.0),
+            Parameter("overlap_b", "m", "spool travel before P opens to B", lowest=0.0),
+            Parameter("full_opening_a", "m", "spool travel of full flow towards A", lowest=0.0),
+            Parameter("full_opening_b", "m", "spool travel of full flow towards B", lowest=0.0),
+            Parameter("full_flow", "m^3/s", "metered-in flow at full opening", lowest=0.0),
+            Parameter("compensator_pressure", "Pa", "pressure drop that the compensator needs", lowest=0.0),
+            Parameter("return_coefficient", "m^3/(s Pa^0.5)", "metering-out flow over root of pressure drop", lowest=0.0),
+        ),
+        "none": (),
+    },
+)
+PLAIN = float(STAGE.code("plain"))
+PRESSURE_COMPENSATED = float(STAGE.code("pressure_compensated"))
+NO_VALVE = float(STAGE.code("none"))
+
+
+@njit
+def openings(x: float, joint: Any) -> tuple[float, float]:
+    """Shares of full opening (0 to 1) towards A and towards B at spool position `x` [m].
+
+    Between the overlaps the valve is closed: the dead-zone. `land_shift` moves the spool's null without
+    changing the slope of the opening.
+    """
+    p = joint.valve
+    shift = hooks.land_shift(joint)
+    towards_a = (x - (p.overlap_a + shift)) / (p.full_opening_a - p.overlap_a)
+    towards_b = (-x - (p.overlap_b - shift)) / (p.full_opening_b - p.overlap_b)
+    return min(max(towards_a, 0.0), 1.0), min(max(towards_b, 0.0), 1.0)
+
+
+@njit
+def edge_conductances(
+    open_a: float, open_b: float, p_supply: float, p_a: float, p_b: float, time: float, joint: Any
+) -> tuple[float, float, float, float]:
+    """Flow over pressure drop of the four edges P-A, A-T, P-B, B-T [m^3/(s Pa)], equations (4.7), (4.8).
+
+    Args:
+        open_a: share of opening towards A.
+        open_b: share of opening towards B.
+        p_supply: pressure at port P [Pa].
+        p_a: pressure at port A [Pa].
+        p_b: pressure at port B [Pa].
+        time: since switching on [s], for oil that warms up.
+        joint: parameter record.
+    """
+    p = joint.valve
+    p_tank = joint.supply.tank_pressure
+    leak = hooks.edge_conductance(joint)
+    gain = hooks.flow_gain(time, joint)
+    pa = leak
+    at = leak
+    pb = leak
+    bt = leak
+    if p.variant == PLAIN:
+        coefficient = p.discharge * gain
+        if open_a > 0.0:
+            area = open_a * p.max_area_a
+            pa += orifice_conductance(area, p_supply - p_a, coefficient, joint)
+            bt += orifice_conductance(area, p_b - p_tank, coefficient, joint)
+        if open_b > 0.0:
+            area = open_b * p.max_area_b
+            pb += orifice_conductance(area, p_supply - p_b, coefficient, joint)
+            at += orifice_conductance(area, p_a - p_tank, coefficient, joint)
+    elif p.variant == PRESSURE_COMPENSATED:
+        if open_a > 0.0:
+            pa += gain * _compensated_conductance(open_a, p_supply - p_a, joint)
+            bt += gain * _return_conductance(open_a, p_b - p_tank, joint)
+        if open_b > 0.0:
+            pb += gain * _compensated_conductance(open_b, p_supply - p_b, joint)
+            at += gain * _return_conductance(open_b, p_a - p_tank, joint)
+    return pa, at, pb, bt
+
+
+@njit
+def _compensated_conductance(opening: float, drop: float, joint: Any) -> float:
+    """Meter-in: full flow whatever the load while the compensator has its pressure, an orifice below."""
+    p = joint.valve
+    if drop <= 0.0:  # the compensator's check valve
+        return 0.0
+    if drop >= p.compensator_pressure:
+        return opening * p.full_flow / drop
+    lowest = joint.fluid.laminar_transition
+    return opening * p.full_flow / math.sqrt(p.compensator_pressure * max(drop, lowest))
+
+
+@njit
+def _return_conductance(opening: float, drop: float, joint: Any) -> float:
+    """Meter-out: an orifice given by its flow coefficient, smooth through zero as in `orifice_conductance`."""
+    transition = joint.fluid.laminar_transition
+    return opening * joint.valve.return_coefficient / math.sqrt(math.sqrt(drop * drop + transition * transition))

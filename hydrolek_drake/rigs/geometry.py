@@ -1,0 +1,76 @@
+"""Checks across a rig's parameters, and the loads that follow from the arms' geometry."""
+
+import functools
+import math
+from typing import TYPE_CHECKING
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.rigs.entries import Entry
+
+if TYPE_CHECKING:
+    from hydrolek_drake.rigs.rig import Rig
+
+FROM_ARM = ("inertia", "gravity_cos", "gravity_sin", "payload_inertia", "payload_gravity_cos", "payload_gravity_sin")
+
+
+def check(rig: "Rig") -> None:
+    """Refuse a rig whose parameters contradict each other.
+
+    Raises:
+        InputError: an impossible triangle, an empty travel, a valve that never opens.
+    """
+    for joint in rig.joints:
+        where = f"joints.{joint}"
+        lower, upper = (rig.value(f"{where}.load.{name}") for name in ("lower_stop", "upper_stop"))
+        if not lower < upper:
+            raise InputError(f"{rig.path}: {where}.load: lower_stop {lower:g} must lie below upper_stop {upper:g}")
+        _check_triangle(rig, where, lower, upper)
+        _check_valve(rig, where)
+
+
+def _check_triangle(rig: "Rig", where: str, lower: float, upper: float) -> None:
+    if rig.variants[f"{where}.linkage"] != "triangle":
+        return
+    a, b, offset, direction = (
+        rig.value(f"{where}.linkage.{name}") for name in ("distance_parent", "distance_child", "angle_offset", "direction")
+    )
+    if a <= 0.0 or b <= 0.0:
+        raise InputError(f"{rig.path}: {where}.linkage: impossible triangle, mounting distances {a:g} m and {b:g} m must be positive")
+    for name, position in (("lower_stop", lower), ("upper_stop", upper)):
+        included = direction * position + offset
+        if not 0.0 < included < math.pi:
+            raise InputError(
+                f"{rig.path}: {where}.linkage: impossible triangle, at {name} ({math.degrees(position):.1f} deg) the angle "
+                f"between the mounts is {math.degrees(included):.1f} deg; it must stay between 0 and 180"
+            )
+    if rig.variants[f"{where}.cylinder"] == "cylinder":
+        inner = direction * (lower if direction > 0 else upper) + offset
+        shortest = math.sqrt(a * a + b * b - 2.0 * a * b * math.cos(inner))
+        zero = rig.value(f"{where}.linkage.zero_stroke_length")
+        if zero > shortest * (1.0 + 1e-6) + 1e-6:
+            raise InputError(
+                f"{rig.path}: {where}.linkage.zero_stroke_length: {zero:g} m is longer than the mounts ever come together ({shortest:g} m)"
+            )
+
+
+def _check_valve(rig: "Rig", where: str) -> None:
+    if rig.variants[f"{where}.valve"] == "none":
+        return
+    for side in ("a", "b"):
+        overlap, full = (rig.value(f"{where}.valve.{name}_{side}") for name in ("overlap", "full_opening"))
+        if not overlap < full:
+            raise InputError(f"{rig.path}: {where}.valve: full_opening_{side} ({full:g} m) must be larger than overlap_{side} ({overlap:g} m)")
+
+
+def arm_entries() -> dict[str, Entry]:
+    """Placeholders for what `Rig.value` asks of the MultibodyPlant when it is needed."""
+    return {name: Entry(float("nan"), "", "from urdf/hydrolek.urdf with the other joints held") for name in FROM_ARM}
+
+
+@functools.cache
+def arm_load(joint: str, held: tuple[tuple[str, float], ...]) -> dict[str, float]:
+    """`FROM_ARM` values of one joint at a posture of the others."""
+    from hydrolek_drake.kinematics.arms import load_of_joint  # loads Drake, which SI-only rigs never need
+
+    load = load_of_joint(joint, dict(held))
+    return {name: float(getattr(load, name)) for name in FROM_ARM}

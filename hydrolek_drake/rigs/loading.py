@@ -1,0 +1,131 @@
+"""Reading rig files: built in by name, or a user's own path; one rig may be based on another."""
+
+import copy
+import difflib
+from collections.abc import Mapping
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.rigs.rig import Rig
+
+_TOP_KEYS = (
+    "schema", "name", "title", "source", "based_on", "keep", "supply", "fluid", "joints", "effects", "recording", "integration",
+)  # fmt: skip
+
+
+def built_in_rigs() -> dict[str, Path]:
+    """Name and file of every built-in rig."""
+    folder = Path(str(resources.files("hydrolek_drake.rigs")))
+    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+
+
+def load_rig(name_or_path: str | Path, settings: Mapping[str, str] | None = None) -> Rig:
+    """Load a rig by its built-in name or from a file.
+
+    Args:
+        name_or_path: "joint_bench", or a path to a YAML file.
+        settings: path in the rig -> value, as given with `--set`.
+
+    Raises:
+        InputError: one line saying which file, key and value is wrong and what would be right.
+    """
+    path = _find(name_or_path)
+    tree = _resolve(path, ())
+    rig = Rig.from_tree(tree, path)
+    return rig.with_settings(settings) if settings else rig
+
+
+def _find(name_or_path: str | Path) -> Path:
+    rigs = built_in_rigs()
+    text = str(name_or_path)
+    if text in rigs:
+        return rigs[text]
+    path = Path(text)
+    if path.is_file():
+        return path
+    if path.suffix in (".yaml", ".yml"):
+        raise InputError(f"rig file {path} does not exist")
+    near = difflib.get_close_matches(text, rigs, n=3)
+    raise InputError(
+        f"no rig '{text}'" + (f"; did you mean {' or '.join(near)}?" if near else "") + f" Built in: {', '.join(rigs)}; or give a file"
+    )
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        tree = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"rig file {path} cannot be read: {error}") from None
+    except yaml.YAMLError as error:
+        problem = " ".join(str(error).split())
+        raise InputError(f"rig file {path} is not valid YAML: {problem}") from None
+    if not isinstance(tree, dict):
+        raise InputError(f"rig file {path} is empty or not a mapping; it needs {', '.join(_TOP_KEYS)}")
+    for key in tree:
+        if key not in _TOP_KEYS:
+            raise InputError(f"{path}: unknown key '{key}'; a rig has {', '.join(_TOP_KEYS)}")
+    return tree
+
+
+def _resolve(path: Path, seen: tuple[Path, ...]) -> dict[str, Any]:
+    """The rig's tree with everything it is based on merged in."""
+    if path.resolve() in seen:
+        raise InputError(f"{path}: based_on goes in a circle")
+    tree = _read(path)
+    base = tree.pop("based_on", None)
+    if base is not None:
+        beside = path.parent / f"{base}"
+        parent = _resolve(beside if beside.is_file() else _find(base), (*seen, path.resolve()))
+        tree = _merged(parent, tree)
+    keep = tree.pop("keep", None)
+    joints = tree.get("joints")
+    if not isinstance(joints, dict) or not joints:
+        raise InputError(f"{path}: 'joints' is missing; a rig needs at least one joint")
+    tree["joints"] = {name: _like(name, joints, path, ()) for name in joints}
+    if keep is not None:
+        for name in keep:
+            if name not in joints:
+                raise InputError(f"{path}: keep: no joint '{name}'; there are {', '.join(joints)}")
+        held = tree.setdefault("_held", {})
+        held.update({name: tree["joints"][name] for name in joints if name not in keep})
+        tree["joints"] = {name: tree["joints"][name] for name in keep}
+    return tree
+
+
+def _like(name: str, joints: Mapping[str, Any], path: Path, seen: tuple[str, ...]) -> dict[str, Any]:
+    """A joint with everything of the joint that it is `like`."""
+    joint = joints[name]
+    if not isinstance(joint, dict):
+        raise InputError(f"{path}: joints.{name} must be a mapping of stages")
+    if "like" not in joint:
+        return copy.deepcopy(joint)
+    other = joint["like"]
+    if other not in joints:
+        raise InputError(f"{path}: joints.{name}.like: no joint '{other}'; there are {', '.join(joints)}")
+    if other in seen:
+        raise InputError(f"{path}: joints.{name}.like goes in a circle")
+    own = {key: value for key, value in joint.items() if key != "like"}
+    return _merged(_like(other, joints, path, (*seen, name)), own)
+
+
+_PARAMETER_KEYS = {"value", "unit", "source", "range", "scale", "same_as", "note"}
+
+
+def _merged(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
+    """`base` with `over` written on top; a parameter or another variant replaces, a section merges."""
+    result = copy.deepcopy(base)
+    for key, value in over.items():
+        old = result.get(key)
+        if isinstance(value, dict) and isinstance(old, dict) and not (value.keys() & {"value", "same_as"}):
+            other_variant = "variant" in value and value["variant"] != old.get("variant")
+            result[key] = copy.deepcopy(value) if other_variant else _merged(old, value)
+        elif isinstance(value, dict) and isinstance(old, dict) and "value" in value and old.keys() <= _PARAMETER_KEYS:
+            kept = {k: v for k, v in old.items() if k not in ("same_as",)}
+            result[key] = {**kept, **value} if value.get("unit") == old.get("unit") else copy.deepcopy(value)
+        else:
+            result[key] = copy.deepcopy(value)
+    return result

@@ -1,0 +1,5 @@
+"""The compiled execution: one joint's whole chain in one loop, fast enough to be fitted."""
+
+from hydrolek_drake.rollout.rollout import Outcome, Signals, rest_state, roll_out
+
+__all__ = ["Outcome", "Signals", "rest_state", "roll_out"]

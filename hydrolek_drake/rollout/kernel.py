@@ -1,0 +1,247 @@
+"""One joint's chain of stages, integrated in one compiled loop.
+
+Only the wiring stands here; every equation is called from `physics`. The integrator is the two-stage
+Rosenbrock-W method (see `physics.solenoid.GAMMA`) with the diagonal of the Jacobian: of second order, and
+stable for stiff friction and small oil volumes, which enter through that diagonal. Steps end exactly where
+the delayed command changes, so that a fit sees the transport delay as a smooth parameter.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from hydrolek_drake.physics import hooks
+from hydrolek_drake.physics import base, command, cylinder, linkage, load, sensor, solenoid, supply, valve
+from hydrolek_drake.physics.solenoid import GAMMA
+
+SIGNALS = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool", "supply_pressure", "force")
+
+
+class State(NamedTuple):
+    """What moves in one joint, spool apart."""
+
+    p_a: float  # pressure on side A [Pa]
+    p_b: float  # pressure on side B [Pa]
+    q: float  # joint position [rad or m]
+    w: float  # joint velocity
+    flow: float  # flow that the supply feels [m^3/s]
+    tilt: float  # of the base [rad]
+    tilt_rate: float
+    lead_q: float  # position of the cylinder's side of a play [rad]
+    lead_w: float
+
+
+class Slopes(NamedTuple):
+    """Diagonal of the Jacobian where it can be stiff [1/s]."""
+
+    p_a: float
+    p_b: float
+    w: float
+    tilt_rate: float
+    lead_w: float
+
+
+@njit
+def reflected_rod_inertia(joint: Any) -> float:
+    """Inertia of the moving rod at the joint [kg m^2]: M_R times the squared lever in mid-travel, (4.9)."""
+    mass = joint.cylinder.rod_mass
+    if not mass > 0.0:
+        return 0.0
+    _, lever = linkage.stroke_and_lever(0.5 * (joint.load.lower_stop + joint.load.upper_stop), joint)
+    return mass * lever * lever
+
+
+@njit
+def rates(s: State, x: float, voltage: float, time: float, inertia: float, joint: Any) -> tuple[State, Slopes, float, float]:
+    """Rates of the state, their stiff slopes, the supply pressure [Pa] and the rod force [N]."""
+    rocking = hooks.base_stiffness(joint) > 0.0
+    playing = hooks.linkage_gap(joint) > 0.0
+    side_q = s.lead_q if playing else s.q
+    side_w = s.lead_w if playing else s.w
+    if rocking:
+        side_q -= s.tilt
+        side_w -= s.tilt_rate
+
+    rate_a = rate_b = slope_a = slope_b = 0.0
+    flow_rate = 0.0
+    p_supply = 0.0
+    slope_f = 0.0
+    if joint.cylinder.variant == cylinder.ELECTRIC_MOTOR:
+        lever = joint.linkage.direction
+        force = cylinder.motor_force(voltage, joint)
+    else:
+        stroke, lever = linkage.stroke_and_lever(side_q, joint)
+        v = lever * side_w
+        p_supply = supply.supply_pressure(s.flow, joint)
+        p_tank = joint.supply.tank_pressure
+        open_a, open_b = valve.openings(x, joint)
+        g_pa, g_at, g_pb, g_bt = valve.edge_conductances(open_a, open_b, p_supply, s.p_a, s.p_b, time, joint)
+        cross = hooks.cross_conductance(joint)
+        from_supply_a = g_pa * (p_supply - s.p_a)
+        from_supply_b = g_pb * (p_supply - s.p_b)
+        across = cross * (s.p_a - s.p_b)
+        rate_a, rate_b, stiff_a, stiff_b = cylinder.pressure_rates(
+            s.p_a,
+            s.p_b,
+            from_supply_a - g_at * (s.p_a - p_tank) - across,
+            from_supply_b - g_bt * (s.p_b - p_tank) + across,
+            stroke,
+            v,
+            joint,
+        )
+        slope_a = -stiff_a * (g_pa + g_at + cross)
+        slope_b = -stiff_b * (g_pb + g_bt + cross)
+        friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
+        force = cylinder.pressure_force(s.p_a, s.p_b, joint) - friction
+        flow_rate = supply.flow_rate_of_change(s.flow, from_supply_a + from_supply_b, joint)
+
+    moment = force * lever
+    resisting, slope_r = load.resisting_load(s.q, s.w, time, joint)
+    lead_acceleration = slope_lead = 0.0
+    if playing:
+        side_inertia = joint.linkage.play_inertia
+        through = linkage.play_torque(s.lead_q - s.q, s.lead_w - s.w, joint)
+        lead_acceleration = (moment - through) / side_inertia
+        slope_lead = -slope_f * lever * lever / side_inertia
+        acceleration = (through - resisting) / inertia
+        slope_w = -slope_r / inertia
+    else:
+        acceleration = (moment - resisting) / inertia
+        slope_w = -(slope_f * lever * lever + slope_r) / inertia
+    tilt_acceleration = slope_tilt = 0.0
+    if rocking:
+        tilt_acceleration, slope_tilt = base.base_acceleration(s.tilt, s.tilt_rate, moment, joint)
+        slope_tilt -= slope_f * lever * lever / hooks.base_inertia(joint)
+    return (
+        State(rate_a, rate_b, s.w, acceleration, flow_rate, s.tilt_rate, tilt_acceleration, s.lead_w, lead_acceleration),
+        Slopes(slope_a, slope_b, slope_w, slope_tilt, slope_lead),
+        p_supply,
+        force,
+    )
+
+
+@njit
+def _step(s: State, x: float, x_next: float, voltage: float, time: float, h: float, inertia: float, joint: Any) -> State:
+    """One Rosenbrock-W step of `h` seconds; the spool goes from `x` to `x_next` meanwhile."""
+    k, slope, _, _ = rates(s, x, voltage, time, inertia, joint)
+    c_a = 1.0 / (1.0 - GAMMA * h * slope.p_a)
+    c_b = 1.0 / (1.0 - GAMMA * h * slope.p_b)
+    c_w = 1.0 / (1.0 - GAMMA * h * slope.w)
+    c_t = 1.0 / (1.0 - GAMMA * h * slope.tilt_rate)
+    c_l = 1.0 / (1.0 - GAMMA * h * slope.lead_w)
+    k_a, k_b, k_w, k_t, k_l = k.p_a * c_a, k.p_b * c_b, k.w * c_w, k.tilt_rate * c_t, k.lead_w * c_l
+    middle = State(
+        s.p_a + h * k_a,
+        s.p_b + h * k_b,
+        s.q + h * k.q,
+        s.w + h * k_w,
+        s.flow + h * k.flow,
+        s.tilt + h * k.tilt,
+        s.tilt_rate + h * k_t,
+        s.lead_q + h * k.lead_q,
+        s.lead_w + h * k_l,
+    )
+    m, _, _, _ = rates(middle, x_next, voltage, time + h, inertia, joint)
+    half = 0.5 * h
+    return State(
+        max(s.p_a + half * (3.0 * k_a + (m.p_a - 2.0 * k_a) * c_a), 0.0),
+        max(s.p_b + half * (3.0 * k_b + (m.p_b - 2.0 * k_b) * c_b), 0.0),
+        s.q + half * (k.q + m.q),
+        s.w + half * (3.0 * k_w + (m.w - 2.0 * k_w) * c_w),
+        s.flow + half * (k.flow + m.flow),
+        s.tilt + half * (k.tilt + m.tilt),
+        s.tilt_rate + half * (3.0 * k_t + (m.tilt_rate - 2.0 * k_t) * c_t),
+        s.lead_q + half * (k.lead_q + m.lead_q),
+        s.lead_w + half * (3.0 * k_l + (m.lead_w - 2.0 * k_l) * c_l),
+    )
+
+
+@njit
+def _inertia_at(time: float, rod: float, joint: Any) -> float:
+    return load.moving_inertia(time, joint) + rod
+
+
+@njit(cache=True)
+def integrate(
+    joints: np.ndarray,
+    state: np.ndarray,
+    command_times: np.ndarray,
+    command_values: np.ndarray,
+    times: np.ndarray,
+    longest_step: float,
+    spool_steps: int,
+    out: np.ndarray,
+) -> int:
+    """Integrate one joint through a command and write its signals at `times`.
+
+    Args:
+        joints: parameter record, shape (1,).
+        state: x, spool velocity, then `State`; shape (11,); holds the final state afterwards.
+        command_times: when the command changes [s], shape (m,).
+        command_values: held from then on [V], shape (m,).
+        times: when to write [s], shape (n,); the integration starts at the first.
+        longest_step: [s].
+        spool_steps: spool steps within one step.
+        out: `SIGNALS`, shape (n, 8).
+
+    Returns:
+        Number of rows written; less than n if the simulation diverged at that row.
+    """
+    joint = joints[0]
+    x, xd = state[0], state[1]
+    s = State(state[2], state[3], state[4], state[5], state[6], state[7], state[8], state[9], state[10])
+    playing = hooks.linkage_gap(joint) > 0.0
+    rocking = hooks.base_stiffness(joint) > 0.0
+    delay = command.transport_delay(joint)
+    rod = reflected_rod_inertia(joint)
+    begin = times[0]
+    last = len(command_times) - 1
+    held = 0
+    play = s.q - s.tilt
+    t = begin
+    for row in range(len(times)):
+        target = times[row]
+        while t < target:
+            while held < last and command_times[held + 1] + delay <= t + 1e-12:
+                held += 1
+            following = held + 1
+            while following <= last and command_values[following] == command_values[held]:
+                following += 1
+            until = target
+            if following <= last and command_times[following] + delay < target:
+                until = max(command_times[following] + delay, t)
+            voltage = command.drive_voltage(command_values[held], joint)
+            steps = max(int(math.ceil((until - t) / longest_step - 1e-9)), 1)
+            h = (until - t) / steps
+            if h > 0.0:
+                for i in range(steps):
+                    time = t + i * h - begin
+                    x_next = 0.0
+                    if joint.solenoid.variant != solenoid.NO_SPOOL:
+                        x_next, xd = solenoid.advance(x, xd, voltage, time, h, spool_steps, joint)
+                    s = _step(s, x, x_next, voltage, time, h, _inertia_at(time, rod, joint), joint)
+                    x = x_next
+                    play = sensor.played(play, s.q - s.tilt, joint)
+            t = until
+        if not (abs(s.q) < 1e3 and abs(s.w) < 1e6 and s.p_a < 1e12 and s.p_b < 1e12):
+            return row
+        voltage = command.drive_voltage(command_values[held], joint)
+        _, _, p_supply, force = rates(s, x, voltage, t - begin, _inertia_at(t - begin, rod, joint), joint)
+        out[row, 0] = sensor.reading(play, t - begin, joint)
+        out[row, 1] = s.q
+        out[row, 2] = s.w
+        out[row, 3] = s.p_a
+        out[row, 4] = s.p_b
+        out[row, 5] = x
+        out[row, 6] = p_supply
+        out[row, 7] = force
+    if not playing:
+        s = State(s.p_a, s.p_b, s.q, s.w, s.flow, s.tilt, s.tilt_rate, s.q, s.w)
+    if not rocking:
+        s = State(s.p_a, s.p_b, s.q, s.w, s.flow, 0.0, 0.0, s.lead_q, s.lead_w)
+    state[0], state[1] = x, xd
+    state[2], state[3], state[4], state[5], state[6] = s.p_a, s.p_b, s.q, s.w, s.flow
+    state[7], state[8], state[9], state[10] = s.tilt, s.tilt_rate, s.lead_q, s.lead_w
+    return len(times)

@@ -1,0 +1,115 @@
+"""A rig's joint driven through a command: the compiled execution's front door."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrolek_drake.physics import hooks
+from hydrolek_drake.physics import cylinder, linkage, load
+from hydrolek_drake.rollout import kernel
+
+STATE_SIZE = 2 + len(kernel.State._fields)
+
+
+@dataclass(frozen=True)
+class Signals:
+    """What one joint did, one row per requested time; SI units (rad or m, Pa, N)."""
+
+    time: np.ndarray
+    reading: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    pressure_a: np.ndarray
+    pressure_b: np.ndarray
+    spool: np.ndarray
+    supply_pressure: np.ndarray
+    force: np.ndarray
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Result of a rollout; a diverged one is a value with a reason, never an exception.
+
+    Attributes:
+        signals: rows after the divergence are NaN.
+        diverged: None, or where and how it diverged.
+        state: final state, to go on from.
+    """
+
+    signals: Signals
+    diverged: str | None
+    state: np.ndarray
+
+
+def rest_state(joint: np.ndarray, position: float | None = None, time: float = 0.0) -> np.ndarray:
+    """State at rest in balance (bench.md 6): side B at its given pressure, side A carries the load.
+
+    Args:
+        joint: parameter record, shape (1,).
+        position: joint position [rad or m]; None for the rig's own.
+        time: [s], for loads that are picked up later.
+    """
+    record = joint[0]
+    q = float(record["load"]["initial_position"]) if position is None else position
+    state = np.zeros(STATE_SIZE)
+    state[4] = q
+    if record["cylinder"]["variant"] == cylinder.ELECTRIC_MOTOR:
+        state[9] = q
+        return state
+    tilt = 0.0
+    needed = load.gravity_load(q, time, record) - load.stop_load(q, 0.0, record)
+    stiffness = hooks.base_stiffness(record)
+    if stiffness > 0.0:
+        tilt = -needed / stiffness
+    lead = q
+    gap = hooks.linkage_gap(record)
+    if gap > 0.0:
+        lead = q + np.sign(needed) * 0.5 * gap + needed / float(record["linkage"]["play_stiffness"])
+    _, lever = linkage.stroke_and_lever(lead - tilt, record)
+    p_b = float(record["cylinder"]["initial_pressure_b"])
+    p_a = (needed / lever + record["cylinder"]["area_b"] * p_b) / record["cylinder"]["area_a"]
+    if p_a < 0.0:  # the load pulls the rod out: side B carries it
+        p_a = float(record["supply"]["tank_pressure"])
+        p_b = (record["cylinder"]["area_a"] * p_a - needed / lever) / record["cylinder"]["area_b"]
+    state[2], state[3], state[7], state[9] = p_a, p_b, tilt, lead
+    return state
+
+
+def roll_out(
+    joint: np.ndarray,
+    command_times: np.ndarray,
+    command_values: np.ndarray,
+    times: np.ndarray,
+    *,
+    state: np.ndarray | None = None,
+    longest_step: float,
+    spool_steps: int = 1,
+) -> Outcome:
+    """Drive one joint with a recorded command.
+
+    Args:
+        joint: parameter record, shape (1,), dtype `physics.records.JOINT`.
+        command_times: [s], increasing, shape (m,).
+        command_values: [V], each held until the next, shape (m,).
+        times: when signals are wanted [s], increasing, shape (n,).
+        state: where to start; None for rest at the rig's initial position.
+        longest_step: upper bound of the integration step [s].
+        spool_steps: steps of the spool within one step of the rest.
+    """
+    start = rest_state(joint) if state is None else state.copy()
+    out = np.full((len(times), len(kernel.SIGNALS)), np.nan)
+    times = np.ascontiguousarray(times, dtype=float)
+    rows = kernel.integrate(
+        joint,
+        start,
+        np.ascontiguousarray(command_times, dtype=float),
+        np.ascontiguousarray(command_values, dtype=float),
+        times,
+        longest_step,
+        spool_steps,
+        out,
+    )
+    diverged = None
+    if rows < len(times):
+        diverged = f"left all bounds at {times[rows]:.3f} s"
+    return Outcome(Signals(times, *out.T), diverged, start)
