@@ -15,6 +15,7 @@ STAGE = Stage(
         Parameter("play_inertia", "kg m^2", "inertia on the cylinder's side of a play", neutral=0.0, lowest=0.0),
         Parameter("play_stiffness", "N m/rad", "contact stiffness where a play closes", neutral=0.0, lowest=0.0),
         Parameter("play_damping", "N m s/rad", "contact damping where a play closes", neutral=0.0, lowest=0.0),
+        Parameter("play_taken_up", "1", "1 if a play starts in contact as the load presses, 0 if centred", neutral=1.0),
     ),
     {
         "triangle": (

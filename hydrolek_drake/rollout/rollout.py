@@ -64,7 +64,8 @@ def rest_state(joint: np.ndarray, position: float | None = None, time: float = 0
     lead = q
     gap = hooks.linkage_gap(record)
     if gap > 0.0:
-        lead = q + np.sign(needed) * 0.5 * gap + needed / float(record["linkage"]["play_stiffness"])
+        contact = np.sign(needed) * 0.5 * gap + needed / float(record["linkage"]["play_stiffness"])
+        lead = q + float(record["linkage"]["play_taken_up"]) * contact
     _, lever = linkage.stroke_and_lever(lead - tilt, record)
     p_b = float(record["cylinder"]["initial_pressure_b"])
     p_a = (needed / lever + record["cylinder"]["area_b"] * p_b) / record["cylinder"]["area_a"]
