@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numba
 
-_COMPILED_PARTS = ("physics", "effects", "rollout")
+_COMPILED_PARTS = ("physics", "effects", "rollout", "systems")
 
 
 def use_cache_for_this_source() -> None:

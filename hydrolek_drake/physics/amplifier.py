@@ -28,12 +28,16 @@ PROPORTIONAL = float(STAGE.code("proportional"))
 def coil_currents(voltage: float, time: float, joint: Any) -> tuple[float, float]:
     """Currents of coils A and B [A], equation (4.4); a positive voltage drives A, a negative one B.
 
+    Without an amplifier (a servo valve has its own) the voltage itself goes on, split by its sign.
+
     Args:
         voltage: at the amplifier, positive towards chamber A [V].
         time: since the machine was switched on [s], for coils that warm up.
         joint: parameter record.
     """
     p = joint.amplifier
+    if p.variant != PROPORTIONAL:
+        return max(voltage, 0.0), max(-voltage, 0.0)
     gain = hooks.coil_gain(time, joint)
     share = min(abs(voltage) / p.full_voltage, 1.0)
     if voltage >= 0.0:

@@ -16,8 +16,20 @@ STAGE = Stage(
         Parameter("limit", "V", "largest command away from neutral", lowest=0.0),
         Parameter("polarity", "1", "1, or -1 if a higher voltage retracts", neutral=1.0, lowest=-1.0, highest=1.0),
     ),
-    {"voltage": ()},
+    {
+        "voltage": (),
+        "calibrated": (
+            Parameter("calibration_a", "V", "voltage A at the smallest positive signal, A_i in (4.2)", lowest=0.0),
+            Parameter("calibration_b", "V", "voltage A at signal 100, B_i in (4.2)", lowest=0.0),
+            Parameter("calibration_c", "V", "voltage B at the smallest negative signal, C_i in (4.3)", lowest=0.0),
+            Parameter("calibration_d", "V", "voltage B at signal -100, D_i in (4.3)", lowest=0.0),
+            Parameter("module", "1", "Compact Field Point module of Table 3.1", lowest=0.0),
+            Parameter("channel_a", "1", "channel that moves the joint in positive direction, Table 3.1", lowest=0.0, highest=7.0),
+            Parameter("channel_b", "1", "channel that moves the joint in negative direction, Table 3.1", lowest=0.0, highest=7.0),
+        ),
+    },
 )
+CALIBRATED = float(STAGE.code("calibrated"))
 
 
 @njit
@@ -35,18 +47,12 @@ def drive_voltage(command: float, joint: Any) -> float:
 
 
 @njit
-def calibrated_voltages(signal: float, a: float, b: float, c: float, d: float) -> tuple[float, float]:
-    """Voltages for amplifiers A and B [V] from the operator's signal in percent, equations (4.2), (4.3).
-
-    Args:
-        signal: S_in, from -100 to 100.
-        a: voltage A at the smallest positive signal [V].
-        b: voltage A at signal 100 [V].
-        c: voltage B at the smallest negative signal [V].
-        d: voltage B at signal -100 [V].
-    """
+def calibrated_voltages(signal: float, joint: Any) -> tuple[float, float]:
+    """Voltages for amplifiers A and B [V] from the operator's signal S_in, -100 to 100 %; (4.2), (4.3)."""
+    p = joint.command
+    share = min(abs(signal) / 100.0, 1.0)
     if signal > 0.0:
-        return a + signal * (b - a) / 100.0, 0.0
+        return p.calibration_a + share * (p.calibration_b - p.calibration_a), 0.0
     if signal < 0.0:
-        return 0.0, c - signal * (d - c) / 100.0
+        return 0.0, p.calibration_c + share * (p.calibration_d - p.calibration_c)
     return 0.0, 0.0

@@ -10,7 +10,6 @@ from typing import Any
 from numba import njit
 
 from hydrolek_drake.physics import hooks
-from hydrolek_drake.physics.amplifier import coil_currents
 from hydrolek_drake.physics.parameters import Parameter, Stage
 
 STAGE = Stage(
@@ -53,26 +52,25 @@ def solenoid_force(current: float, stroke: float, constant: float, gap_constant:
 
 
 @njit
-def spool_acceleration(x: float, v: float, voltage: float, time: float, joint: Any) -> tuple[float, float]:
-    """Acceleration of the spool [m/s^2] and its slope over velocity [1/s], equations (4.4) to (4.6).
+def spool_acceleration(x: float, v: float, drive_a: float, drive_b: float, joint: Any) -> tuple[float, float]:
+    """Acceleration of the spool [m/s^2] and its slope over velocity [1/s], equations (4.5), (4.6).
 
     Args:
         x: spool position, positive opens P to A (4.6) [m].
         v: spool velocity [m/s].
-        voltage: at the amplifier [V].
-        time: since switching on [s].
+        drive_a: what drives towards A: coil current [A], or voltage [V] of a servo valve.
+        drive_b: what drives towards B.
         joint: parameter record.
     """
     p = joint.solenoid
     if p.variant == SERVO_VALVE:
-        target = min(max(voltage / p.rated_voltage, -1.0), 1.0) * p.full_stroke
+        target = min(max((drive_a - drive_b) / p.rated_voltage, -1.0), 1.0) * p.full_stroke
         damping = 2.0 * p.damping_ratio * p.bandwidth
         return p.bandwidth * p.bandwidth * (target - x) - damping * v, -damping
-    current_a, current_b = coil_currents(voltage, time, joint)
     friction, friction_slope = hooks.spool_friction(v, joint)
     force = (
-        solenoid_force(current_a, x, p.force_constant_a, p.gap_constant)
-        - solenoid_force(current_b, -x, p.force_constant_b, p.gap_constant)
+        solenoid_force(drive_a, x, p.force_constant_a, p.gap_constant)
+        - solenoid_force(drive_b, -x, p.force_constant_b, p.gap_constant)
         - p.damping * v
         - p.spring * x
         - friction
@@ -81,19 +79,18 @@ def spool_acceleration(x: float, v: float, voltage: float, time: float, joint: A
 
 
 @njit
-def spool_step(x: float, v: float, voltage: float, time: float, h: float, joint: Any) -> tuple[float, float]:
-    """Spool position and velocity after `h` seconds at a held voltage; one Rosenbrock-W step."""
-    acceleration, slope = spool_acceleration(x, v, voltage, time, joint)
-    scale = 1.0 / (1.0 - GAMMA * h * slope)
-    x1, v1 = v, acceleration * scale
-    acceleration, _ = spool_acceleration(x + h * x1, v + h * v1, voltage, time + h, joint)
-    x2, v2 = v + h * v1 - 2.0 * x1, (acceleration - 2.0 * v1) * scale
-    return x + h * (1.5 * x1 + 0.5 * x2), v + h * (1.5 * v1 + 0.5 * v2)
-
-
-@njit
-def advance(x: float, v: float, voltage: float, time: float, h: float, steps: int, joint: Any) -> tuple[float, float]:
-    """Spool position and velocity after `steps` equal steps that together last `h` seconds."""
-    for i in range(steps):
-        x, v = spool_step(x, v, voltage, time + i * h / steps, h / steps, joint)
+def advance(
+    x: float, v: float, drive_a: float, drive_b: float, h: float, steps: int, joint: Any
+) -> tuple[float, float]:
+    """Spool position and velocity after `h` seconds of a held drive, in `steps` Rosenbrock-W steps."""
+    if joint.solenoid.variant == NO_SPOOL:
+        return 0.0, 0.0
+    dt = h / steps
+    for _ in range(steps):
+        acceleration, slope = spool_acceleration(x, v, drive_a, drive_b, joint)
+        scale = 1.0 / (1.0 - GAMMA * dt * slope)
+        x1, v1 = v, acceleration * scale
+        acceleration, _ = spool_acceleration(x + dt * x1, v + dt * v1, drive_a, drive_b, joint)
+        x2, v2 = v + dt * v1 - 2.0 * x1, (acceleration - 2.0 * v1) * scale
+        x, v = x + dt * (1.5 * x1 + 0.5 * x2), v + dt * (1.5 * v1 + 0.5 * v2)
     return x, v

@@ -221,7 +221,8 @@ def _read_stage(
     if not isinstance(section, Mapping):
         raise InputError(f"{path}: {where} must be a mapping of parameters")
     choices = tuple(stage.variants)
-    variant = section.get("variant", choices[0] if len(choices) == 1 else None)
+    plain = choices[0] if not stage.variants[choices[0]] else None  # the variant that needs nothing of its own
+    variant = section.get("variant", plain)
     if variant not in choices:
         said = "is missing" if variant is None else f"'{variant}' is unknown"
         raise InputError(f"{path}: {where}.variant {said}; choose {', '.join(choices)}")

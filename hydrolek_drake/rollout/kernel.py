@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 
 from hydrolek_drake.physics import hooks
-from hydrolek_drake.physics import base, command, cylinder, linkage, load, sensor, solenoid, supply, valve
+from hydrolek_drake.physics import amplifier, base, command, cylinder, linkage, load, sensor, solenoid, supply, valve
 from hydrolek_drake.physics.solenoid import GAMMA
 
 SIGNALS = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool", "supply_pressure", "force")
@@ -218,9 +218,8 @@ def integrate(
             if h > 0.0:
                 for i in range(steps):
                     time = t + i * h - begin
-                    x_next = 0.0
-                    if joint.solenoid.variant != solenoid.NO_SPOOL:
-                        x_next, xd = solenoid.advance(x, xd, voltage, time, h, spool_steps, joint)
+                    drive_a, drive_b = amplifier.coil_currents(voltage, time + 0.5 * h, joint)
+                    x_next, xd = solenoid.advance(x, xd, drive_a, drive_b, h, spool_steps, joint)
                     s = _step(s, x, x_next, voltage, time, h, _inertia_at(time, rod, joint), joint)
                     x = x_next
                     play = sensor.played(play, s.q - s.tilt, joint)
