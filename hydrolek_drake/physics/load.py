@@ -6,6 +6,7 @@ from typing import Any
 from numba import njit
 
 from hydrolek_drake.physics import hooks
+from hydrolek_drake.physics.linkage import stroke_and_lever
 from hydrolek_drake.physics.parameters import Parameter, Stage
 
 _ROTATING_STOPS = (
@@ -97,9 +98,26 @@ def stop_slope(position: float, joint: Any) -> float:
 
 
 @njit
+def passive_load(position: float, velocity: float, joint: Any) -> tuple[float, float]:
+    """Damping, friction and end stops against the motion [N m or N], and their slope over velocity."""
+    damping = joint.load.damping
+    friction, slope = hooks.load_friction(velocity, joint)
+    stop = stop_load(position, velocity, joint)
+    return damping * velocity + friction - stop, damping + slope + stop_slope(position, joint)
+
+
+@njit
 def resisting_load(position: float, velocity: float, time: float, joint: Any) -> tuple[float, float]:
     """All that opposes the actuator at the joint [N m or N], and its slope over velocity."""
-    friction, slope = hooks.load_friction(velocity, joint)
-    damping = joint.load.damping
-    load = gravity_load(position, time, joint) + damping * velocity + friction - stop_load(position, velocity, joint)
-    return load, damping + slope + stop_slope(position, joint)
+    passive, slope = passive_load(position, velocity, joint)
+    return gravity_load(position, time, joint) + passive, slope
+
+
+@njit
+def reflected_rod_inertia(joint: Any) -> float:
+    """Inertia of the moving rod at the joint [kg m^2]: M_R times the squared lever in mid-travel, (4.9)."""
+    mass = joint.cylinder.rod_mass
+    if not mass > 0.0:
+        return 0.0
+    _, lever = stroke_and_lever(0.5 * (joint.load.lower_stop + joint.load.upper_stop), joint)
+    return mass * lever * lever

@@ -98,6 +98,30 @@ def edge_conductances(
 
 
 @njit
+def chamber_flows(
+    open_a: float, open_b: float, p_supply: float, p_a: float, p_b: float, time: float, joint: Any
+) -> tuple[float, float, float, float, float]:
+    """Oil flowing into A, into B and drawn from the supply [m^3/s], and each chamber's total conductance.
+
+    Arguments as for `edge_conductances`. Leakage past the piston is part of the flows; the conductances are
+    what lets a chamber's pressure settle, for the integrator.
+    """
+    p_tank = joint.supply.tank_pressure
+    pa, at, pb, bt = edge_conductances(open_a, open_b, p_supply, p_a, p_b, time, joint)
+    cross = hooks.cross_conductance(joint)
+    drawn_a = pa * (p_supply - p_a)
+    drawn_b = pb * (p_supply - p_b)
+    across = cross * (p_a - p_b)
+    return (
+        drawn_a - at * (p_a - p_tank) - across,
+        drawn_b - bt * (p_b - p_tank) + across,
+        drawn_a + drawn_b,
+        pa + at + cross,
+        pb + bt + cross,
+    )
+
+
+@njit
 def _compensated_conductance(opening: float, drop: float, joint: Any) -> float:
     """Meter-in: full flow whatever the load while the compensator has its pressure, an orifice below."""
     p = joint.valve

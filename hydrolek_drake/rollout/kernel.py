@@ -44,16 +44,6 @@ class Slopes(NamedTuple):
 
 
 @njit
-def reflected_rod_inertia(joint: Any) -> float:
-    """Inertia of the moving rod at the joint [kg m^2]: M_R times the squared lever in mid-travel, (4.9)."""
-    mass = joint.cylinder.rod_mass
-    if not mass > 0.0:
-        return 0.0
-    _, lever = linkage.stroke_and_lever(0.5 * (joint.load.lower_stop + joint.load.upper_stop), joint)
-    return mass * lever * lever
-
-
-@njit
 def rates(s: State, x: float, voltage: float, time: float, inertia: float, joint: Any) -> tuple[State, Slopes, float, float]:
     """Rates of the state, their stiff slopes, the supply pressure [Pa] and the rod force [N]."""
     rocking = hooks.base_stiffness(joint) > 0.0
@@ -75,27 +65,16 @@ def rates(s: State, x: float, voltage: float, time: float, inertia: float, joint
         stroke, lever = linkage.stroke_and_lever(side_q, joint)
         v = lever * side_w
         p_supply = supply.supply_pressure(s.flow, joint)
-        p_tank = joint.supply.tank_pressure
         open_a, open_b = valve.openings(x, joint)
-        g_pa, g_at, g_pb, g_bt = valve.edge_conductances(open_a, open_b, p_supply, s.p_a, s.p_b, time, joint)
-        cross = hooks.cross_conductance(joint)
-        from_supply_a = g_pa * (p_supply - s.p_a)
-        from_supply_b = g_pb * (p_supply - s.p_b)
-        across = cross * (s.p_a - s.p_b)
-        rate_a, rate_b, stiff_a, stiff_b = cylinder.pressure_rates(
-            s.p_a,
-            s.p_b,
-            from_supply_a - g_at * (s.p_a - p_tank) - across,
-            from_supply_b - g_bt * (s.p_b - p_tank) + across,
-            stroke,
-            v,
-            joint,
+        flow_a, flow_b, drawn, settle_a, settle_b = valve.chamber_flows(
+            open_a, open_b, p_supply, s.p_a, s.p_b, time, joint
         )
-        slope_a = -stiff_a * (g_pa + g_at + cross)
-        slope_b = -stiff_b * (g_pb + g_bt + cross)
+        rate_a, rate_b, stiff_a, stiff_b = cylinder.pressure_rates(s.p_a, s.p_b, flow_a, flow_b, stroke, v, joint)
+        slope_a = -stiff_a * settle_a
+        slope_b = -stiff_b * settle_b
         friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
         force = cylinder.pressure_force(s.p_a, s.p_b, joint) - friction
-        flow_rate = supply.flow_rate_of_change(s.flow, from_supply_a + from_supply_b, joint)
+        flow_rate = supply.flow_rate_of_change(s.flow, drawn, joint)
 
     moment = force * lever
     resisting, slope_r = load.resisting_load(s.q, s.w, time, joint)
@@ -195,7 +174,7 @@ def integrate(
     playing = hooks.linkage_gap(joint) > 0.0
     rocking = hooks.base_stiffness(joint) > 0.0
     delay = command.transport_delay(joint)
-    rod = reflected_rod_inertia(joint)
+    rod = load.reflected_rod_inertia(joint)
     begin = times[0]
     last = len(command_times) - 1
     held = 0

@@ -1,0 +1,69 @@
+"""The actuators of every joint: cylinders, the vane of joint 4, the motor of joint 6, the gripper's cylinder.
+
+They are the same two chambers with other displacements (see `physics.cylinder`), so one vector system
+serves them all; the record's variant tells them apart.
+"""
+
+import numpy as np
+from numba import njit
+from pydrake.systems.framework import BasicVector, Context, ContinuousState, LeafSystem
+
+from hydrolek_drake.physics.cylinder import friction_force, pressure_force, pressure_rates
+
+
+@njit(cache=True)
+def _rates(joints: np.ndarray, pressure: np.ndarray, flow: np.ndarray, motion: np.ndarray, out: np.ndarray) -> None:
+    n = len(joints)
+    for i in range(n):
+        out[i], out[n + i], _, _ = pressure_rates(
+            pressure[i], pressure[n + i], flow[i], flow[n + i], motion[i], motion[n + i], joints[i]
+        )
+
+
+@njit(cache=True)
+def _forces(joints: np.ndarray, pressure: np.ndarray, motion: np.ndarray, time: float, out: np.ndarray) -> None:
+    n = len(joints)
+    for i in range(n):
+        friction, _ = friction_force(motion[i], motion[n + i], time, joints[i])
+        out[i] = pressure_force(pressure[i], pressure[n + i], joints[i]) - friction
+
+
+class Actuator(LeafSystem):
+    """Oil flow to chamber pressures and rod force, equation (4.9).
+
+    Ports:
+        in `oil_flow` (3n) [m^3/s].
+        in `rod_motion` (2n): strokes [m], then velocities [m/s]; angles for vane and motor.
+        out `pressure` (2n): chambers A, then B [Pa]; the continuous state.
+        out `rod_force` (n): positive pushes out [N]; moments [N m] for vane and motor.
+    """
+
+    def __init__(self, joints: np.ndarray):
+        """Build for the joints' records, shape (n,)."""
+        super().__init__()
+        self.set_name("actuator")
+        n = len(joints)
+        self._joints = joints
+        self.flow = self.DeclareVectorInputPort("oil_flow", 3 * n)
+        self.motion = self.DeclareVectorInputPort("rod_motion", 2 * n)
+        self._state = self.DeclareContinuousState(BasicVector(2 * n))
+        self.pressure = self.DeclareStateOutputPort("pressure", self._state)
+        self.force = self.DeclareVectorOutputPort(
+            "rod_force",
+            n,
+            self._calc_force,
+            prerequisites_of_calc={self.xc_ticket(), self.time_ticket(), self.motion.ticket()},
+        )
+
+    def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:  # noqa: N802
+        """Continuity of the oil in both chambers."""
+        rates = np.empty(2 * len(self._joints))
+        pressure = context.get_continuous_state_vector().CopyToVector()
+        _rates(self._joints, pressure, self.flow.Eval(context), self.motion.Eval(context), rates)
+        derivatives.SetFromVector(rates)
+
+    def _calc_force(self, context: Context, output: BasicVector) -> None:
+        force = np.empty(len(self._joints))
+        pressure = context.get_continuous_state_vector().CopyToVector()
+        _forces(self._joints, pressure, self.motion.Eval(context), context.get_time(), force)
+        output.SetFromVector(force)

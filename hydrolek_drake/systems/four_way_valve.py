@@ -1,0 +1,53 @@
+"""The four-way directional valve of every joint."""
+
+import numpy as np
+from numba import njit
+from pydrake.systems.framework import BasicVector, Context, LeafSystem
+
+from hydrolek_drake.physics.valve import chamber_flows, openings
+
+
+@njit(cache=True)
+def _flows(joints: np.ndarray, x: np.ndarray, pressure: np.ndarray, p_supply: float, time: float, out: np.ndarray) -> None:
+    n = len(joints)
+    for i in range(n):
+        joint = joints[i]
+        open_a, open_b = openings(x[i], joint)
+        out[i], out[n + i], out[2 * n + i], _, _ = chamber_flows(
+            open_a, open_b, p_supply, pressure[i], pressure[n + i], time, joint
+        )
+
+
+class FourWayValve(LeafSystem):
+    """Spool position to oil flow, equations (4.7), (4.8) with overlap.
+
+    Ports:
+        in `spool_position` (n) [m].
+        in `pressure` (2n): chambers A, then B [Pa].
+        in `supply_pressure` (1) [Pa].
+        out `oil_flow` (3n): into chambers A, into chambers B (leakage past the piston included), and drawn
+            from the supply [m^3/s].
+    """
+
+    def __init__(self, joints: np.ndarray):
+        """Build for the joints' records, shape (n,)."""
+        super().__init__()
+        self.set_name("four_way_valve")
+        n = len(joints)
+        self._joints = joints
+        self.spool = self.DeclareVectorInputPort("spool_position", n)
+        self.pressure = self.DeclareVectorInputPort("pressure", 2 * n)
+        self.supply = self.DeclareVectorInputPort("supply_pressure", 1)
+        self.flow = self.DeclareVectorOutputPort("oil_flow", 3 * n, self._calc)
+
+    def _calc(self, context: Context, output: BasicVector) -> None:
+        flow = np.empty(3 * len(self._joints))
+        _flows(
+            self._joints,
+            self.spool.Eval(context),
+            self.pressure.Eval(context),
+            float(self.supply.Eval(context)[0]),
+            context.get_time(),
+            flow,
+        )
+        output.SetFromVector(flow)

@@ -1,0 +1,50 @@
+"""Solenoids A and B of every joint and the spool between them."""
+
+import numpy as np
+from numba import njit
+from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
+
+from hydrolek_drake.physics.solenoid import advance
+
+
+@njit(cache=True)
+def _advance(joints: np.ndarray, state: np.ndarray, current: np.ndarray, step: float, substeps: int, out: np.ndarray) -> None:
+    n = len(joints)
+    for i in range(n):
+        x, v = advance(state[i], state[n + i], current[i], current[n + i], step, substeps, joints[i])
+        out[i], out[n + i] = x, v
+        out[2 * n + i] = 0.5 * (state[i] + x)
+
+
+class SolenoidSpool(LeafSystem):
+    """Coil currents to spool position, equations (4.5), (4.6).
+
+    The spool depends on the currents alone and is stiff where it sticks, so it advances in steps of its own
+    with the same one-step method as the rollout. Its output is the mean position over the running step.
+
+    Ports:
+        in `coil_current` (2n) [A].
+        out `spool_position` (n): positive opens P to A [m].
+    """
+
+    def __init__(self, joints: np.ndarray, step: float, substeps: int):
+        """Build for the joints' records, the diagram's step [s] and the spool's steps within it."""
+        super().__init__()
+        self.set_name("solenoid_spool")
+        n = len(joints)
+        self._joints = joints
+        self._step = step
+        self._substeps = substeps
+        self.current = self.DeclareVectorInputPort("coil_current", 2 * n)
+        self._state = self.DeclareDiscreteState(np.zeros(3 * n))
+        self.DeclarePeriodicDiscreteUpdateEvent(step, 0.0, self._update)
+        self.position = self.DeclareVectorOutputPort("spool_position", n, self._calc, prerequisites_of_calc={self.xd_ticket()})
+
+    def _update(self, context: Context, values: DiscreteValues) -> None:
+        following = np.empty(3 * len(self._joints))
+        state = context.get_discrete_state(self._state).get_value()
+        _advance(self._joints, state, self.current.Eval(context), self._step, self._substeps, following)
+        values.get_mutable_vector(self._state).SetFromVector(following)
+
+    def _calc(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(context.get_discrete_state(self._state).get_value()[2 * len(self._joints) :])
