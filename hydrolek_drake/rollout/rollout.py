@@ -56,24 +56,35 @@ def rest_state(joint: np.ndarray, position: float | None = None, time: float = 0
     if record["cylinder"]["variant"] == cylinder.ELECTRIC_MOTOR:
         state[9] = q
         return state
-    tilt = 0.0
     needed = load.gravity_load(q, time, record) - load.stop_load(q, 0.0, record)
+    tilt, lead = rest_tilt_and_lead(record, q, needed)
+    state[2], state[3] = rest_pressures(record, lead - tilt, needed)
+    state[7], state[9] = tilt, lead
+    return state
+
+
+def rest_tilt_and_lead(record: np.void, position: float, needed: float) -> tuple[float, float]:
+    """Tilt of the base and position of the actuator's side [rad] under a held moment `needed` [N m]."""
     stiffness = hooks.base_stiffness(record)
-    if stiffness > 0.0:
-        tilt = -needed / stiffness
-    lead = q
+    tilt = -needed / stiffness if stiffness > 0.0 else 0.0
+    lead = position
     gap = hooks.linkage_gap(record)
     if gap > 0.0:
-        contact = np.sign(needed) * 0.5 * gap + needed / float(record["linkage"]["play_stiffness"])
-        lead = q + float(record["linkage"]["play_taken_up"]) * contact
-    _, lever = linkage.stroke_and_lever(lead - tilt, record)
-    p_b = float(record["cylinder"]["initial_pressure_b"])
-    p_a = (needed / lever + record["cylinder"]["area_b"] * p_b) / record["cylinder"]["area_a"]
+        contact = float(np.sign(needed)) * 0.5 * gap + needed / float(record["linkage"]["play_stiffness"])
+        lead = position + float(record["linkage"]["play_taken_up"]) * contact
+    return tilt, lead
+
+
+def rest_pressures(record: np.void, side: float, needed: float) -> tuple[float, float]:
+    """Chamber pressures that hold a moment `needed` [N m] with the actuator's side at `side` [rad or m]."""
+    p = record["cylinder"]
+    _, lever = linkage.stroke_and_lever(side, record)
+    p_b = float(p["initial_pressure_b"])
+    p_a = (needed / lever + p["area_b"] * p_b) / p["area_a"]
     if p_a < 0.0:  # the load pulls the rod out: side B carries it
         p_a = float(record["supply"]["tank_pressure"])
-        p_b = (record["cylinder"]["area_a"] * p_a - needed / lever) / record["cylinder"]["area_b"]
-    state[2], state[3], state[7], state[9] = p_a, p_b, tilt, lead
-    return state
+        p_b = (p["area_a"] * p_a - needed / lever) / p["area_b"]
+    return float(p_a), float(p_b)
 
 
 def roll_out(

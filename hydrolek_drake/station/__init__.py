@@ -1,0 +1,1 @@
+"""Rig and scenario in, Drake Diagram out; and running it."""

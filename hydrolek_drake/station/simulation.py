@@ -1,0 +1,161 @@
+"""Running a station: initial state, integration, events, and the signals that come out."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
+from pydrake.systems.framework import Context
+from pydrake.systems.primitives import TrajectorySource
+from pydrake.trajectories import PiecewisePolynomial
+
+from hydrolek_drake.physics import cylinder, load
+from hydrolek_drake.rollout.rollout import rest_pressures, rest_tilt_and_lead
+from hydrolek_drake.station.station import Station
+
+_EARLY = 1e-9  # seconds by which a played-back command comes early, so that rounding never makes it a step late
+
+
+@dataclass(frozen=True)
+class Run:
+    """Signals of a run: one row per time, one column per joint, in SI units.
+
+    Attributes:
+        time: [s], shape (n,).
+        signals: `reading`, `measured`, `position`, `velocity`, `voltage`, and for hydraulic rigs `pressure_a`,
+            `pressure_b`, `spool`, `force` (n, joints) and `supply_pressure` (n, 1).
+        final: context after the run.
+    """
+
+    time: np.ndarray
+    signals: dict[str, np.ndarray]
+    final: Context
+
+
+def command_source(times: np.ndarray, values: np.ndarray) -> TrajectorySource:
+    """Plays back recorded commands, each held until the next.
+
+    Args:
+        times: [s], increasing, shape (m,).
+        values: [V], shape (m, joints).
+    """
+    breaks = np.append(np.asarray(times, float) - _EARLY, times[-1] + 1.0)
+    held = np.vstack([values, values[-1:]]).T
+    source = TrajectorySource(PiecewisePolynomial.ZeroOrderHold(breaks, held))
+    source.set_name("command_player")
+    return source
+
+
+def initial_context(station: Station, positions: np.ndarray | None = None) -> Context:
+    """A context at rest in balance at the given joint positions (the rig's own if None)."""
+    context = station.diagram.CreateDefaultContext()
+    plant_context = station.plant.GetMyMutableContextFromRoot(context)
+    joints = station.joints
+    q = np.array(joints["load"]["initial_position"] if positions is None else positions, dtype=float)
+    for name, value in zip(station.rig.joints, q, strict=True):
+        joint = station.plant.GetJointByName(name)
+        station.plant.SetPositions(plant_context, _placed(station, plant_context, joint.position_start(), value))
+    for payload in station.payloads:
+        if payload.time > context.get_time():
+            payload.body.SetMass(plant_context, 0.0)
+    gravity = station.plant.CalcGravityGeneralizedForces(plant_context)
+    needed = np.array([-gravity[station.plant.GetJointByName(name).velocity_start()] for name in station.rig.joints])
+    needed = needed + np.where(joints["load"]["variant"] == load.SLIDING, np.nan_to_num(joints["load"]["gravity_cos"]), 0.0)
+    tilts, leads = np.zeros(len(q)), q.copy()
+    for i, joint_record in enumerate(joints):
+        tilts[i], leads[i] = rest_tilt_and_lead(joint_record, q[i], needed[i])
+    if "actuator" in station.systems and not (joints["cylinder"]["variant"] == cylinder.ELECTRIC_MOTOR).any():
+        pressures = np.array(
+            [rest_pressures(record, leads[i] - tilts[i], needed[i]) for i, record in enumerate(joints)]
+        )
+        actuator = station.systems["actuator"]
+        actuator.GetMyMutableContextFromRoot(context).SetContinuousState(pressures.T.ravel())
+    zero = np.zeros(len(q))
+    for name, state in (("play", leads), ("rocking_base", tilts)):
+        if name in station.systems:
+            station.systems[name].GetMyMutableContextFromRoot(context).SetContinuousState(np.concatenate([state, zero]))
+    sensor_context = station.systems["potentiometer"].GetMyMutableContextFromRoot(context)
+    sensor_context.SetDiscreteState(0, q - tilts)
+    return context
+
+
+def _placed(station: Station, plant_context: Context, index: int, value: float) -> np.ndarray:
+    positions = station.plant.GetPositions(plant_context).copy()
+    positions[index] = value
+    return positions
+
+
+def run(
+    station: Station,
+    duration: float,
+    *,
+    start: float = 0.0,
+    context: Context | None = None,
+    supply_lost_at: float | None = None,
+    realtime_rate: float = 0.0,
+    on_progress: Callable[[float], None] | None = None,
+) -> Run:
+    """Run a station.
+
+    Args:
+        station: built with `make_station`; its command input must be connected or fixed.
+        duration: [s].
+        start: time of the first sample [s].
+        context: where to start; None for rest.
+        supply_lost_at: when a hose bursts, that is the supply falls to tank pressure [s].
+        realtime_rate: 1 to run no faster than real time, 0 as fast as possible.
+        on_progress: called with the simulated time now and then; may raise to stop.
+    """
+    context = initial_context(station) if context is None else context
+    context.SetTime(start)
+    _fix_supply(station, context, 1.0)
+    simulator = Simulator(station.diagram, context)
+    config = SimulatorConfig(
+        integration_scheme="runge_kutta3",
+        max_step_size=station.sizes.step,
+        use_error_control=False,
+        target_realtime_rate=realtime_rate,
+        start_time=start,
+    )
+    ApplySimulatorConfig(config, simulator)
+    simulator.Initialize()
+    end = start + duration
+    events: list[tuple[float, Callable[[], None]]] = []
+    plant_context = station.plant.GetMyMutableContextFromRoot(context)
+    for payload in station.payloads:
+        if start < payload.time < end:
+            events.append((payload.time, lambda p=payload: p.body.SetMass(plant_context, p.mass)))
+    if supply_lost_at is not None and start <= supply_lost_at < end:
+        events.append((supply_lost_at, lambda: _fix_supply(station, context, 0.0)))
+    for time, act in [*sorted(events, key=lambda e: e[0]), (end, lambda: None)]:
+        _advance(simulator, time, on_progress)
+        act()
+    return Run(*_collect(station, context), final=context)
+
+
+def _advance(simulator: Simulator, until: float, on_progress: Callable[[float], None] | None) -> None:
+    now = simulator.get_context().get_time()
+    while on_progress is not None and now + 0.5 < until:
+        now += 0.5
+        simulator.AdvanceTo(now)
+        on_progress(now)
+    simulator.AdvanceTo(until)
+
+
+def _fix_supply(station: Station, context: Context, share: float) -> None:
+    for index in range(station.diagram.num_input_ports()):
+        port = station.diagram.get_input_port(index)
+        if port.get_name() == "pressure_available":
+            port.FixValue(context, [share])
+
+
+def _collect(station: Station, context: Context) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    n = len(station.rig.joints)
+    data = {name: log.FindLog(context) for name, log in station.logs.items()}
+    signals = {name: log.data().T.copy() for name, log in data.items()}
+    motion = signals.pop("motion")
+    signals["position"], signals["velocity"] = motion[:, :n], motion[:, n:]
+    if "pressure" in signals:
+        pressure = signals.pop("pressure")
+        signals["pressure_a"], signals["pressure_b"] = pressure[:, :n], pressure[:, n:]
+    return next(iter(data.values())).sample_times().copy(), signals

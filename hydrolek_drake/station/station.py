@@ -1,0 +1,223 @@
+"""A rig as a Drake Diagram: every stage a system, wired from command to sensor."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import Diagram, DiagramBuilder, System
+from pydrake.systems.primitives import Adder, Gain, LogVectorOutput, VectorLogSink
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.physics import cylinder, linkage
+from hydrolek_drake.rigs import Rig
+from hydrolek_drake.station.chain import read_chain, read_mounts
+from hydrolek_drake.station.plant import Payload, RigPlant, add_plant
+from hydrolek_drake.systems.actuator import Actuator
+from hydrolek_drake.systems.electric_motor import ElectricMotor
+from hydrolek_drake.systems.four_way_valve import FourWayValve
+from hydrolek_drake.systems.linkage import Linkage
+from hydrolek_drake.systems.load import Load
+from hydrolek_drake.systems.operator_computer import FieldPoint, OperatorComputer
+from hydrolek_drake.systems.play import Play
+from hydrolek_drake.systems.potentiometer import Potentiometer
+from hydrolek_drake.systems.proportional_amplifier import ProportionalAmplifier
+from hydrolek_drake.systems.rocking_base import RockingBase
+from hydrolek_drake.systems.solenoid_spool import SolenoidSpool
+from hydrolek_drake.systems.supply import Supply
+from hydrolek_drake.systems.transport_delay import TransportDelay
+
+
+@dataclass(frozen=True)
+class StepSizes:
+    """How finely a diagram runs.
+
+    Attributes:
+        step: of the spools, the transport delay and the integrator [s].
+        plant_step: of a discrete MultibodyPlant [s], as contact needs it; 0 for a continuous plant, which is
+            more accurate.
+        log_period: how often signals are written [s].
+    """
+
+    step: float = 1e-3
+    plant_step: float = 0.0
+    log_period: float = 1e-2
+
+
+@dataclass(frozen=True)
+class Station:
+    """A built diagram and handles to what a user needs of it.
+
+    Attributes:
+        diagram: with input `command` (n, V) or `signal_commanded` (n, %), and `pressure_available` (1).
+        rig: what it was built from.
+        joints: the records.
+        plant: the MultibodyPlant inside.
+        payloads: bodies whose mass appears at a time.
+        logs: name of a signal -> its log.
+        systems: name -> system.
+        sizes: the steps it runs at.
+    """
+
+    diagram: Diagram
+    rig: Rig
+    joints: np.ndarray
+    plant: MultibodyPlant
+    payloads: tuple[Payload, ...]
+    logs: dict[str, VectorLogSink]
+    systems: dict[str, System]
+    sizes: StepSizes
+
+
+def make_station(
+    rig: Rig,
+    *,
+    sizes: StepSizes | None = None,
+    command: System | None = None,
+    operator: bool = False,
+    noise: np.random.Generator | None = None,
+    visualize: Callable[[DiagramBuilder, RigPlant, Rig, np.ndarray], None] | None = None,
+) -> Station:
+    """Build the diagram of a rig.
+
+    Args:
+        rig: the machine.
+        sizes: step sizes; the defaults run the whole machine several times faster than real time.
+        command: system with one output of n voltages (or signals, with `operator`); None leaves the diagram's
+            input `command` (or `signal_commanded`) open.
+        operator: whether commands are signals in percent that pass the operator computer and the field point.
+        noise: source of sensor noise; None for ideal sensors.
+        visualize: called with builder, plant, scene graph, rig and records before the diagram is built.
+
+    Raises:
+        InputError: electric and hydraulic joints in one rig, or no calibration where `operator` asks for it.
+    """
+    sizes = sizes or StepSizes()
+    joints = rig.records()
+    builder = DiagramBuilder()
+    body = add_plant(builder, rig, joints, sizes.plant_step)
+    systems: dict[str, System] = {}
+
+    def add(system: System) -> System:
+        builder.AddSystem(system)
+        systems[system.get_name()] = system
+        return system
+
+    delay = add(TransportDelay(joints, sizes.step))
+    _wire_command(builder, add, joints, delay, command, operator)
+    parts = _wire_mechanics(builder, add, rig, joints, body)
+    electric = joints["cylinder"]["variant"] == cylinder.ELECTRIC_MOTOR
+    if electric.all():
+        motor = add(ElectricMotor(joints))
+        builder.Connect(delay.voltage, motor.voltage)
+        builder.Connect(motor.force, parts.linkage.force)
+    elif electric.any():
+        raise InputError(f"rig {rig.name}: electric and hydraulic joints cannot share one rig")
+    else:
+        _wire_hydraulics(builder, add, rig, joints, sizes, delay, parts)
+    sensor = add(Potentiometer(joints, sizes.step, noise))
+    builder.Connect(parts.sensed, sensor.motion)
+    logs = _add_logs(builder, systems, sizes.log_period)
+    for port in (sensor.measured, sensor.voltage):
+        builder.ExportOutput(port, port.get_name())
+    builder.ExportOutput(parts.linkage.joint_motion, "joint_motion_true")
+    if visualize is not None:
+        visualize(builder, body, rig, joints)
+    diagram = builder.Build()
+    diagram.set_name(rig.name)
+    return Station(diagram, rig, joints, body.plant, body.payloads, logs, systems, sizes)
+
+
+@dataclass(frozen=True)
+class _Mechanics:
+    linkage: Linkage
+    sensed: object
+
+
+def _wire_command(builder, add, joints, delay, command, operator) -> None:  # type: ignore[no-untyped-def]
+    entry = delay.command
+    name = "command"
+    if operator:
+        computer, field_point = add(OperatorComputer(joints)), add(FieldPoint(joints))
+        builder.Connect(computer.channels, field_point.channels)
+        builder.Connect(field_point.command, delay.command)
+        entry, name = computer.signal, "signal_commanded"
+    if command is None:
+        builder.ExportInput(entry, name)
+    else:
+        add(command)
+        builder.Connect(command.get_output_port(0), entry)
+
+
+def _wire_mechanics(builder, add, rig: Rig, joints: np.ndarray, body: RigPlant) -> _Mechanics:  # type: ignore[no-untyped-def]
+    plant = body.plant
+    chain = read_chain(plant, rig.joints)
+    playing = joints["effects"]["linkage_backlash"]["gap_rad"] > 0.0
+    rocking = joints["effects"]["base_compliance"]["stiffness_Nm_per_rad"] > 0.0
+    is_cylinder = (joints["linkage"]["variant"] == linkage.TRIANGLE) & (joints["cylinder"]["variant"] == cylinder.CYLINDER)
+    by_moment = playing | rocking | ~is_cylinder
+    mounts = [mount for mount in read_mounts(plant, rig.joints, joints, chain) if not by_moment[mount.joint]]
+    link = add(Linkage(joints, chain, mounts, plant.num_multibody_states()))
+    load = add(Load(joints, chain.velocity_index - plant.num_positions(), plant.num_velocities(), by_moment))
+    builder.Connect(plant.get_state_output_port(), link.plant_state)
+    builder.Connect(link.mount_force, plant.get_applied_spatial_force_input_port())
+    builder.Connect(link.joint_motion, load.motion)
+    builder.Connect(load.torque, plant.get_applied_generalized_force_input_port())
+    side, sensed, moment = link.joint_motion, link.joint_motion, link.moment
+    if playing.any():
+        play = add(Play(joints))
+        builder.Connect(link.joint_motion, play.motion)
+        builder.Connect(link.moment, play.moment)
+        side, moment = play.side, play.transmitted
+    if rocking.any():
+        base = add(RockingBase(joints))
+        builder.Connect(link.moment, base.moment)
+        builder.Connect(side, base.motion)
+        side = base.relative
+        sensed = side
+        if playing.any():  # the sensor sits on the link, not on the actuator's side of the play
+            less = builder.AddNamedSystem("tilt_reversed", Gain(-1.0, 2 * len(joints)))
+            relative = builder.AddNamedSystem("link_less_tilt", Adder(2, 2 * len(joints)))
+            builder.Connect(base.tilt, less.get_input_port())
+            builder.Connect(link.joint_motion, relative.get_input_port(0))
+            builder.Connect(less.get_output_port(), relative.get_input_port(1))
+            sensed = relative.get_output_port()
+    builder.Connect(side, link.side)
+    builder.Connect(moment, load.moment)
+    return _Mechanics(link, sensed)
+
+
+def _wire_hydraulics(builder, add, rig, joints, sizes, delay, parts) -> None:  # type: ignore[no-untyped-def]
+    amplifier = add(ProportionalAmplifier(joints))
+    spool = add(SolenoidSpool(joints, sizes.step, round(rig.value("integration.spool_steps"))))
+    valve, supply, actuator = add(FourWayValve(joints)), add(Supply(joints)), add(Actuator(joints))
+    builder.Connect(delay.voltage, amplifier.voltage)
+    builder.Connect(amplifier.current, spool.current)
+    builder.Connect(spool.position, valve.spool)
+    builder.Connect(actuator.pressure, valve.pressure)
+    builder.Connect(supply.pressure, valve.supply)
+    builder.Connect(valve.flow, supply.flow)
+    builder.Connect(valve.flow, actuator.flow)
+    builder.Connect(parts.linkage.rod_motion, actuator.motion)
+    builder.Connect(actuator.force, parts.linkage.force)
+    builder.ExportInput(supply.available, "pressure_available")
+    builder.ExportOutput(actuator.pressure, "pressure_measured")
+
+
+def _add_logs(builder: DiagramBuilder, systems: dict[str, System], period: float) -> dict[str, VectorLogSink]:
+    wanted = {
+        "voltage": ("transport_delay", "voltage_delayed"),
+        "reading": ("potentiometer", "position_ideal"),
+        "measured": ("potentiometer", "position_measured"),
+        "motion": ("linkage", "joint_motion"),
+        "pressure": ("actuator", "pressure"),
+        "spool": ("solenoid_spool", "spool_position"),
+        "supply_pressure": ("supply", "supply_pressure"),
+        "force": ("electric_motor" if "electric_motor" in systems else "actuator", "rod_force"),
+    }
+    logs = {}
+    for name, (system, port) in wanted.items():
+        if system in systems:
+            logs[name] = LogVectorOutput(systems[system].GetOutputPort(port), builder, publish_period=period)
+            logs[name].set_name(f"log_{name}")
+    return logs
