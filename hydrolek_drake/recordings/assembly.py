@@ -35,8 +35,8 @@ def assemble(table: Table, mapping: Mapping[str, str], path: Path) -> Recording:
     used, ignored = _understood(table, mapping, path)
     if TIME not in used:
         raise InputError(
-            f"{path} has no time column; it needs time_s (or time_ms, time_min ...), or a rig that maps one of "
-            f"its columns to it under 'columns'; it has {_listed(table)}"
+            f"{path} has no time column; it needs time_s (or time_ms, time_min ...), or a rig that maps one "
+            f"of its columns to it under 'columns'; it has {_listed(table)}"
         )
     clock = used.pop(TIME)
     if not used:

@@ -90,10 +90,11 @@ def signal_findings(time: np.ndarray, key: str, values: np.ndarray, unit: str) -
         for word, extreme in (("smallest", low), ("largest", high)):
             spans = _saturated(time, values, extreme)
             if spans:
+                total = sum(end - start for start, end in spans)
                 message = (
                     f"{key} sits exactly at its {word} value {extreme:.6g} {unit} in {len(spans)} stretches, "
-                    f"together {sum(b - a for a, b in spans):.4g} s, but moves otherwise: the sensor may be at its "
-                    "limit, or the joint at a stop"
+                    f"together {total:.4g} s, but moves otherwise: the sensor may be at its limit, or the "
+                    "joint at a stop"
                 )
                 found.append(Finding("saturated", key, message, spans))
     return found
@@ -108,6 +109,8 @@ def _saturated(time: np.ndarray, values: np.ndarray, extreme: float) -> tuple[tu
     first, last = runs_of(values == extreme)
     steps = np.abs(np.diff(values))
     moving = steps[steps > 0]
+    if not moving.size:  # no two neighbouring samples that differ
+        return ()
     elsewhere = (steps == 0) & (values[:-1] != np.nanmin(values)) & (values[:-1] != np.nanmax(values))
     plateau_first, plateau_last = runs_of(elsewhere)
     plateau = int((plateau_last - plateau_first).max(initial=-1)) + 2  # samples, not steps

@@ -43,8 +43,21 @@ def ordered(time: np.ndarray, what: str, row: Callable[[int], str]) -> tuple[np.
     repeated = time[~keep]
     if not repeated.size:
         return keep, None
-    message = f"{repeated.size} samples repeat the time stamp before them and are dropped, first at {repeated[0]:.9g} s"
+    message = (
+        f"{repeated.size} samples repeat the time stamp before them and are dropped, "
+        f"first at {repeated[0]:.9g} s"
+    )
     return keep, Finding("duplicate", None, message, tuple((float(t), float(t)) for t in np.unique(repeated)))
+
+
+def seconds_of(nanoseconds: np.ndarray) -> np.ndarray:
+    """Time stamps or durations of NumPy in seconds (stamps since 1970), NaN where there is none.
+
+    Whole seconds and the rest are converted apart: a stamp in nanoseconds has more digits than a double.
+    """
+    exact = nanoseconds.astype(f"{nanoseconds.dtype.kind}8[ns]")
+    whole, rest = np.divmod(exact.astype("i8"), 1_000_000_000)
+    return np.where(np.isnat(exact), np.nan, whole + rest / 1e9)
 
 
 def usual_interval(time: np.ndarray) -> float:
@@ -67,7 +80,7 @@ def clock_findings(time: np.ndarray) -> list[Finding]:
     found = []
     if gaps.any():
         message = (
-            f"{int(gaps.sum())} gaps longer than {GAP_INTERVALS:g} times the usual interval of {usual:.6g} s, "
+            f"{int(gaps.sum())} gaps of more than {GAP_INTERVALS:g} usual intervals of {usual:.6g} s, "
             f"the longest {steps.max():.6g} s: samples are missing or the clock jumped"
         )
         found.append(Finding("gap", None, message, spans_of(gaps, time, intervals=True)))

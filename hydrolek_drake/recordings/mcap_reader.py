@@ -116,7 +116,7 @@ def _samples(path: Path) -> dict[str, list[_Sample]]:
         for _, channel, message, content in reader.iter_decoded_messages(topics=topics):
             stamp = content.header.stamp
             samples[channel.topic].append(
-                _Sample(stamp.sec + stamp.nanosec / 1e9, message.log_time / 1e9, content),
+                _Sample(stamp.sec + stamp.nanosec / 1e9, message.log_time / 10**9, content),
             )
     return samples
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hydrolek_drake.recordings.clock import seconds_of
 from hydrolek_drake.recordings.table import Column, Table
 
 if TYPE_CHECKING:
@@ -30,13 +31,7 @@ def _column(name: str, values: "pyarrow.ChunkedArray") -> Column:
 
     kind = values.type
     if pyarrow.types.is_timestamp(kind) or pyarrow.types.is_duration(kind):
-        return Column((name, f"{name}_s"), _seconds(values.to_numpy()))
+        return Column((name, f"{name}_s"), seconds_of(values.to_numpy()))
     if pyarrow.types.is_integer(kind) or pyarrow.types.is_floating(kind) or pyarrow.types.is_boolean(kind):
         return Column((name,), values.cast("float64").to_numpy())
     return Column((name,), np.array(values.to_pylist(), dtype=object))
-
-
-def _seconds(stamps: np.ndarray) -> np.ndarray:
-    """Time stamps (since 1970) or durations in seconds; missing ones are NaN."""
-    nanoseconds = stamps.astype(f"{stamps.dtype.kind}8[ns]")
-    return np.where(np.isnat(nanoseconds), np.nan, nanoseconds.astype("i8") / 1e9)

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.recordings.clock import seconds_of
 from hydrolek_drake.recordings.columns import TIME, parse_column
 from hydrolek_drake.recordings.table import Column, Table
 
@@ -37,9 +38,7 @@ def read_tdms(path: Path) -> Table:
 def _column(names: tuple[str, ...], values: np.ndarray) -> Column:
     values = np.asarray(values)
     if values.dtype.kind == "M":
-        missing = np.isnat(values)
-        seconds = np.where(missing, np.nan, values.astype("M8[ns]").astype("i8") / 1e9)
-        return Column((*names, f"{names[-1]}_s"), seconds)
+        return Column((*names, f"{names[-1]}_s"), seconds_of(values))
     return Column(names, values)
 
 
