@@ -1,0 +1,44 @@
+"""Values of a recorded signal at other times than it was sampled."""
+
+import numpy as np
+
+from hydrolek_drake.recordings.clock import gap_follows
+
+
+def held(time: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Sample and hold: the last value set at or before each time; NaN before the first.
+
+    Args:
+        time: Strictly increasing sample times [s]. # (n,)
+        values: Samples. # (n,)
+        at: Wanted times [s]. # (m,)
+
+    Returns:
+        Held values. # (m,)
+    """
+    index = np.searchsorted(time, at, side="right") - 1
+    return np.where(index >= 0, values[np.maximum(index, 0)], np.nan)
+
+
+def linear(time: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Straight line between neighbouring samples; NaN outside the record and inside gaps.
+
+    Nothing was measured in a gap, so a line across it would be invented. A NaN sample spoils only what lies
+    strictly between it and its neighbours.
+
+    Args:
+        time: Strictly increasing sample times [s]. # (n,)
+        values: Samples. # (n,)
+        at: Wanted times [s]. # (m,)
+
+    Returns:
+        Interpolated values. # (m,)
+    """
+    left = np.clip(np.searchsorted(time, at, side="right") - 1, 0, time.size - 1)
+    right = np.minimum(left + 1, time.size - 1)
+    on_sample = time[left] == at
+    width = np.where(right > left, time[right] - time[left], 1.0)
+    weight = (at - time[left]) / width
+    between = values[left] * (1.0 - weight) + values[right] * weight
+    measured = (at >= time[0]) & (at <= time[-1]) & ~np.append(gap_follows(time), False)[left]
+    return np.where(on_sample, values[left], np.where(measured, between, np.nan))

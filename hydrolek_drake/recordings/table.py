@@ -1,0 +1,48 @@
+"""What a reader hands over: the columns of a file as they stand there, not yet understood."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrolek_drake.recordings.finding import Finding
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of a file.
+
+    Attributes:
+        names: Names that the column answers to, the fullest first: `("arm.angle_deg", "angle_deg")`.
+        values: Numbers, or text cells that may or may not be numbers (object or string array). # (n,)
+    """
+
+    names: tuple[str, ...]
+    values: np.ndarray
+
+    @property
+    def name(self) -> str:
+        """The name to use in messages."""
+        return self.names[0]
+
+
+@dataclass(frozen=True)
+class Table:
+    """All columns of a file.
+
+    Attributes:
+        columns: In the order of the file; lengths may differ.
+        row_name: What the file calls a row: "line" for text files, else "row".
+        rows: Number of each row in the file, or None if they simply count from 1. # (n,)
+        decimal_comma: Text cells may use a comma as the decimal mark.
+        findings: What the reader itself noticed.
+    """
+
+    columns: tuple[Column, ...]
+    row_name: str = "row"
+    rows: np.ndarray | None = None
+    decimal_comma: bool = False
+    findings: tuple[Finding, ...] = ()
+
+    def row(self, index: int) -> str:
+        """How to call the sample with this index in a message: "line 17"."""
+        return f"{self.row_name} {index + 1 if self.rows is None else self.rows[index]}"
