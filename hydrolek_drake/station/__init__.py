@@ -1,0 +1,1 @@
+"""From descriptions of the machine to Drake plants and diagrams."""
