@@ -27,7 +27,7 @@ from pydrake.systems.framework import Context, DiagramBuilder, LeafSystem
 from hydrolek_drake.kinematics.cylinder_linkage import cylinder_linkages
 from hydrolek_drake.station.arms import arm_joint, make_arms_plant
 
-_BARREL_COLOUR = Rgba(0.13, 0.14, 0.16)
+_BARREL_COLOUR = Rgba(0.20, 0.21, 0.24)
 _ROD_COLOUR = Rgba(0.85, 0.86, 0.88)
 
 

@@ -8,9 +8,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 from pydrake.geometry import (
-    Box,
     ClippingRange,
     ColorRenderCamera,
+    Cylinder,
     GeometryInstance,
     LightParameter,
     MakeRenderEngineVtk,
@@ -31,25 +31,25 @@ from hydrolek_drake.visualization.cylinders import add_cylinders, arm_cylinder_m
 
 # Posture and view of the picture in the README: composition, not physics.
 SHOW_POSTURE_DEG: Mapping[str, float] = {
-    "right_j1": 12.0,
-    "right_j2": 38.0,
-    "right_j3": -18.0,
-    "right_j4": -12.0,
-    "right_j5": -32.0,
+    "right_j1": -8.0,
+    "right_j2": 50.0,
+    "right_j3": -30.0,
+    "right_j4": -10.0,
+    "right_j5": -38.0,
     "right_j6": 0.0,
-    "right_j7": 30.0,
-    "left_j1": -4.0,
-    "left_j2": 12.0,
-    "left_j3": -8.0,
-    "left_j4": 20.0,
-    "left_j5": -20.0,
-    "left_j6": 60.0,
-    "left_j7": 18.0,
+    "right_j7": 32.0,
+    "left_j1": 10.0,
+    "left_j2": 14.0,
+    "left_j3": -6.0,
+    "left_j4": 12.0,
+    "left_j5": -24.0,
+    "left_j6": 35.0,
+    "left_j7": 20.0,
 }
-_EYE = (2.75, -2.05, 1.55)
-_TARGET = (0.52, 0.02, 0.55)
+_EYE = (2.75, -1.95, 1.75)
+_TARGET = (0.66, 0.0, 0.56)
 _BACKGROUND = (0.93, 0.95, 0.97)
-_FLOOR = Rgba(0.72, 0.73, 0.74)
+_FLOOR = Rgba(0.80, 0.81, 0.82)
 
 
 def render_scene(
@@ -59,7 +59,7 @@ def render_scene(
     target: Sequence[float] = _TARGET,
     width: int = 1280,
     height: int = 800,
-    field_of_view: float = 0.7,
+    field_of_view: float = 0.66,
 ) -> NDArray[np.uint8]:
     """Picture of base, arms and cylinders from one viewpoint.
 
@@ -132,9 +132,10 @@ def write_picture(path: Path, picture: NDArray[np.uint8]) -> None:
 
 
 def _add_floor(scene_graph: SceneGraph) -> None:
+    """A round floor, no larger than needed: the renderer spreads its shadow map over the whole scene."""
     source = scene_graph.RegisterSource("floor")
-    thickness = 0.1
-    floor = GeometryInstance(RigidTransform([0.0, 0.0, -thickness / 2]), Box(40.0, 40.0, thickness), "floor")
+    radius, thickness = 3.2, 0.02
+    floor = GeometryInstance(RigidTransform([0.4, 0.0, -thickness / 2]), Cylinder(radius, thickness), "floor")
     properties = PerceptionProperties()
     properties.AddProperty("phong", "diffuse", _FLOOR)
     properties.AddProperty("label", "id", RenderLabel.kDontCare)
@@ -143,11 +144,12 @@ def _add_floor(scene_graph: SceneGraph) -> None:
 
 
 def _renderer_settings() -> RenderEngineVtkParams:
-    """A key light from the front right that casts shadows, a fill light from the left, one from behind."""
+    """Two lights from above that cast visible shadows, and one at the camera whose shadows it cannot see."""
     lights = [
-        LightParameter(type="spot", position=[3.5, -3.0, 5.0], direction=[-3.0, 3.0, -4.6], frame="world",
-                       intensity=0.9, cone_angle=40.0),
-        LightParameter(type="directional", direction=[-0.7, -1.0, -0.6], frame="world", intensity=0.45),
-        LightParameter(type="directional", direction=[1.0, 0.2, -0.8], frame="world", intensity=0.35),
+        LightParameter(type="directional", direction=[-0.45, 0.5, -1.0], frame="world", intensity=0.65),
+        LightParameter(type="directional", direction=[0.3, 0.1, -1.0], frame="world", intensity=0.3),
+        LightParameter(type="directional", direction=[0.0, 0.0, 1.0], frame="camera", intensity=0.85),
     ]
-    return RenderEngineVtkParams(lights=lights, cast_shadows=True, shadow_map_size=2048, default_clear_color=_BACKGROUND)
+    return RenderEngineVtkParams(
+        lights=lights, cast_shadows=True, shadow_map_size=4096, default_clear_color=_BACKGROUND
+    )
