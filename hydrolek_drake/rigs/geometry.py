@@ -73,4 +73,5 @@ def arm_load(joint: str, held: tuple[tuple[str, float], ...]) -> dict[str, float
     from hydrolek_drake.kinematics.arms import load_of_joint  # loads Drake, which SI-only rigs never need
 
     load = load_of_joint(joint, dict(held))
-    return {name: float(getattr(load, name)) for name in FROM_ARM}
+    values = (load.inertia, load.gravity_cos, load.gravity_sin, load.inertia_per_kg, load.gravity_cos_per_kg, load.gravity_sin_per_kg)
+    return dict(zip(FROM_ARM, values, strict=True))
