@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings.checks import numbers, signal_findings
-from hydrolek_drake.recordings.clock import clock_findings, ordered
+from hydrolek_drake.recordings.clock import clock_findings, cut_off, ordered
 from hydrolek_drake.recordings.columns import IGNORE, TIME, ColumnName, parse_column
 from hydrolek_drake.recordings.recording import Recording
 from hydrolek_drake.recordings.table import Column, Table
@@ -68,6 +68,8 @@ def assemble(table: Table, mapping: Mapping[str, str], path: Path) -> Recording:
 
     units = {key: one.meaning.unit for key, one in used.items()}
     findings = [*table.findings, *([duplicate] if duplicate else []), *clock_findings(time)]
+    if table.cut_off:
+        findings.append(cut_off(time))
     for key, values in signals.items():
         findings += signal_findings(time, key, values, units[key])
     return Recording(

@@ -72,6 +72,15 @@ def gap_follows(time: np.ndarray) -> np.ndarray:
     return np.diff(time) > GAP_INTERVALS * usual_interval(time)
 
 
+def cut_off(time: np.ndarray) -> Finding:
+    """The finding that a file was not finished, so that samples after the last one are missing."""
+    end = float(time[-1])
+    message = (
+        f"the file breaks off after {end:.9g} s: its recorder was not stopped properly, samples are missing"
+    )
+    return Finding("gap", None, message, ((end, end),))
+
+
 def clock_findings(time: np.ndarray) -> list[Finding]:
     """Gaps and jitter of a strictly increasing time axis [s] with at least two samples."""
     steps = np.diff(time)

@@ -4,11 +4,15 @@ import csv
 import io
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings.table import Column, Table
+
+if TYPE_CHECKING:
+    import pyarrow
 
 _SEPARATORS = ",;\t"
 _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
@@ -67,14 +71,26 @@ def read_csv(path: Path) -> Table:
         ) from None
     return Table(
         columns=tuple(
-            Column((name,), table.column(place).to_numpy())
-            for name, place in zip(names, places, strict=True)
-            if name or _any_text(table.column(place).to_numpy())
+            Column((name,), _numbers_or_text(cells))
+            for name, cells in zip(names, table.itercolumns(), strict=True)
+            if name or _any_text(cells.to_numpy())
         ),
         row_name="line",
         rows=np.array([number for number, _ in body]),
         decimal_comma=separator != "," and not any(_decimal_point(separator, line) for _, line in body),
     )
+
+
+def _numbers_or_text(cells: "pyarrow.ChunkedArray") -> np.ndarray:
+    """A column as floats if every cell is plainly a number or empty, which is fast; else its text."""
+    import pyarrow
+    from pyarrow import compute
+
+    try:
+        filled = compute.if_else(compute.equal(cells, ""), pyarrow.scalar(None, pyarrow.string()), cells)
+        return filled.cast("float64").to_numpy()
+    except pyarrow.ArrowInvalid:
+        return cells.to_numpy()
 
 
 def _decoded(path: Path) -> str:

@@ -1,12 +1,12 @@
 """MATLAB .mat files: v5 to v7 through SciPy, v7.3 through h5py."""
 
-from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.recordings.mat_process import mat_variables
 from hydrolek_drake.recordings.table import Column, Table
 
 _OLDEST_MAJOR, _HDF5_MAJOR = 1, 2  # what SciPy calls v5 to v7, and v7.3
@@ -25,28 +25,13 @@ def read_mat(path: Path) -> Table:
     major, _ = matlab.matfile_version(str(path))
     if major < _OLDEST_MAJOR:
         raise InputError(f"{path} is not a MATLAB file of version 5 or later; save it with -v7 or -v7.3")
-    variables = _hdf5_variables(path) if major == _HDF5_MAJOR else _variables(path)
-    return Table(tuple(_column(name, values) for name, values in variables))
+    variables = _hdf5_variables(path) if major == _HDF5_MAJOR else mat_variables(path)
+    return Table(tuple(_column(name, values) for name, values in variables if _is_column(values)))
 
 
 def _column(name: str, values: np.ndarray) -> Column:
     parts = name.split(".")
     return Column(tuple(".".join(parts[start:]) for start in range(len(parts))), values.ravel())
-
-
-def _variables(path: Path) -> list[tuple[str, np.ndarray]]:
-    from scipy.io import loadmat
-
-    content = loadmat(path, simplify_cells=True)
-    return list(_flattened({name: value for name, value in content.items() if not name.startswith("__")}))
-
-
-def _flattened(struct: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, np.ndarray]]:
-    for name, value in struct.items():
-        if isinstance(value, Mapping):
-            yield from _flattened(value, f"{prefix}{name}.")
-        elif isinstance(value, np.ndarray) and _is_column(value) and not value.dtype.hasobject:
-            yield f"{prefix}{name}", value
 
 
 def _hdf5_variables(path: Path) -> list[tuple[str, np.ndarray]]:

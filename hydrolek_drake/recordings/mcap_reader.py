@@ -1,6 +1,8 @@
 """MCAP files and ROS 2 bags with `sensor_msgs/JointState` topics."""
 
+import io
 from collections import defaultdict
+from contextlib import redirect_stderr
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -96,7 +98,8 @@ def _samples(path: Path) -> dict[str, list[_Sample]]:
     from mcap.reader import make_reader
     from mcap_ros2.decoder import DecoderFactory
 
-    with path.open("rb") as stream:
+    # The parser of message definitions prints what it cannot read, before it raises.
+    with path.open("rb") as stream, redirect_stderr(io.StringIO()):
         reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
         summary = reader.get_summary()
         if summary is None:

@@ -35,6 +35,7 @@ class Table:
         rows: Number of each row in the file, or None if they simply count from 1. # (n,)
         decimal_comma: Text cells may use a comma as the decimal mark.
         findings: What the reader itself noticed.
+        cut_off: The file ends before it is finished, as when its recorder was killed.
     """
 
     columns: tuple[Column, ...]
@@ -42,6 +43,7 @@ class Table:
     rows: np.ndarray | None = None
     decimal_comma: bool = False
     findings: tuple[Finding, ...] = ()
+    cut_off: bool = False
 
     def row(self, index: int) -> str:
         """How to call the sample with this index in a message: "line 17"."""

@@ -1,5 +1,9 @@
 """NI TDMS files, as LabVIEW writes them."""
 
+import logging
+import struct
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +13,8 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings.clock import seconds_of
 from hydrolek_drake.recordings.columns import TIME, parse_column
 from hydrolek_drake.recordings.table import Column, Table
+
+_LEAD_IN = struct.Struct("<4siiQQ")
 
 
 def read_tdms(path: Path) -> Table:
@@ -22,17 +28,59 @@ def read_tdms(path: Path) -> Table:
     """
     from nptdms import TdmsFile
 
-    with TdmsFile.open(path) as file:
+    with _quiet(), TdmsFile.open(path) as file:
         channels = [channel for group in file.groups() for channel in group.channels()]
+        surplus = _surplus(file.file_status.channel_statuses or {})
         columns = tuple(
-            _column((f"{channel.group_name}.{channel.name}", channel.name), channel[:])
+            _column(
+                (f"{channel.group_name}.{channel.name}", channel.name),
+                channel[: len(channel) - surplus.get(channel.path, 0)],
+            )
             for channel in channels
         )
         if not any(_is_time(column) for column in columns):
-            columns += _waveform_time(
-                path, [channel for channel in channels if "wf_increment" in channel.properties]
-            )
-    return Table(columns)
+            waveforms = [channel for channel in channels if "wf_increment" in channel.properties]
+            columns += _waveform_time(path, waveforms, surplus)
+    return Table(columns, cut_off=_breaks_off(path))
+
+
+def _breaks_off(path: Path) -> bool:
+    """Whether the last segment is shorter than its lead-in says.
+
+    The lead-in is 28 bytes: tag, contents, version, and the offsets of the next segment and of the raw data
+    from the end of the lead-in (NI, TDMS file format internal structure).
+    """
+    size = path.stat().st_size
+    position = 0
+    with path.open("rb") as stream:
+        while position < size:
+            stream.seek(position)
+            lead_in = stream.read(_LEAD_IN.size)
+            if len(lead_in) < _LEAD_IN.size:
+                return True
+            position += _LEAD_IN.size + _LEAD_IN.unpack(lead_in)[3]
+    return position > size
+
+
+def _surplus(statuses: Mapping[str, Any]) -> dict[str, int]:
+    """Samples at the end of each channel that other channels lack, because the last segment breaks off."""
+    if len({status.expected_length for status in statuses.values()}) != 1:
+        return {}
+    least = min(status.read_length for status in statuses.values())
+    return {channel: status.read_length - least for channel, status in statuses.items()}
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep npTDMS from printing remarks about damaged files; what they mean is said in our own words."""
+    from nptdms.log import log_manager
+
+    level = log_manager.log_level
+    log_manager.set_level(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        log_manager.set_level(level)
 
 
 def _column(names: tuple[str, ...], values: np.ndarray) -> Column:
@@ -53,7 +101,7 @@ def _is_time(column: Column) -> bool:
     return False
 
 
-def _waveform_time(path: Path, channels: list[Any]) -> tuple[Column, ...]:
+def _waveform_time(path: Path, channels: list[Any], surplus: Mapping[str, int]) -> tuple[Column, ...]:
     """The time column that the waveform properties of the channels agree on."""
     if not channels:
         return ()
@@ -70,7 +118,7 @@ def _waveform_time(path: Path, channels: list[Any]) -> tuple[Column, ...]:
         raise InputError(
             f"{path}: channel {first.name!r} has wf_increment {increment}; it must be above zero"
         )
-    return (Column((f"{TIME}_s",), offset + increment * np.arange(samples)),)
+    return (Column((f"{TIME}_s",), offset + increment * np.arange(samples - surplus.get(first.path, 0))),)
 
 
 def _waveform(channel: Any) -> tuple[float, float, str, int]:
