@@ -66,7 +66,9 @@ def arms_urdf_path() -> Path:
     for candidate in candidates:
         if candidate.is_file():
             return candidate
-    raise InputError(f"hydrolek.urdf is in neither {candidates[0].parent} nor {candidates[1].parent}; reinstall")
+    raise InputError(
+        f"hydrolek.urdf is in neither {candidates[0].parent} nor {candidates[1].parent}; reinstall"
+    )
 
 
 def add_arms(
@@ -118,7 +120,9 @@ def make_arms_plant(held: Mapping[str, float] | None = None) -> MultibodyPlant:
 @cache
 def arm_joint_names() -> tuple[str, ...]:
     """Names of all moving joints, from the URDF: `right_j1` to `right_j7`, `left_j1` to `left_j7`."""
-    return tuple(joint.attrib["name"] for joint in _moving_joints(ElementTree.parse(arms_urdf_path()).getroot()))
+    return tuple(
+        joint.attrib["name"] for joint in _moving_joints(ElementTree.parse(arms_urdf_path()).getroot())
+    )
 
 
 def arm_joint(plant: MultibodyPlant, name: str) -> Joint:
@@ -166,7 +170,9 @@ def load_of_joint(joint: str, held: Mapping[str, float]) -> RotatingLoad:
     side = joint.split("_")[0]
     missing = [name for name in names if name.startswith(side) and name != joint and name not in held]
     if missing:
-        raise InputError(f"load of '{joint}': the angles of {', '.join(missing)} are missing in held; give each in rad")
+        raise InputError(
+            f"load of '{joint}': the angles of {', '.join(missing)} are missing in held; give each in rad"
+        )
     context = plant.CreateDefaultContext()
     for name, angle in held.items():
         if name != joint:
@@ -214,7 +220,9 @@ def _urdf_with_welds(held: Mapping[str, float]) -> str:
     joints = {joint.attrib["name"]: joint for joint in _moving_joints(robot)}
     for name, angle in held.items():
         if name not in joints:
-            raise InputError(f"held joint '{name}' is not a joint of the arms; choose from {', '.join(joints)}")
+            raise InputError(
+                f"held joint '{name}' is not a joint of the arms; choose from {', '.join(joints)}"
+            )
         if not np.isfinite(angle):
             raise InputError(f"held joint '{name}' has angle {angle}; give a number in rad")
         _weld(joints[name], angle)

@@ -104,7 +104,9 @@ class CylinderPoses(LeafSystem):
         mounts: Cylinders to draw.
     """
 
-    def __init__(self, plant: MultibodyPlant, scene_graph: SceneGraph, mounts: Sequence[CylinderMount]) -> None:
+    def __init__(
+        self, plant: MultibodyPlant, scene_graph: SceneGraph, mounts: Sequence[CylinderMount]
+    ) -> None:
         super().__init__()
         self.set_name("cylinder_poses")
         self.source_id = scene_graph.RegisterSource("cylinders")

@@ -115,17 +115,23 @@ def camera_pose(eye: Sequence[float], target: Sequence[float]) -> RigidTransform
     view = np.asarray(target, dtype=float) - np.asarray(eye, dtype=float)
     right = np.cross(view, [0.0, 0.0, 1.0])
     if np.linalg.norm(right) < 1e-9:
-        raise InputError(f"camera at {tuple(eye)} looks straight up or down at {tuple(target)}; move it sideways")
+        raise InputError(
+            f"camera at {tuple(eye)} looks straight up or down at {tuple(target)}; move it sideways"
+        )
     right /= np.linalg.norm(right)
     forward = view / np.linalg.norm(view)
-    return RigidTransform(RotationMatrix(np.column_stack([right, np.cross(forward, right), forward])), np.asarray(eye))
+    return RigidTransform(
+        RotationMatrix(np.column_stack([right, np.cross(forward, right), forward])), np.asarray(eye)
+    )
 
 
 def write_picture(path: Path, picture: NDArray[np.uint8]) -> None:
     """Write a picture (height, width, 3) as PNG, all or nothing."""
     encoded, data = cv2.imencode(".png", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
     if not encoded:
-        raise InputError(f"picture of shape {picture.shape} cannot be written as PNG; it must be (height, width, 3)")
+        raise InputError(
+            f"picture of shape {picture.shape} cannot be written as PNG; it must be (height, width, 3)"
+        )
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
     temporary.write_bytes(data.tobytes())
     temporary.replace(path)
