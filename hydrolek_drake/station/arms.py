@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -12,7 +13,7 @@ from pydrake.geometry import Meshcat, MeshcatVisualizer, SceneGraph
 from pydrake.math import RollPitchYaw, RotationMatrix
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, MultibodyPlant
-from pydrake.multibody.tree import JacobianWrtVariable, Joint
+from pydrake.multibody.tree import JacobianWrtVariable, RevoluteJoint
 from pydrake.systems.framework import DiagramBuilder
 
 import hydrolek_drake
@@ -125,17 +126,17 @@ def arm_joint_names() -> tuple[str, ...]:
     )
 
 
-def arm_joint(plant: MultibodyPlant, name: str) -> Joint:
+def arm_joint(plant: MultibodyPlant, name: str) -> RevoluteJoint:
     """The moving joint called `name` of a plant of the arms.
 
     Raises:
         InputError: The plant has no such joint, or it is held.
     """
-    if not plant.HasJointNamed(name) or plant.GetJointByName(name).num_positions() != 1:
-        free = [plant.get_joint(index).name() for index in plant.GetJointIndices()]
-        free = [other for other in free if plant.GetJointByName(other).num_positions() == 1]
-        raise InputError(f"joint '{name}' does not move in this plant; choose from {', '.join(free)}")
-    return plant.GetJointByName(name)
+    joints = (plant.get_joint(index) for index in plant.GetJointIndices())
+    moving = {joint.name(): joint for joint in joints if isinstance(joint, RevoluteJoint)}
+    if name not in moving:
+        raise InputError(f"joint '{name}' does not move in this plant; choose from {', '.join(moving)}")
+    return moving[name]
 
 
 def position_indices(plant: MultibodyPlant, names: Sequence[str]) -> list[int]:
@@ -180,6 +181,7 @@ def load_of_joint(joint: str, held: Mapping[str, float]) -> RotatingLoad:
     moving = arm_joint(plant, joint)
     index = moving.velocity_start()
     tool = plant.GetFrameByName(f"{side}_tool")
+    origin: Any = np.zeros(3)  # Any: the array types in pydrake's stubs match no array
     gravity = plant.gravity_field().gravity_vector()
 
     balance, payload_balance = [], []
@@ -187,7 +189,7 @@ def load_of_joint(joint: str, held: Mapping[str, float]) -> RotatingLoad:
         moving.set_angle(context, angle)
         balance.append(-plant.CalcGravityGeneralizedForces(context)[index])
         jacobian = plant.CalcJacobianTranslationalVelocity(
-            context, JacobianWrtVariable.kV, tool, np.zeros(3), plant.world_frame(), plant.world_frame()
+            context, JacobianWrtVariable.kV, tool, origin, plant.world_frame(), plant.world_frame()
         )[:, index]
         payload_balance.append(-jacobian @ gravity)
     return RotatingLoad(
@@ -207,7 +209,7 @@ def _plant_with_all_joints() -> MultibodyPlant:
 
 def _parse(plant: MultibodyPlant, model: str) -> None:
     parser = Parser(plant)
-    parser.package_map().AddPackageXml(str(arms_urdf_path().parent / "package.xml"))
+    parser.package_map().AddPackageXml(arms_urdf_path().parent / "package.xml")
     parser.AddModelsFromString(model, "urdf")
     plant.Finalize()
 
@@ -233,7 +235,7 @@ def _weld(joint: ElementTree.Element, angle: float) -> None:
     origin, axis = joint.find("origin"), joint.find("axis")
     assert origin is not None and axis is not None  # every moving joint of the URDF states both
     at_zero = RotationMatrix(RollPitchYaw(_numbers(origin.get("rpy", "0 0 0"))))
-    turned = at_zero @ RotationMatrix(AngleAxis(angle, np.array(_numbers(axis.attrib["xyz"]))))
+    turned = at_zero @ RotationMatrix(AngleAxis(angle, _numbers(axis.attrib["xyz"])))
     origin.set("rpy", " ".join(f"{value:.17g}" for value in RollPitchYaw(turned).vector()))
     joint.set("type", "fixed")
     joint.remove(axis)
@@ -243,5 +245,5 @@ def _moving_joints(robot: ElementTree.Element) -> list[ElementTree.Element]:
     return [joint for joint in robot.iter("joint") if joint.get("type") in _MOVING_TYPES]
 
 
-def _numbers(text: str) -> list[float]:
-    return [float(word) for word in text.split()]
+def _numbers(text: str) -> Any:  # Any: the array types in pydrake's stubs match no array
+    return np.array([float(word) for word in text.split()])

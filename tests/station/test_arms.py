@@ -9,6 +9,7 @@ from pydrake.multibody.tree import JacobianWrtVariable, SpatialInertia, UnitIner
 from pydrake.systems.framework import DiagramBuilder
 from scipy.optimize import brentq, root
 
+import hydrolek_drake
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.station.arms import (
     add_arms,
@@ -47,6 +48,17 @@ def _context_at(plant, posture):
 def test_urdf_has_seven_joints_an_arm():
     assert arms_urdf_path().name == "hydrolek.urdf"
     assert list(arm_joint_names()) == ALL
+
+
+def test_urdf_is_found_in_a_clone_and_in_an_installed_package(tmp_path, monkeypatch):
+    package = tmp_path / "hydrolek_drake"
+    monkeypatch.setattr(hydrolek_drake, "__file__", str(package / "__init__.py"))
+    with pytest.raises(InputError, match=r"hydrolek\.urdf is in neither"):
+        arms_urdf_path()
+    for folder in (tmp_path / "urdf", package / "urdf"):  # the clone's place, then the wheel's, which wins
+        folder.mkdir(parents=True)
+        (folder / "hydrolek.urdf").touch()
+        assert arms_urdf_path() == folder / "hydrolek.urdf"
 
 
 @pytest.mark.parametrize("diameter", [0.030, 0.075, 0.115])
