@@ -29,7 +29,9 @@ def refresh(text: str) -> str:
     arm, rest = rest.split(end)
     between, rest = rest.split("<!-- begin left arm -->")
     _, after = rest.split("<!-- end left arm -->")
-    arm = re.sub(r'<link name="right_\w+">.*?</link>', lambda link: _with_inertia(link.group()), arm, flags=re.S)
+    arm = re.sub(
+        r'<link name="right_\w+">.*?</link>', lambda link: _with_inertia(link.group()), arm, flags=re.S
+    )
     left = _mirrored(arm)
     return f"{before}{begin}{arm}{end}{between}<!-- begin left arm -->{left}<!-- end left arm -->{after}"
 
@@ -76,7 +78,9 @@ def _with_inertia(link_text: str) -> str:
     if abs(centre[2]) > 1e-12 or np.abs(products[1:]).max() > 1e-12:
         sys.exit(f"{URDF.name}: link {link.attrib['name']} is not symmetric about z = 0; mirror its shapes")
     values = dict(zip(("ixx", "iyy", "izz", "ixy"), [*moments, products[0]], strict=True))
-    fresh = " ".join(f'{key}="{values.get(key, 0.0):.9g}"' for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
+    fresh = " ".join(
+        f'{key}="{values.get(key, 0.0):.9g}"' for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    )
     head, tail = link_text.split("</inertial>", 1)
     head = re.sub(r'<origin xyz="[^"]*"/>', f'<origin xyz="{centre[0]:.9g} {centre[1]:.9g} 0"/>', head)
     head = re.sub(r"<inertia .*?/>", f"<inertia {fresh}/>", head)
@@ -93,7 +97,9 @@ def _mirrored(arm: str) -> str:
     # the moving links are symmetric about z = 0; only the base carries a foot on one side
     base_end = left.index("</link>")
     base = re.sub(
-        r'(<visual><origin xyz="\S+ \S+ )(\S+?)"', lambda m: f'{m.group(1)}{_negated(m.group(2))}"', left[:base_end]
+        r'(<visual><origin xyz="\S+ \S+ )(\S+?)"',
+        lambda m: f'{m.group(1)}{_negated(m.group(2))}"',
+        left[:base_end],
     )
     return base + left[base_end:]
 
@@ -107,7 +113,9 @@ def _numbers(text: str) -> list[float]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--check", action="store_true", help="only say whether the file is up to date")
     check = parser.parse_args().check
     text = URDF.read_text()

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -12,7 +13,7 @@ from pydrake.geometry import Meshcat, MeshcatVisualizer, SceneGraph
 from pydrake.math import RollPitchYaw, RotationMatrix
 from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, MultibodyPlant
-from pydrake.multibody.tree import JacobianWrtVariable, Joint
+from pydrake.multibody.tree import JacobianWrtVariable, RevoluteJoint
 from pydrake.systems.framework import DiagramBuilder
 
 import hydrolek_drake
@@ -66,7 +67,9 @@ def arms_urdf_path() -> Path:
     for candidate in candidates:
         if candidate.is_file():
             return candidate
-    raise InputError(f"hydrolek.urdf is in neither {candidates[0].parent} nor {candidates[1].parent}; reinstall")
+    raise InputError(
+        f"hydrolek.urdf is in neither {candidates[0].parent} nor {candidates[1].parent}; reinstall"
+    )
 
 
 def add_arms(
@@ -120,20 +123,22 @@ def make_arms_plant(held: Mapping[str, float] | None = None) -> MultibodyPlant:
 @cache
 def arm_joint_names() -> tuple[str, ...]:
     """Names of all moving joints, from the URDF: `right_j1` to `right_j7`, `left_j1` to `left_j7`."""
-    return tuple(joint.attrib["name"] for joint in _moving_joints(ElementTree.parse(arms_urdf_path()).getroot()))
+    return tuple(
+        joint.attrib["name"] for joint in _moving_joints(ElementTree.parse(arms_urdf_path()).getroot())
+    )
 
 
-def arm_joint(plant: MultibodyPlant, name: str) -> Joint:
+def arm_joint(plant: MultibodyPlant, name: str) -> RevoluteJoint:
     """The moving joint called `name` of a plant of the arms.
 
     Raises:
         InputError: The plant has no such joint, or it is held.
     """
-    if not plant.HasJointNamed(name) or plant.GetJointByName(name).num_positions() != 1:
-        free = [plant.get_joint(index).name() for index in plant.GetJointIndices()]
-        free = [other for other in free if plant.GetJointByName(other).num_positions() == 1]
-        raise InputError(f"joint '{name}' does not move in this plant; choose from {', '.join(free)}")
-    return plant.GetJointByName(name)
+    joints = (plant.get_joint(index) for index in plant.GetJointIndices())
+    moving = {joint.name(): joint for joint in joints if isinstance(joint, RevoluteJoint)}
+    if name not in moving:
+        raise InputError(f"joint '{name}' does not move in this plant; choose from {', '.join(moving)}")
+    return moving[name]
 
 
 def position_indices(plant: MultibodyPlant, names: Sequence[str]) -> list[int]:
@@ -168,7 +173,9 @@ def load_of_joint(joint: str, held: Mapping[str, float]) -> RotatingLoad:
     side = joint.split("_")[0]
     missing = [name for name in names if name.startswith(side) and name != joint and name not in held]
     if missing:
-        raise InputError(f"load of '{joint}': the angles of {', '.join(missing)} are missing in held; give each in rad")
+        raise InputError(
+            f"load of '{joint}': the angles of {', '.join(missing)} are missing in held; give each in rad"
+        )
     context = plant.CreateDefaultContext()
     for name, angle in held.items():
         if name != joint:
@@ -176,6 +183,7 @@ def load_of_joint(joint: str, held: Mapping[str, float]) -> RotatingLoad:
     moving = arm_joint(plant, joint)
     index = moving.velocity_start()
     tool = plant.GetFrameByName(f"{side}_tool")
+    origin: Any = np.zeros(3)  # Any: the array types in pydrake's stubs match no array
     gravity = plant.gravity_field().gravity_vector()
 
     balance, payload_balance = [], []
@@ -183,7 +191,7 @@ def load_of_joint(joint: str, held: Mapping[str, float]) -> RotatingLoad:
         moving.set_angle(context, angle)
         balance.append(-plant.CalcGravityGeneralizedForces(context)[index])
         jacobian = plant.CalcJacobianTranslationalVelocity(
-            context, JacobianWrtVariable.kV, tool, np.zeros(3), plant.world_frame(), plant.world_frame()
+            context, JacobianWrtVariable.kV, tool, origin, plant.world_frame(), plant.world_frame()
         )[:, index]
         payload_balance.append(-jacobian @ gravity)
     return RotatingLoad(
@@ -203,7 +211,7 @@ def _plant_with_all_joints() -> MultibodyPlant:
 
 def _parse(plant: MultibodyPlant, model: str, before_finalize: Callable[[MultibodyPlant], None] | None = None) -> None:
     parser = Parser(plant)
-    parser.package_map().AddPackageXml(str(arms_urdf_path().parent / "package.xml"))
+    parser.package_map().AddPackageXml(arms_urdf_path().parent / "package.xml")
     parser.AddModelsFromString(model, "urdf")
     if before_finalize is not None:
         before_finalize(plant)
@@ -218,7 +226,9 @@ def _urdf_with_welds(held: Mapping[str, float]) -> str:
     joints = {joint.attrib["name"]: joint for joint in _moving_joints(robot)}
     for name, angle in held.items():
         if name not in joints:
-            raise InputError(f"held joint '{name}' is not a joint of the arms; choose from {', '.join(joints)}")
+            raise InputError(
+                f"held joint '{name}' is not a joint of the arms; choose from {', '.join(joints)}"
+            )
         if not np.isfinite(angle):
             raise InputError(f"held joint '{name}' has angle {angle}; give a number in rad")
         _weld(joints[name], angle)
@@ -229,7 +239,7 @@ def _weld(joint: ElementTree.Element, angle: float) -> None:
     origin, axis = joint.find("origin"), joint.find("axis")
     assert origin is not None and axis is not None  # every moving joint of the URDF states both
     at_zero = RotationMatrix(RollPitchYaw(_numbers(origin.get("rpy", "0 0 0"))))
-    turned = at_zero @ RotationMatrix(AngleAxis(angle, np.array(_numbers(axis.attrib["xyz"]))))
+    turned = at_zero @ RotationMatrix(AngleAxis(angle, _numbers(axis.attrib["xyz"])))
     origin.set("rpy", " ".join(f"{value:.17g}" for value in RollPitchYaw(turned).vector()))
     joint.set("type", "fixed")
     joint.remove(axis)
@@ -239,5 +249,5 @@ def _moving_joints(robot: ElementTree.Element) -> list[ElementTree.Element]:
     return [joint for joint in robot.iter("joint") if joint.get("type") in _MOVING_TYPES]
 
 
-def _numbers(text: str) -> list[float]:
-    return [float(word) for word in text.split()]
+def _numbers(text: str) -> Any:  # Any: the array types in pydrake's stubs match no array
+    return np.array([float(word) for word in text.split()])

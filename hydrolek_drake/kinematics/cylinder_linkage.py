@@ -106,16 +106,16 @@ def cylinder_linkages() -> dict[str, CylinderLinkage]:
     """
     data = yaml.safe_load(files(__package__).joinpath("cylinder_mounts.yaml").read_text(encoding="utf-8"))
     geometry = arm_geometry()
-    axes = {f"j{number}": axis for number, axis in enumerate((*geometry.axes, geometry.gripper_axis), start=1)}
+    axes = {
+        f"j{number}": axis for number, axis in enumerate((*geometry.axes, geometry.gripper_axis), start=1)
+    }
     right, left = {}, {}
     for joint, entries in data.items():
         values = {
             name: float(entries[name]["value"]) * si_factor(entries[name]["unit"], unit)
             for name, unit in _SI_UNITS.items()
         }
-        linkage = CylinderLinkage(
-            axis=axes[joint], direction=int(entries["direction"]["value"]), **values
-        )
+        linkage = CylinderLinkage(axis=axes[joint], direction=int(entries["direction"]["value"]), **values)
         right[f"right_{joint}"] = linkage
         left[f"left_{joint}"] = linkage.mirrored()
     return right | left

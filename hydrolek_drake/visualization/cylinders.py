@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydrake.common.value import AbstractValue
 from pydrake.geometry import (
     Cylinder,
@@ -22,7 +22,7 @@ from pydrake.geometry import (
 )
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import Context, DiagramBuilder, LeafSystem
+from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
 from hydrolek_drake.kinematics.cylinder_linkage import cylinder_linkages
 from hydrolek_drake.kinematics.arms import arm_joint, make_arms_plant
@@ -74,7 +74,7 @@ def arm_cylinder_mounts() -> list[CylinderMount]:
                 p_child=tuple(on_child @ linkage.child_point()),
                 barrel_radius=linkage.barrel / 2,
                 rod_radius=linkage.rod / 2,
-                # the length grows or falls all the way, because the included angle stays within 0 to 180 degrees
+                # at an end of the range: the included angle stays within 0 to 180 degrees
                 closed_length=float(linkage.length(limits).min()),
             )
         )
@@ -84,8 +84,8 @@ def arm_cylinder_mounts() -> list[CylinderMount]:
 class CylinderPoses(LeafSystem):
     """Poses of barrels and rods from the poses of the links.
 
-    Each barrel's frame sits in the mount on the parent body with its z axis towards the mount on the child body;
-    each rod's frame sits in the mount on the child body with its z axis towards the mount on the parent body.
+    Each barrel's frame sits in the mount on the parent body with its z axis towards the mount on the child
+    body; each rod's frame sits in the mount on the child body with its z axis towards the other mount.
 
     .. pydrake_system::
 
@@ -104,7 +104,9 @@ class CylinderPoses(LeafSystem):
         mounts: Cylinders to draw.
     """
 
-    def __init__(self, plant: MultibodyPlant, scene_graph: SceneGraph, mounts: Sequence[CylinderMount]) -> None:
+    def __init__(
+        self, plant: MultibodyPlant, scene_graph: SceneGraph, mounts: Sequence[CylinderMount]
+    ) -> None:
         super().__init__()
         self.set_name("cylinder_poses")
         self.source_id = scene_graph.RegisterSource("cylinders")
@@ -120,7 +122,7 @@ class CylinderPoses(LeafSystem):
                 frames.append(frame)
                 for number, (shape, distance) in enumerate(shapes):
                     name = f"{mount.name}_{part}_{number}"
-                    instance = GeometryInstance(RigidTransform([0.0, 0.0, distance]), shape, name)
+                    instance = GeometryInstance(_along_z(distance), shape, name)
                     # both have the label of the body they are fixed to, as the body's own shapes have
                     instance.set_illustration_properties(_illustration(colour))
                     instance.set_perception_properties(_perception(colour, RenderLabel(int(body.index()))))
@@ -134,8 +136,8 @@ class CylinderPoses(LeafSystem):
             {self.body_poses.ticket()},
         )
 
-    def _calc_geometry_pose(self, context: Context, output: AbstractValue) -> None:
-        body_poses = self.body_poses.Eval(context)
+    def _calc_geometry_pose(self, context: Any, output: Any) -> None:
+        body_poses: Any = self.body_poses.Eval(context)
         poses = FramePoseVector()
         for ends in self._ends:
             parent_point = body_poses[ends.parent_index] @ np.array(ends.mount.p_parent)
@@ -157,7 +159,8 @@ def add_cylinders(
         scene_graph: Its scene graph.
         mounts: Cylinders to draw, for example `arm_cylinder_mounts()`.
     """
-    cylinders = builder.AddSystem(CylinderPoses(plant, scene_graph, mounts))
+    cylinders = CylinderPoses(plant, scene_graph, mounts)
+    builder.AddSystem(cylinders)
     builder.Connect(plant.get_body_poses_output_port(), cylinders.body_poses)
     builder.Connect(cylinders.geometry_pose, scene_graph.get_source_pose_port(cylinders.source_id))
     return cylinders
@@ -192,9 +195,14 @@ def _rod_shapes(mount: CylinderMount) -> list[tuple[Shape, float]]:
     return [(Sphere(1.5 * mount.rod_radius), 0.0), (Cylinder(mount.rod_radius, length), length / 2)]
 
 
-def _pointing(origin: NDArray[np.float64], direction: NDArray[np.float64]) -> RigidTransform:
-    """Pose at `origin` with its z axis along `direction`."""
+def _pointing(origin: Any, direction: Any) -> RigidTransform:
+    """Pose at the point `origin` with its z axis along the vector `direction`."""
     return RigidTransform(RotationMatrix.MakeFromOneVector(direction, axis_index=2), origin)
+
+
+def _along_z(distance: float) -> RigidTransform:
+    position: Any = np.array([0.0, 0.0, distance])  # Any: the array types in pydrake's stubs match no array
+    return RigidTransform(position)
 
 
 def _illustration(colour: Rgba) -> IllustrationProperties:

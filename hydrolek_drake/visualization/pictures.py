@@ -3,6 +3,7 @@
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -47,9 +48,9 @@ SHOW_POSTURE_DEG: Mapping[str, float] = {
     "left_j7": 20.0,
 }
 _EYE = (2.75, -1.95, 1.75)
-_TARGET = (0.66, 0.0, 0.56)
+_TARGET = (0.76, 0.02, 0.54)
 _BACKGROUND = (0.93, 0.95, 0.97)
-_FLOOR = Rgba(0.80, 0.81, 0.82)
+_FLOOR = Rgba(0.70, 0.71, 0.73)
 
 
 def render_scene(
@@ -95,7 +96,7 @@ def render_scene(
         ClippingRange(0.01, 50.0),
         RigidTransform(),
     )
-    query = arms.scene_graph.get_query_output_port().Eval(arms.scene_graph.GetMyContextFromRoot(context))
+    query: Any = arms.scene_graph.get_query_output_port().Eval(arms.scene_graph.GetMyContextFromRoot(context))
     image = query.RenderColorImage(
         ColorRenderCamera(core, False),
         arms.scene_graph.world_frame_id(),
@@ -115,17 +116,23 @@ def camera_pose(eye: Sequence[float], target: Sequence[float]) -> RigidTransform
     view = np.asarray(target, dtype=float) - np.asarray(eye, dtype=float)
     right = np.cross(view, [0.0, 0.0, 1.0])
     if np.linalg.norm(right) < 1e-9:
-        raise InputError(f"camera at {tuple(eye)} looks straight up or down at {tuple(target)}; move it sideways")
+        raise InputError(
+            f"camera at {tuple(eye)} looks straight up or down at {tuple(target)}; move it sideways"
+        )
     right /= np.linalg.norm(right)
     forward = view / np.linalg.norm(view)
-    return RigidTransform(RotationMatrix(np.column_stack([right, np.cross(forward, right), forward])), np.asarray(eye))
+    position: Any = np.asarray(eye, dtype=float)
+    axes: Any = np.column_stack([right, np.cross(forward, right), forward])
+    return RigidTransform(RotationMatrix(axes), position)
 
 
 def write_picture(path: Path, picture: NDArray[np.uint8]) -> None:
     """Write a picture (height, width, 3) as PNG, all or nothing."""
     encoded, data = cv2.imencode(".png", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
     if not encoded:
-        raise InputError(f"picture of shape {picture.shape} cannot be written as PNG; it must be (height, width, 3)")
+        raise InputError(
+            f"picture of shape {picture.shape} cannot be written as PNG; it must be (height, width, 3)"
+        )
     temporary = path.with_name(f".{path.name}.{os.getpid()}")
     temporary.write_bytes(data.tobytes())
     temporary.replace(path)
@@ -135,7 +142,10 @@ def _add_floor(scene_graph: SceneGraph) -> None:
     """A round floor, no larger than needed: the renderer spreads its shadow map over the whole scene."""
     source = scene_graph.RegisterSource("floor")
     radius, thickness = 3.2, 0.02
-    floor = GeometryInstance(RigidTransform([0.4, 0.0, -thickness / 2]), Cylinder(radius, thickness), "floor")
+    centre: Any = np.array(
+        [0.4, 0.0, -thickness / 2]
+    )  # Any: the array types in pydrake's stubs match no array
+    floor = GeometryInstance(RigidTransform(centre), Cylinder(radius, thickness), "floor")
     properties = PerceptionProperties()
     properties.AddProperty("phong", "diffuse", _FLOOR)
     properties.AddProperty("label", "id", RenderLabel.kDontCare)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.forward import tool_pose, wrist_position
 from hydrolek_drake.kinematics.arms import arm_joint, make_arms_plant, position_indices
@@ -66,7 +67,7 @@ def test_raising_joint_2_by_90_degrees_sends_the_arm_up():
 
 def test_joint_6_moves_neither_wrist_nor_grasp_point():
     angles = np.array([0.2, 0.3, -0.4, 0.5, -0.6, 0.0])
-    turned = angles + [0, 0, 0, 0, 0, 1.1]
+    turned = angles + np.eye(6)[5] * 1.1
     np.testing.assert_array_equal(wrist_position(angles), wrist_position(turned))
     np.testing.assert_allclose(tool_pose(angles)[:3, 3], tool_pose(turned)[:3, 3], rtol=0, atol=1e-15)
     assert not np.allclose(tool_pose(angles)[:3, :3], tool_pose(turned)[:3, :3])
@@ -94,7 +95,9 @@ def test_limits_are_those_of_table_3_2(plant, side):
     for name, (lower, upper) in zip(_names(side), LIMITS_DEG[side], strict=False):
         joint = arm_joint(plant, name)
         np.testing.assert_allclose(
-            np.degrees([joint.position_lower_limit(), joint.position_upper_limit()]), [lower, upper], rtol=1e-12
+            np.degrees([joint.position_lower_limit(), joint.position_upper_limit()]),
+            [lower, upper],
+            rtol=1e-12,
         )
     endless = arm_joint(plant, f"{side}_j6")
     assert np.isneginf(endless.position_lower_limit()) and np.isposinf(endless.position_upper_limit())
@@ -148,7 +151,9 @@ def test_mirrored_angles_give_mirror_images(plant):
         np.testing.assert_allclose(torque[left], MIRROR_SIGNS * torque[right], rtol=0, atol=1e-9)
         mass = plant.CalcMassMatrix(context)
         pattern = np.outer(MIRROR_SIGNS, MIRROR_SIGNS)
-        np.testing.assert_allclose(mass[np.ix_(left, left)], pattern * mass[np.ix_(right, right)], rtol=0, atol=1e-9)
+        np.testing.assert_allclose(
+            mass[np.ix_(left, left)], pattern * mass[np.ix_(right, right)], rtol=0, atol=1e-9
+        )
         np.testing.assert_array_equal(mass[np.ix_(left, right)], 0.0)
 
 
