@@ -24,23 +24,20 @@ def si_factor(unit: str, si_unit: str) -> float:
     """
     if unit == si_unit:
         return 1.0
+    wanted = f"use {si_unit or 'no unit (1)'}"
+    if not unit:
+        raise InputError(f"a unit is missing; {wanted}")
     import pint
 
     registry = _registry()
     try:
-        return float(
-            registry.Quantity(1.0, _spelled(unit)).to(_spelled(si_unit)).magnitude if unit else _dimensionless(si_unit)
-        )
+        return float(registry.Quantity(1.0, _spelled(unit)).to(_spelled(si_unit)).magnitude)
     except pint.DimensionalityError:
-        raise InputError(f"unit '{unit}' does not measure what is wanted here; use {si_unit or 'no unit (1)'}") from None
+        raise InputError(f"unit '{unit}' does not measure what is wanted here; {wanted}") from None
     except Exception:
-        raise InputError(f"unit '{unit}' is not known; use {si_unit or 'no unit (1)'}") from None
+        raise InputError(f"unit '{unit}' is not known; {wanted}") from None
 
 
 def _spelled(unit: str) -> str:
     """Pint's spelling: a blank between two units is a product, `_per_` a quotient."""
     return unit.replace("_per_", "/").replace("^", "**").replace(" ", "*") or "dimensionless"
-
-
-def _dimensionless(si_unit: str) -> float:
-    raise InputError(f"a unit is missing; use {si_unit}")

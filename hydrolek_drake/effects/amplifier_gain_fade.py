@@ -22,8 +22,9 @@ EFFECT = Effect(
         "fluid.warm_up": "warming oil speeds the joint up and leaves the dead-zone alone",
         "sensor.drift": "a drifting sensor also drifts at rest",
     },
-    needs={'amplifier': ('proportional',)},
+    needs={"amplifier": ("proportional",)},
 )
+
 
 @EFFECT.hook("coil_gain")
 @njit

@@ -12,7 +12,9 @@ EFFECT = Effect(
     title="rocking base",
     equation="J_b b'' = -(actuator moment) - k b - 2 zeta sqrt(k J_b) b'; cylinder and sensor see q - b",
     parameters=(
-        Parameter("stiffness_Nm_per_rad", "N m/rad", "spring of the base (0: rigid)", neutral=0.0, lowest=0.0),
+        Parameter(
+            "stiffness_Nm_per_rad", "N m/rad", "spring of the base (0: rigid)", neutral=0.0, lowest=0.0
+        ),
         Parameter("inertia_kg_m2", "kg m^2", "inertia of the base", neutral=1.0, lowest=0.0),
     ),
     size="stiffness_Nm_per_rad",
@@ -22,6 +24,7 @@ EFFECT = Effect(
         "linkage.backlash": "a spring gives in proportion to the load, play does not",
     },
 )
+
 
 @EFFECT.hook("base_stiffness")
 @njit

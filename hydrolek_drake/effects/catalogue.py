@@ -39,6 +39,8 @@ def effect_named(effect_id: str) -> Effect:
     if effect_id not in EFFECTS:
         near = difflib.get_close_matches(effect_id, EFFECTS, n=3, cutoff=0.4)
         raise InputError(
-            f"no effect '{effect_id}'; " + (f"did you mean {' or '.join(near)}? " if near else "") + "'hydrolek effects' lists all"
+            f"no effect '{effect_id}'; "
+            + (f"did you mean {' or '.join(near)}? " if near else "")
+            + "'hydrolek effects' lists all"
         )
     return EFFECTS[effect_id]

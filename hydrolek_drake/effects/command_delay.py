@@ -11,15 +11,14 @@ EFFECT = Effect(
     id="command.delay",
     title="longer dead time",
     equation="T_d + delay_s",
-    parameters=(
-        Parameter("delay_s", "s", "added transport delay", neutral=0.0),
-    ),
+    parameters=(Parameter("delay_s", "s", "added transport delay", neutral=0.0),),
     size="delay_s",
     source="thesis 6.1.3 (time delay of 0.15 s and 0.25 s, read by eye)",
     confused_with={
         "valve.spool_stiction": "stiction delays small commands more than large ones, a delay all alike",
     },
 )
+
 
 @EFFECT.hook("command_delay")
 @njit

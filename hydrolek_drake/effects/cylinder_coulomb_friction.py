@@ -13,7 +13,9 @@ EFFECT = Effect(
     title="seal friction",
     equation="coulomb tanh(v / friction_velocity) against the rod",
     parameters=(
-        Parameter("coulomb_N", "N", "Coulomb friction of the seals (N m for a vane)", neutral=0.0, lowest=0.0),
+        Parameter(
+            "coulomb_N", "N", "Coulomb friction of the seals (N m for a vane)", neutral=0.0, lowest=0.0
+        ),
     ),
     size="coulomb_N",
     source="thesis (4.1), F_c; Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
@@ -21,8 +23,9 @@ EFFECT = Effect(
         "cylinder.stribeck_friction": "with Stribeck the friction falls as the rod starts to move",
         "valve.asymmetric_overlap": "overlap leaves the pressures' step at reversals alone",
     },
-    needs={'cylinder': ('cylinder', 'vane', 'hydraulic_motor')},
+    needs={"cylinder": ("cylinder", "vane", "hydraulic_motor")},
 )
+
 
 @EFFECT.hook("rod_friction")
 @njit

@@ -12,7 +12,13 @@ EFFECT = Effect(
     title="leakage past the piston",
     equation="conductance (P_A - P_B) from A to B",
     parameters=(
-        Parameter("conductance_m3_per_s_Pa", "m^3/(s Pa)", "laminar conductance past the piston", neutral=0.0, lowest=0.0),
+        Parameter(
+            "conductance_m3_per_s_Pa",
+            "m^3/(s Pa)",
+            "laminar conductance past the piston",
+            neutral=0.0,
+            lowest=0.0,
+        ),
     ),
     size="conductance_m3_per_s_Pa",
     source="Merritt, Hydraulic Control Systems (1967), ch. 6: laminar leakage of pistons",
@@ -20,8 +26,9 @@ EFFECT = Effect(
         "valve.null_leakage": "leaking lands also let both pressures settle near half the supply",
         "supply.pressure_droop": "droop leaves the joint at rest alone",
     },
-    needs={'cylinder': ('cylinder', 'vane', 'hydraulic_motor')},
+    needs={"cylinder": ("cylinder", "vane", "hydraulic_motor")},
 )
+
 
 @EFFECT.hook("cross_conductance")
 @njit

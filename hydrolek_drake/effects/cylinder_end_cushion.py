@@ -20,8 +20,9 @@ EFFECT = Effect(
     confused_with={
         "sensor.nonlinearity": "a bow of the sensor shows at both ends and at rest",
     },
-    needs={'cylinder': ('cylinder', 'vane')},
+    needs={"cylinder": ("cylinder", "vane")},
 )
+
 
 @EFFECT.hook("rod_friction")
 @njit

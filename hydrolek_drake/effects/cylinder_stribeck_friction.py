@@ -23,8 +23,9 @@ EFFECT = Effect(
         "cylinder.coulomb_friction": "Coulomb friction does not fall with speed: stick-slip at creeping speed decides",
         "valve.spool_stiction": "a sticking spool shows in the pressures only after the command reverses",
     },
-    needs={'cylinder': ('cylinder', 'vane', 'hydraulic_motor')},
+    needs={"cylinder": ("cylinder", "vane", "hydraulic_motor")},
 )
+
 
 @EFFECT.hook("rod_friction")
 @njit

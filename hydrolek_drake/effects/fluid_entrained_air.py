@@ -12,15 +12,18 @@ EFFECT = Effect(
     title="entrained air",
     equation="1/B_eff = 1/B + air_fraction p_atm / p^2, p at least p_atm",
     parameters=(
-        Parameter("air_fraction", "1", "volume share of air at atmospheric pressure", neutral=0.0, lowest=0.0),
+        Parameter(
+            "air_fraction", "1", "volume share of air at atmospheric pressure", neutral=0.0, lowest=0.0
+        ),
     ),
     size="air_fraction",
     source="isothermal compression of free air: V_air = fraction p_atm / p, so its compressibility is fraction p_atm / p^2",
     confused_with={
         "base.compliance": "a soft base rings at a frequency that does not depend on the pressures",
     },
-    needs={'cylinder': ('cylinder', 'vane', 'hydraulic_motor')},
+    needs={"cylinder": ("cylinder", "vane", "hydraulic_motor")},
 )
+
 
 @EFFECT.hook("compressibility")
 @njit

@@ -21,8 +21,9 @@ EFFECT = Effect(
     confused_with={
         "amplifier.gain_fade": "a fading gain slows the joint down and widens the dead-zone",
     },
-    needs={'cylinder': ('cylinder', 'vane', 'hydraulic_motor')},
+    needs={"cylinder": ("cylinder", "vane", "hydraulic_motor")},
 )
+
 
 @njit
 def _share(time: float, joint: Any) -> float:

@@ -11,17 +11,16 @@ EFFECT = Effect(
     id="linkage.backlash",
     title="play in the linkage",
     equation="play of gap_rad in all between cylinder side and link; spring and damper where it is closed",
-    parameters=(
-        Parameter("gap_rad", "rad", "play, from contact to contact", neutral=0.0, lowest=0.0),
-    ),
+    parameters=(Parameter("gap_rad", "rad", "play, from contact to contact", neutral=0.0, lowest=0.0),),
     size="gap_rad",
     source="worn pins; contact model of Nordin and Gutman, Automatica 38 (2002) 1633",
     confused_with={
         "sensor.hysteresis": "play of the sensor leaves the pressures alone",
         "valve.spool_stiction": "a sticking spool also delays the start from rest",
     },
-    needs={'cylinder': ('cylinder', 'vane', 'hydraulic_motor')},
+    needs={"cylinder": ("cylinder", "vane", "hydraulic_motor")},
 )
+
 
 @EFFECT.hook("linkage_gap")
 @njit

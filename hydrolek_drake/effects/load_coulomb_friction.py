@@ -12,9 +12,7 @@ EFFECT = Effect(
     id="load.coulomb_friction",
     title="dry friction of the guides",
     equation="force tanh(v / friction_velocity) against the load",
-    parameters=(
-        Parameter("force_N", "N", "Coulomb friction (N m for a joint)", neutral=0.0, lowest=0.0),
-    ),
+    parameters=(Parameter("force_N", "N", "Coulomb friction (N m for a joint)", neutral=0.0, lowest=0.0),),
     size="force_N",
     source="thesis (4.1), F_c; Janot, Gautier, Brunot, EMPS benchmark (2019)",
     confused_with={
@@ -22,11 +20,11 @@ EFFECT = Effect(
     },
 )
 
+
 @EFFECT.hook("load_friction")
 @njit
 def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
     """Friction [N] and its slope [N s/m]."""
-
     force = joint.effects.load_coulomb_friction.force_N
     if force == 0.0:
         return 0.0, 0.0

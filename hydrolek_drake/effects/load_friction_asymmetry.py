@@ -13,8 +13,15 @@ EFFECT = Effect(
     title="friction depends on direction",
     equation="(coulomb + damping |v|) tanh(v / friction_velocity)^2 against the positive direction",
     parameters=(
-        Parameter("coulomb_N", "N", "half the difference of Coulomb friction, forward less backward", neutral=0.0),
-        Parameter("damping_N_s_per_m", "N s/m", "half the difference of viscous friction, forward less backward", neutral=0.0),
+        Parameter(
+            "coulomb_N", "N", "half the difference of Coulomb friction, forward less backward", neutral=0.0
+        ),
+        Parameter(
+            "damping_N_s_per_m",
+            "N s/m",
+            "half the difference of viscous friction, forward less backward",
+            neutral=0.0,
+        ),
     ),
     size="damping_N_s_per_m",
     source="Janot, Young, Gautier, Int. J. Control 90 (2017) 643: fatigue of the screw",
@@ -23,11 +30,11 @@ EFFECT = Effect(
     },
 )
 
+
 @EFFECT.hook("load_friction")
 @njit
 def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
     """Force [N] and its slope [N s/m]."""
-
     p = joint.effects.load_friction_asymmetry
     if p.coulomb_N == 0.0 and p.damping_N_s_per_m == 0.0:
         return 0.0, 0.0

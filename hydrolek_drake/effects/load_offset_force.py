@@ -11,9 +11,7 @@ EFFECT = Effect(
     id="load.offset_force",
     title="constant force",
     equation="force against the positive direction",
-    parameters=(
-        Parameter("force_N", "N", "constant force against the positive direction", neutral=0.0),
-    ),
+    parameters=(Parameter("force_N", "N", "constant force against the positive direction", neutral=0.0),),
     size="force_N",
     source="Janot, Gautier, Brunot, EMPS benchmark (2019): offset of the drive",
     confused_with={
@@ -21,9 +19,9 @@ EFFECT = Effect(
     },
 )
 
+
 @EFFECT.hook("load_friction")
 @njit
 def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
     """Force [N] and its slope, which is zero."""
-
     return joint.effects.load_offset_force.force_N, 0.0

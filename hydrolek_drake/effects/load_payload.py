@@ -20,8 +20,9 @@ EFFECT = Effect(
     confused_with={
         "valve.asymmetric_overlap": "a shifted null leaves the pressures at rest alone",
     },
-    needs={'load': ('rotating', 'arm', 'sliding')},
+    needs={"load": ("rotating", "arm", "sliding")},
 )
+
 
 @EFFECT.hook("payload")
 @njit

@@ -11,9 +11,7 @@ EFFECT = Effect(
     id="load.viscous_friction",
     title="viscous friction of the guides",
     equation="damping v against the load",
-    parameters=(
-        Parameter("damping_N_s_per_m", "N s/m", "added damping", neutral=0.0),
-    ),
+    parameters=(Parameter("damping_N_s_per_m", "N s/m", "added damping", neutral=0.0),),
     size="damping_N_s_per_m",
     source="thesis (4.1), F_v",
     confused_with={
@@ -21,10 +19,10 @@ EFFECT = Effect(
     },
 )
 
+
 @EFFECT.hook("load_friction")
 @njit
 def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
     """Friction [N] and its slope [N s/m]."""
-
     damping = joint.effects.load_viscous_friction.damping_N_s_per_m
     return damping * velocity, damping

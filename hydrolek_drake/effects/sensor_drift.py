@@ -11,9 +11,7 @@ EFFECT = Effect(
     id="sensor.drift",
     title="drifting sensor",
     equation="reading + rate t",
-    parameters=(
-        Parameter("rate_rad_per_min", "rad/min", "drift", neutral=0.0),
-    ),
+    parameters=(Parameter("rate_rad_per_min", "rad/min", "drift", neutral=0.0),),
     size="rate_rad_per_min",
     source="thesis 4.7: joint 5 'drifting that can be clearly seen'",
     confused_with={

@@ -11,15 +11,14 @@ EFFECT = Effect(
     id="sensor.hysteresis",
     title="play in the sensor",
     equation="play operator of half_width on the reading",
-    parameters=(
-        Parameter("half_width_rad", "rad", "half of the play", neutral=0.0, lowest=0.0),
-    ),
+    parameters=(Parameter("half_width_rad", "rad", "half of the play", neutral=0.0, lowest=0.0),),
     size="half_width_rad",
     source="play operator, Krasnosel'skii and Pokrovskii, Systems with Hysteresis (1989)",
     confused_with={
         "linkage.backlash": "play in the linkage also shows in the pressures and as a free swing of the load",
     },
 )
+
 
 @EFFECT.hook("reading_play")
 @njit

@@ -11,15 +11,14 @@ EFFECT = Effect(
     id="sensor.nonlinearity",
     title="bowed sensor",
     equation="reading + amplitude (1 - z^2), z from -1 to 1 over the travel",
-    parameters=(
-        Parameter("amplitude_rad", "rad", "bow in the middle of the travel", neutral=0.0),
-    ),
+    parameters=(Parameter("amplitude_rad", "rad", "bow in the middle of the travel", neutral=0.0),),
     size="amplitude_rad",
     source="conformity error of potentiometers; lowest even term that vanishes at the calibrated ends",
     confused_with={
         "cylinder.end_cushion": "a cushion acts only while moving inwards",
     },
 )
+
 
 @EFFECT.hook("reading_error")
 @njit

@@ -20,8 +20,9 @@ EFFECT = Effect(
         "cylinder.cross_port_leakage": "leakage slows the joint under load even at small flow",
         "amplifier.gain_fade": "fading depends on time, droop on flow",
     },
-    needs={'cylinder': ('cylinder', 'vane', 'hydraulic_motor')},
+    needs={"cylinder": ("cylinder", "vane", "hydraulic_motor")},
 )
+
 
 @EFFECT.hook("supply_drop")
 @njit

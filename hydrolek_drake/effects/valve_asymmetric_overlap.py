@@ -11,17 +11,16 @@ EFFECT = Effect(
     id="valve.asymmetric_overlap",
     title="spool null shifted",
     equation="x - (overlap + shift) opens towards A, -x - (overlap - shift) towards B",
-    parameters=(
-        Parameter("shift_m", "m", "shift of the null towards B", neutral=0.0),
-    ),
+    parameters=(Parameter("shift_m", "m", "shift of the null towards B", neutral=0.0),),
     size="shift_m",
     source="Merritt, Hydraulic Control Systems (1967), ch. 5: null shift of spool valves",
     confused_with={
         "valve.null_leakage": "leakage lets the joint creep at zero command",
         "load.payload": "a load acts on pressures at rest as well",
     },
-    needs={'valve': ('plain', 'pressure_compensated')},
+    needs={"valve": ("plain", "pressure_compensated")},
 )
+
 
 @EFFECT.hook("land_shift")
 @njit

@@ -12,15 +12,22 @@ EFFECT = Effect(
     title="leaking lands",
     equation="conductance times the pressure difference added to all four edge flows",
     parameters=(
-        Parameter("conductance_m3_per_s_Pa", "m^3/(s Pa)", "laminar conductance of one land", neutral=0.0, lowest=0.0),
+        Parameter(
+            "conductance_m3_per_s_Pa",
+            "m^3/(s Pa)",
+            "laminar conductance of one land",
+            neutral=0.0,
+            lowest=0.0,
+        ),
     ),
     size="conductance_m3_per_s_Pa",
     source="Merritt, Hydraulic Control Systems (1967), ch. 5: laminar flow through the radial clearance of the lands",
     confused_with={
         "cylinder.cross_port_leakage": "leakage past the piston lets the load sink, leaking lands also push both chambers towards half the supply pressure",
     },
-    needs={'valve': ('plain', 'pressure_compensated')},
+    needs={"valve": ("plain", "pressure_compensated")},
 )
+
 
 @EFFECT.hook("edge_conductance")
 @njit

@@ -12,17 +12,16 @@ EFFECT = Effect(
     id="valve.spool_stiction",
     title="spool sticks",
     equation="force tanh(x'/stiction_velocity) against the spool",
-    parameters=(
-        Parameter("force_N", "N", "Coulomb friction of the spool", neutral=0.0, lowest=0.0),
-    ),
+    parameters=(Parameter("force_N", "N", "Coulomb friction of the spool", neutral=0.0, lowest=0.0),),
     size="force_N",
     source="Merritt, Hydraulic Control Systems (1967), ch. 5; smoothed as in the solenoid's stiction_velocity",
     confused_with={
         "command.delay": "a delay is the same for large and small commands",
         "linkage.backlash": "play shows in the angle at reversals of the load, stiction at reversals of the command",
     },
-    needs={'solenoid': ('spool_pair',)},
+    needs={"solenoid": ("spool_pair",)},
 )
+
 
 @EFFECT.hook("spool_friction")
 @njit

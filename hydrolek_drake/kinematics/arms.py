@@ -209,7 +209,9 @@ def _plant_with_all_joints() -> MultibodyPlant:
     return make_arms_plant()
 
 
-def _parse(plant: MultibodyPlant, model: str, before_finalize: Callable[[MultibodyPlant], None] | None = None) -> None:
+def _parse(
+    plant: MultibodyPlant, model: str, before_finalize: Callable[[MultibodyPlant], None] | None = None
+) -> None:
     parser = Parser(plant)
     parser.package_map().AddPackageXml(arms_urdf_path().parent / "package.xml")
     parser.AddModelsFromString(model, "urdf")

@@ -14,18 +14,36 @@ STAGE = Stage(
         Parameter("delay", "s", "transport delay of the command", lowest=0.0),
         Parameter("neutral", "V", "command at which nothing is driven", neutral=0.0),
         Parameter("limit", "V", "largest command away from neutral", lowest=0.0),
-        Parameter("polarity", "1", "1, or -1 if a higher voltage retracts", neutral=1.0, lowest=-1.0, highest=1.0),
+        Parameter(
+            "polarity", "1", "1, or -1 if a higher voltage retracts", neutral=1.0, lowest=-1.0, highest=1.0
+        ),
     ),
     {
         "voltage": (),
         "calibrated": (
-            Parameter("calibration_a", "V", "voltage A at the smallest positive signal, A_i in (4.2)", lowest=0.0),
+            Parameter(
+                "calibration_a", "V", "voltage A at the smallest positive signal, A_i in (4.2)", lowest=0.0
+            ),
             Parameter("calibration_b", "V", "voltage A at signal 100, B_i in (4.2)", lowest=0.0),
-            Parameter("calibration_c", "V", "voltage B at the smallest negative signal, C_i in (4.3)", lowest=0.0),
+            Parameter(
+                "calibration_c", "V", "voltage B at the smallest negative signal, C_i in (4.3)", lowest=0.0
+            ),
             Parameter("calibration_d", "V", "voltage B at signal -100, D_i in (4.3)", lowest=0.0),
             Parameter("module", "1", "Compact Field Point module of Table 3.1", lowest=0.0),
-            Parameter("channel_a", "1", "channel that moves the joint in positive direction, Table 3.1", lowest=0.0, highest=7.0),
-            Parameter("channel_b", "1", "channel that moves the joint in negative direction, Table 3.1", lowest=0.0, highest=7.0),
+            Parameter(
+                "channel_a",
+                "1",
+                "channel that moves the joint in positive direction, Table 3.1",
+                lowest=0.0,
+                highest=7.0,
+            ),
+            Parameter(
+                "channel_b",
+                "1",
+                "channel that moves the joint in negative direction, Table 3.1",
+                lowest=0.0,
+                highest=7.0,
+            ),
         ),
     },
 )

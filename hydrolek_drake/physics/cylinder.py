@@ -15,7 +15,9 @@ from hydrolek_drake.physics.parameters import Parameter, Stage
 _CHAMBERS = (
     Parameter("dead_volume_a", "m^3", "oil on side A at zero stroke, with its hose", lowest=0.0),
     Parameter("dead_volume_b", "m^3", "oil on side B at full stroke, with its hose", lowest=0.0),
-    Parameter("initial_pressure_b", "Pa", "pressure on side B at the start; side A balances the load", lowest=0.0),
+    Parameter(
+        "initial_pressure_b", "Pa", "pressure on side B at the start; side A balances the load", lowest=0.0
+    ),
 )
 STAGE = Stage(
     "cylinder",
@@ -26,11 +28,19 @@ STAGE = Stage(
             Parameter("area_a", "m^2", "piston area on the bore side, A_A in (4.9)", lowest=0.0),
             Parameter("area_b", "m^2", "piston area on the rod side, A_B in (4.9)", lowest=0.0),
             *_CHAMBERS,
-            Parameter("stroke", "m", "stroke over which side B's oil volume is counted, S in (4.9)", lowest=0.0),
+            Parameter(
+                "stroke", "m", "stroke over which side B's oil volume is counted, S in (4.9)", lowest=0.0
+            ),
             Parameter("viscous_friction", "N s/m", "viscous friction of the seals, B_D in (4.9)", lowest=0.0),
             Parameter("friction_velocity", "m/s", "below this Coulomb friction is smoothed", lowest=0.0),
             Parameter("rod_mass", "kg", "rod and piston, M_R in (4.9)", neutral=0.0, lowest=0.0),
-            Parameter("stop_penetration", "N s/m^2", "hard stop's penetration coefficient, K_p in (4.9)", neutral=0.0, lowest=0.0),
+            Parameter(
+                "stop_penetration",
+                "N s/m^2",
+                "hard stop's penetration coefficient, K_p in (4.9)",
+                neutral=0.0,
+                lowest=0.0,
+            ),
         ),
         "vane": (
             Parameter("area_a", "m^3/rad", "displacement of side A", lowest=0.0),
@@ -39,7 +49,13 @@ STAGE = Stage(
             Parameter("stroke", "rad", "travel over which side B's oil volume is counted", lowest=0.0),
             Parameter("viscous_friction", "N m s/rad", "viscous friction of the seals", lowest=0.0),
             Parameter("friction_velocity", "rad/s", "below this Coulomb friction is smoothed", lowest=0.0),
-            Parameter("stop_penetration", "N m s/rad^2", "hard stop's penetration coefficient", neutral=0.0, lowest=0.0),
+            Parameter(
+                "stop_penetration",
+                "N m s/rad^2",
+                "hard stop's penetration coefficient",
+                neutral=0.0,
+                lowest=0.0,
+            ),
         ),
         "hydraulic_motor": (
             Parameter("area_a", "m^3/rad", "displacement of side A", lowest=0.0),
@@ -48,9 +64,7 @@ STAGE = Stage(
             Parameter("viscous_friction", "N m s/rad", "viscous friction of the seals", lowest=0.0),
             Parameter("friction_velocity", "rad/s", "below this Coulomb friction is smoothed", lowest=0.0),
         ),
-        "electric_motor": (
-            Parameter("force_constant", "N/V", "force over command voltage", lowest=0.0),
-        ),
+        "electric_motor": (Parameter("force_constant", "N/V", "force over command voltage", lowest=0.0),),
     },
 )
 CYLINDER = float(STAGE.code("cylinder"))

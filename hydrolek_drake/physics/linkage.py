@@ -12,24 +12,54 @@ STAGE = Stage(
     "linkage",
     "stroke and lever of the actuator at the joint",
     (
-        Parameter("mount_angle", "rad", "where the fixed mount stands around the joint axis (3-D arms)", neutral=0.0),
-        Parameter("axial_offset", "m", "distance of the cylinder's plane from the joint along its axis (3-D arms)", neutral=0.0),
-        Parameter("play_inertia", "kg m^2", "inertia on the cylinder's side of a play", neutral=0.0, lowest=0.0),
-        Parameter("play_stiffness", "N m/rad", "contact stiffness where a play closes", neutral=0.0, lowest=0.0),
-        Parameter("play_damping", "N m s/rad", "contact damping where a play closes", neutral=0.0, lowest=0.0),
-        Parameter("play_taken_up", "1", "1 if a play starts in contact as the load presses, 0 if centred", neutral=1.0),
+        Parameter(
+            "mount_angle", "rad", "where the fixed mount stands around the joint axis (3-D arms)", neutral=0.0
+        ),
+        Parameter(
+            "axial_offset",
+            "m",
+            "distance of the cylinder's plane from the joint along its axis (3-D arms)",
+            neutral=0.0,
+        ),
+        Parameter(
+            "play_inertia", "kg m^2", "inertia on the cylinder's side of a play", neutral=0.0, lowest=0.0
+        ),
+        Parameter(
+            "play_stiffness", "N m/rad", "contact stiffness where a play closes", neutral=0.0, lowest=0.0
+        ),
+        Parameter(
+            "play_damping", "N m s/rad", "contact damping where a play closes", neutral=0.0, lowest=0.0
+        ),
+        Parameter(
+            "play_taken_up",
+            "1",
+            "1 if a play starts in contact as the load presses, 0 if centred",
+            neutral=1.0,
+        ),
     ),
     {
         "triangle": (
-            Parameter("distance_parent", "m", "joint axis to the cylinder's mount on the fixed side, a", lowest=0.0),
-            Parameter("distance_child", "m", "joint axis to the cylinder's mount on the moving side, b", lowest=0.0),
+            Parameter(
+                "distance_parent", "m", "joint axis to the cylinder's mount on the fixed side, a", lowest=0.0
+            ),
+            Parameter(
+                "distance_child", "m", "joint axis to the cylinder's mount on the moving side, b", lowest=0.0
+            ),
             Parameter("angle_offset", "rad", "angle between the mounts at joint angle zero, phi"),
-            Parameter("direction", "1", "1 if extension raises the joint angle, else -1", lowest=-1.0, highest=1.0),
+            Parameter(
+                "direction", "1", "1 if extension raises the joint angle, else -1", lowest=-1.0, highest=1.0
+            ),
             Parameter("zero_stroke_length", "m", "mount to mount with the rod fully in", lowest=0.0),
         ),
         "direct": (
             Parameter("zero_stroke_position", "rad|m", "joint position at zero stroke"),
-            Parameter("direction", "1", "1 if extension raises the joint position, else -1", lowest=-1.0, highest=1.0),
+            Parameter(
+                "direction",
+                "1",
+                "1 if extension raises the joint position, else -1",
+                lowest=-1.0,
+                highest=1.0,
+            ),
         ),
     },
 )

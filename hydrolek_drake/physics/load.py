@@ -19,15 +19,27 @@ _ROTATING = (
     Parameter("damping", "N m s/rad", "viscous damping of the joint", lowest=0.0),
     *_ROTATING_STOPS,
     Parameter("initial_position", "rad", "joint angle at the start, where the recording does not tell"),
-    Parameter("friction_velocity", "rad/s", "below this Coulomb friction of the load is smoothed", neutral=1.0, lowest=0.0),
+    Parameter(
+        "friction_velocity",
+        "rad/s",
+        "below this Coulomb friction of the load is smoothed",
+        neutral=1.0,
+        lowest=0.0,
+    ),
 )
 _MOMENTS = (
     Parameter("inertia", "kg m^2", "moment of inertia about the joint axis", lowest=0.0),
     Parameter("gravity_cos", "N m", "gravity moment at joint angle zero", neutral=0.0),
     Parameter("gravity_sin", "N m", "gravity moment at joint angle 90 deg", neutral=0.0),
-    Parameter("payload_inertia", "kg m^2/kg", "moment of inertia per kilogram of payload", neutral=0.0, lowest=0.0),
-    Parameter("payload_gravity_cos", "N m/kg", "gravity moment at angle zero per kilogram of payload", neutral=0.0),
-    Parameter("payload_gravity_sin", "N m/kg", "gravity moment at 90 deg per kilogram of payload", neutral=0.0),
+    Parameter(
+        "payload_inertia", "kg m^2/kg", "moment of inertia per kilogram of payload", neutral=0.0, lowest=0.0
+    ),
+    Parameter(
+        "payload_gravity_cos", "N m/kg", "gravity moment at angle zero per kilogram of payload", neutral=0.0
+    ),
+    Parameter(
+        "payload_gravity_sin", "N m/kg", "gravity moment at 90 deg per kilogram of payload", neutral=0.0
+    ),
 )
 STAGE = Stage(
     "load",
@@ -46,7 +58,13 @@ STAGE = Stage(
             Parameter("stop_stiffness", "N/m", "stiffness of the end stops", lowest=0.0),
             Parameter("stop_damping", "N s/m", "damping of the end stops", lowest=0.0),
             Parameter("initial_position", "m", "position at the start, where the recording does not tell"),
-            Parameter("friction_velocity", "m/s", "below this Coulomb friction of the load is smoothed", neutral=1.0, lowest=0.0),
+            Parameter(
+                "friction_velocity",
+                "m/s",
+                "below this Coulomb friction of the load is smoothed",
+                neutral=1.0,
+                lowest=0.0,
+            ),
         ),
     },
 )

@@ -7,14 +7,27 @@ how they are stored in a Drake context.
 import numpy as np
 
 from hydrolek_drake.effects.catalogue import EFFECTS
-from hydrolek_drake.physics import amplifier, base, command, cylinder, fluid, linkage, load, sensor, solenoid, supply, valve
+from hydrolek_drake.physics import (
+    amplifier,
+    base,
+    command,
+    cylinder,
+    fluid,
+    linkage,
+    load,
+    sensor,
+    solenoid,
+    supply,
+    valve,
+)
 from hydrolek_drake.physics.parameters import Stage
 
 SHARED_STAGES: dict[str, Stage] = {s.STAGE.name: s.STAGE for s in (supply, fluid)}
 """Stages that all joints of a rig share."""
 
 JOINT_STAGES: dict[str, Stage] = {
-    s.STAGE.name: s.STAGE for s in (command, amplifier, solenoid, valve, cylinder, linkage, load, base, sensor)
+    s.STAGE.name: s.STAGE
+    for s in (command, amplifier, solenoid, valve, cylinder, linkage, load, base, sensor)
 }
 """Stages that each joint has of its own, in the order from command to sensor."""
 

@@ -18,12 +18,20 @@ STAGE = Stage(
     "joint position to reading",
     (
         *_TRAVEL,
-        Parameter("pressure_noise", "Pa", "standard deviation of the pressure readings' noise", neutral=0.0, lowest=0.0),
+        Parameter(
+            "pressure_noise",
+            "Pa",
+            "standard deviation of the pressure readings' noise",
+            neutral=0.0,
+            lowest=0.0,
+        ),
     ),
     {
         "position": (),
         "potentiometer": (
-            Parameter("volts_per_degree", "V/deg", "alpha in (3.1), volts per degree (see docs/thesis_errata.md)"),
+            Parameter(
+                "volts_per_degree", "V/deg", "alpha in (3.1), volts per degree (see docs/thesis_errata.md)"
+            ),
             Parameter("zero_voltage", "V", "reading at zero degrees, V_0 in (3.2)"),
         ),
     },

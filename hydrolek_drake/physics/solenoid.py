@@ -18,13 +18,27 @@ STAGE = Stage(
     (),
     {
         "spool_pair": (
-            Parameter("force_constant_a", "N/A^2", "force of solenoid A over squared current, alpha/beta^2 in (4.5)", lowest=0.0),
-            Parameter("force_constant_b", "N/A^2", "force of solenoid B over squared current, alpha/beta^2 in (4.5)", lowest=0.0),
-            Parameter("gap_constant", "1/m", "how the air gap lowers the force, gamma/beta in (4.5)", lowest=0.0),
+            Parameter(
+                "force_constant_a",
+                "N/A^2",
+                "force of solenoid A over squared current, alpha/beta^2 in (4.5)",
+                lowest=0.0,
+            ),
+            Parameter(
+                "force_constant_b",
+                "N/A^2",
+                "force of solenoid B over squared current, alpha/beta^2 in (4.5)",
+                lowest=0.0,
+            ),
+            Parameter(
+                "gap_constant", "1/m", "how the air gap lowers the force, gamma/beta in (4.5)", lowest=0.0
+            ),
             Parameter("moving_mass", "kg", "plunger and spool, m_p in (4.5)", lowest=0.0),
             Parameter("damping", "N s/m", "lambda_p in (4.5)", lowest=0.0),
             Parameter("spring", "N/m", "K_p in (4.5)", lowest=0.0),
-            Parameter("stiction_velocity", "m/s", "below this the spool's Coulomb friction is smoothed", lowest=0.0),
+            Parameter(
+                "stiction_velocity", "m/s", "below this the spool's Coulomb friction is smoothed", lowest=0.0
+            ),
         ),
         "servo_valve": (
             Parameter("rated_voltage", "V", "voltage of full spool stroke", lowest=0.0),

@@ -17,8 +17,12 @@ STAGE = Stage(
         "plain": (
             Parameter("overlap_a", "m", "spool travel before P opens to A", lowest=0.0),
             Parameter("overlap_b", "m", "spool travel before P opens to B", lowest=0.0),
-            Parameter("full_opening_a", "m", "spool travel of the largest opening towards A, w in (4.7)", lowest=0.0),
-            Parameter("full_opening_b", "m", "spool travel of the largest opening towards B, w in (4.7)", lowest=0.0),
+            Parameter(
+                "full_opening_a", "m", "spool travel of the largest opening towards A, w in (4.7)", lowest=0.0
+            ),
+            Parameter(
+                "full_opening_b", "m", "spool travel of the largest opening towards B, w in (4.7)", lowest=0.0
+            ),
             Parameter("max_area_a", "m^2", "largest orifice area when A is fed, A_max in (4.7)", lowest=0.0),
             Parameter("max_area_b", "m^2", "largest orifice area when B is fed, A_max in (4.7)", lowest=0.0),
             Parameter("discharge", "1", "contraction coefficient C_q in (4.7)", lowest=0.0),
@@ -30,7 +34,12 @@ STAGE = Stage(
             Parameter("full_opening_b", "m", "spool travel of full flow towards B", lowest=0.0),
             Parameter("full_flow", "m^3/s", "metered-in flow at full opening", lowest=0.0),
             Parameter("compensator_pressure", "Pa", "pressure drop that the compensator needs", lowest=0.0),
-            Parameter("return_coefficient", "m^3/(s Pa^0.5)", "metering-out flow over root of pressure drop", lowest=0.0),
+            Parameter(
+                "return_coefficient",
+                "m^3/(s Pa^0.5)",
+                "metering-out flow over root of pressure drop",
+                lowest=0.0,
+            ),
         ),
         "none": (),
     },
@@ -137,4 +146,6 @@ def _compensated_conductance(opening: float, drop: float, joint: Any) -> float:
 def _return_conductance(opening: float, drop: float, joint: Any) -> float:
     """Meter-out: an orifice given by its flow coefficient, smooth through zero as in `orifice_conductance`."""
     transition = joint.fluid.laminar_transition
-    return opening * joint.valve.return_coefficient / math.sqrt(math.sqrt(drop * drop + transition * transition))
+    return (
+        opening * joint.valve.return_coefficient / math.sqrt(math.sqrt(drop * drop + transition * transition))
+    )

@@ -44,7 +44,9 @@ def parse_entry(raw: Any, parameter: Parameter, where: str) -> Entry:
         InputError: not a mapping, unknown key, wrong unit, not a number, out of bounds, empty range.
     """
     if not isinstance(raw, Mapping):
-        raise InputError(f"{where}: '{raw}' is not a parameter; write {{value: ..., unit: {parameter.unit}, source: ...}}")
+        raise InputError(
+            f"{where}: '{raw}' is not a parameter; write {{value: ..., unit: {parameter.unit}, source: ...}}"
+        )
     for key in raw:
         if key not in _KEYS:
             raise InputError(f"{where}: unknown key '{key}'; a parameter has {', '.join(_KEYS)}")
@@ -52,7 +54,9 @@ def parse_entry(raw: Any, parameter: Parameter, where: str) -> Entry:
         return Entry(float("nan"), parameter.unit, str(raw.get("source", "")), same_as=str(raw["same_as"]))
     for key in ("value", "unit", "source"):
         if key not in raw:
-            raise InputError(f"{where}: '{key}' is missing; write {{value: ..., unit: {parameter.unit}, source: ...}}")
+            raise InputError(
+                f"{where}: '{key}' is missing; write {{value: ..., unit: {parameter.unit}, source: ...}}"
+            )
     factor, unit = _factor(str(raw["unit"]), parameter, where)
     value = _number(raw["value"], where) * factor
     if not parameter.lowest <= value <= parameter.highest:
@@ -66,7 +70,9 @@ def parse_entry(raw: Any, parameter: Parameter, where: str) -> Entry:
             raise InputError(f"{where}: range '{pair}' must be a list of two numbers, [lowest, highest]")
         low, high = (_number(v, where) * factor for v in pair)
         if not low < high:
-            raise InputError(f"{where}: range {pair} is empty; the first number must be smaller than the second")
+            raise InputError(
+                f"{where}: range {pair} is empty; the first number must be smaller than the second"
+            )
         limits = (low, high)
     scale = str(raw.get("scale", "linear"))
     if scale not in ("linear", "log"):
@@ -86,7 +92,9 @@ def parse_quantity(text: str, parameter: Parameter, where: str) -> float:
     try:
         value = float(number)
     except ValueError:
-        raise InputError(f"{where}: '{text}' is not a number with a unit, such as '12 MPa' or '12e6'") from None
+        raise InputError(
+            f"{where}: '{text}' is not a number with a unit, such as '12 MPa' or '12e6'"
+        ) from None
     raw = {"value": value, "unit": unit.strip() or parameter.unit.split("|")[0], "source": "command line"}
     return parse_entry(raw, parameter, where).value
 

@@ -10,7 +10,14 @@ from hydrolek_drake.rigs.entries import Entry
 if TYPE_CHECKING:
     from hydrolek_drake.rigs.rig import Rig
 
-FROM_ARM = ("inertia", "gravity_cos", "gravity_sin", "payload_inertia", "payload_gravity_cos", "payload_gravity_sin")
+FROM_ARM = (
+    "inertia",
+    "gravity_cos",
+    "gravity_sin",
+    "payload_inertia",
+    "payload_gravity_cos",
+    "payload_gravity_sin",
+)
 
 
 def check(rig: "Rig") -> None:
@@ -23,7 +30,9 @@ def check(rig: "Rig") -> None:
         where = f"joints.{joint}"
         lower, upper = (rig.value(f"{where}.load.{name}") for name in ("lower_stop", "upper_stop"))
         if not lower < upper:
-            raise InputError(f"{rig.path}: {where}.load: lower_stop {lower:g} must lie below upper_stop {upper:g}")
+            raise InputError(
+                f"{rig.path}: {where}.load: lower_stop {lower:g} must lie below upper_stop {upper:g}"
+            )
         _check_triangle(rig, where, lower, upper)
         _check_valve(rig, where)
 
@@ -32,10 +41,13 @@ def _check_triangle(rig: "Rig", where: str, lower: float, upper: float) -> None:
     if rig.variants[f"{where}.linkage"] != "triangle":
         return
     a, b, offset, direction = (
-        rig.value(f"{where}.linkage.{name}") for name in ("distance_parent", "distance_child", "angle_offset", "direction")
+        rig.value(f"{where}.linkage.{name}")
+        for name in ("distance_parent", "distance_child", "angle_offset", "direction")
     )
     if a <= 0.0 or b <= 0.0:
-        raise InputError(f"{rig.path}: {where}.linkage: impossible triangle, mounting distances {a:g} m and {b:g} m must be positive")
+        raise InputError(
+            f"{rig.path}: {where}.linkage: impossible triangle, mounting distances {a:g} m and {b:g} m must be positive"
+        )
     for name, position in (("lower_stop", lower), ("upper_stop", upper)):
         included = direction * position + offset
         if not 0.0 < included < math.pi:
@@ -59,12 +71,17 @@ def _check_valve(rig: "Rig", where: str) -> None:
     for side in ("a", "b"):
         overlap, full = (rig.value(f"{where}.valve.{name}_{side}") for name in ("overlap", "full_opening"))
         if not overlap < full:
-            raise InputError(f"{rig.path}: {where}.valve: full_opening_{side} ({full:g} m) must be larger than overlap_{side} ({overlap:g} m)")
+            raise InputError(
+                f"{rig.path}: {where}.valve: full_opening_{side} ({full:g} m) must be larger than overlap_{side} ({overlap:g} m)"
+            )
 
 
 def arm_entries() -> dict[str, Entry]:
     """Placeholders for what `Rig.value` asks of the MultibodyPlant when it is needed."""
-    return {name: Entry(float("nan"), "", "from urdf/hydrolek.urdf with the other joints held") for name in FROM_ARM}
+    return {
+        name: Entry(float("nan"), "", "from urdf/hydrolek.urdf with the other joints held")
+        for name in FROM_ARM
+    }
 
 
 @functools.cache
@@ -73,5 +90,12 @@ def arm_load(joint: str, held: tuple[tuple[str, float], ...]) -> dict[str, float
     from hydrolek_drake.kinematics.arms import load_of_joint  # loads Drake, which SI-only rigs never need
 
     load = load_of_joint(joint, dict(held))
-    values = (load.inertia, load.gravity_cos, load.gravity_sin, load.inertia_per_kg, load.gravity_cos_per_kg, load.gravity_sin_per_kg)
+    values = (
+        load.inertia,
+        load.gravity_cos,
+        load.gravity_sin,
+        load.inertia_per_kg,
+        load.gravity_cos_per_kg,
+        load.gravity_sin_per_kg,
+    )
     return dict(zip(FROM_ARM, values, strict=True))

@@ -51,7 +51,9 @@ def _find(name_or_path: str | Path) -> Path:
         raise InputError(f"rig file {path} does not exist")
     near = difflib.get_close_matches(text, rigs, n=3)
     raise InputError(
-        f"no rig '{text}'" + (f"; did you mean {' or '.join(near)}?" if near else "") + f" Built in: {', '.join(rigs)}; or give a file"
+        f"no rig '{text}'"
+        + (f"; did you mean {' or '.join(near)}?" if near else "")
+        + f" Built in: {', '.join(rigs)}; or give a file"
     )
 
 
@@ -123,7 +125,12 @@ def _merged(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
         if isinstance(value, dict) and isinstance(old, dict) and not (value.keys() & {"value", "same_as"}):
             other_variant = "variant" in value and value["variant"] != old.get("variant")
             result[key] = copy.deepcopy(value) if other_variant else _merged(old, value)
-        elif isinstance(value, dict) and isinstance(old, dict) and "value" in value and old.keys() <= _PARAMETER_KEYS:
+        elif (
+            isinstance(value, dict)
+            and isinstance(old, dict)
+            and "value" in value
+            and old.keys() <= _PARAMETER_KEYS
+        ):
             kept = {k: v for k, v in old.items() if k not in ("same_as",)}
             result[key] = {**kept, **value} if value.get("unit") == old.get("unit") else copy.deepcopy(value)
         else:

@@ -68,7 +68,12 @@ class Rig:
                     )
             for name, stage in JOINT_STAGES.items():
                 _read_stage(sections.get(name), stage, f"joints.{joint}.{name}", path, variants, entries)
-            _read_effects({**(tree.get("effects") or {}), **(sections.get("effects") or {})}, f"joints.{joint}.effects", path, entries)
+            _read_effects(
+                {**(tree.get("effects") or {}), **(sections.get("effects") or {})},
+                f"joints.{joint}.effects",
+                path,
+                entries,
+            )
         integration = tree.get("integration") or {}
         _check_keys(integration, ("longest_step", "spool_steps"), "integration", path)
         for parameter in (LONGEST_STEP, SPOOL_STEPS):
@@ -80,7 +85,9 @@ class Rig:
         _check_keys(recording, ("columns", "initial_position"), "recording", path)
         initial = recording.get("initial_position", "rig")
         if initial not in ("rig", "recording"):
-            raise InputError(f"{path}: recording.initial_position: '{initial}' is unknown; use rig or recording")
+            raise InputError(
+                f"{path}: recording.initial_position: '{initial}' is unknown; use rig or recording"
+            )
         rig = cls(
             name=str(tree.get("name", path.stem)),
             path=path,
@@ -110,7 +117,9 @@ class Rig:
 
     def posture_without(self, joint: str) -> dict[str, float]:
         """Where all other joints stand: held ones, and moving ones at their initial position [rad or m]."""
-        moving = {name: self.value(f"joints.{name}.load.initial_position") for name in self.joints if name != joint}
+        moving = {
+            name: self.value(f"joints.{name}.load.initial_position") for name in self.joints if name != joint
+        }
         return {**self.held, **moving}
 
     def full_path(self, path: str) -> str:
@@ -157,12 +166,17 @@ class Rig:
         return tuple(
             effect.id
             for effect in EFFECTS.values()
-            if self.value(f"joints.{joint}.effects.{effect.id}.{effect.size}") != _neutral(effect.parameters, effect.size)
+            if self.value(f"joints.{joint}.effects.{effect.id}.{effect.size}")
+            != _neutral(effect.parameters, effect.size)
         )
 
     def free_parameters(self) -> dict[str, Entry]:
         """Parameters that have a range and do not follow another one."""
-        return {path: entry for path, entry in self.entries.items() if entry.range is not None and entry.same_as is None}
+        return {
+            path: entry
+            for path, entry in self.entries.items()
+            if entry.range is not None and entry.same_as is None
+        }
 
     def records(self) -> np.ndarray:
         """The joints' parameter records, shape (n joints,), dtype `physics.records.JOINT`."""
@@ -173,7 +187,9 @@ class Rig:
                 _fill(records[i][name], stage, where, self)
             for effect in EFFECTS.values():
                 for p in effect.parameters:
-                    records[i]["effects"][effect.key][p.name] = self.value(f"joints.{joint}.effects.{effect.id}.{p.name}")
+                    records[i]["effects"][effect.key][p.name] = self.value(
+                        f"joints.{joint}.effects.{effect.id}.{p.name}"
+                    )
         return records
 
     def as_tree(self) -> dict[str, Any]:
@@ -221,7 +237,9 @@ def _read_stage(
     if not isinstance(section, Mapping):
         raise InputError(f"{path}: {where} must be a mapping of parameters")
     choices = tuple(stage.variants)
-    plain = choices[0] if not stage.variants[choices[0]] else None  # the variant that needs nothing of its own
+    plain = (
+        choices[0] if not stage.variants[choices[0]] else None
+    )  # the variant that needs nothing of its own
     variant = section.get("variant", plain)
     if variant not in choices:
         said = "is missing" if variant is None else f"'{variant}' is unknown"
@@ -299,7 +317,11 @@ def _write_back(tree: dict[str, Any], path: str, entry: Entry, parameter: Parame
     node = tree
     for key in keys[:-1]:
         node = node.setdefault(key, {})
-    written: dict[str, Any] = {"value": float(entry.value), "unit": entry.unit.split("|")[0], "source": entry.source}
+    written: dict[str, Any] = {
+        "value": float(entry.value),
+        "unit": entry.unit.split("|")[0],
+        "source": entry.source,
+    }
     if entry.range is not None:
         written["range"] = [float(v) for v in entry.range]
         written["scale"] = entry.scale

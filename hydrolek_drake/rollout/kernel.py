@@ -12,8 +12,19 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-from hydrolek_drake.physics import hooks
-from hydrolek_drake.physics import amplifier, base, command, cylinder, linkage, load, sensor, solenoid, supply, valve
+from hydrolek_drake.physics import (
+    amplifier,
+    base,
+    command,
+    cylinder,
+    hooks,
+    linkage,
+    load,
+    sensor,
+    solenoid,
+    supply,
+    valve,
+)
 from hydrolek_drake.physics.solenoid import GAMMA
 
 SIGNALS = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool", "supply_pressure", "force")
@@ -44,7 +55,9 @@ class Slopes(NamedTuple):
 
 
 @njit
-def rates(s: State, x: float, voltage: float, time: float, inertia: float, joint: Any) -> tuple[State, Slopes, float, float]:
+def rates(
+    s: State, x: float, voltage: float, time: float, inertia: float, joint: Any
+) -> tuple[State, Slopes, float, float]:
     """Rates of the state, their stiff slopes, the supply pressure [Pa] and the rod force [N]."""
     rocking = hooks.base_stiffness(joint) > 0.0
     playing = hooks.linkage_gap(joint) > 0.0
@@ -69,7 +82,9 @@ def rates(s: State, x: float, voltage: float, time: float, inertia: float, joint
         flow_a, flow_b, drawn, settle_a, settle_b = valve.chamber_flows(
             open_a, open_b, p_supply, s.p_a, s.p_b, time, joint
         )
-        rate_a, rate_b, stiff_a, stiff_b = cylinder.pressure_rates(s.p_a, s.p_b, flow_a, flow_b, stroke, v, joint)
+        rate_a, rate_b, stiff_a, stiff_b = cylinder.pressure_rates(
+            s.p_a, s.p_b, flow_a, flow_b, stroke, v, joint
+        )
         slope_a = -stiff_a * settle_a
         slope_b = -stiff_b * settle_b
         friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
@@ -94,7 +109,17 @@ def rates(s: State, x: float, voltage: float, time: float, inertia: float, joint
         tilt_acceleration, slope_tilt = base.base_acceleration(s.tilt, s.tilt_rate, moment, joint)
         slope_tilt -= slope_f * lever * lever / hooks.base_inertia(joint)
     return (
-        State(rate_a, rate_b, s.w, acceleration, flow_rate, s.tilt_rate, tilt_acceleration, s.lead_w, lead_acceleration),
+        State(
+            rate_a,
+            rate_b,
+            s.w,
+            acceleration,
+            flow_rate,
+            s.tilt_rate,
+            tilt_acceleration,
+            s.lead_w,
+            lead_acceleration,
+        ),
         Slopes(slope_a, slope_b, slope_w, slope_tilt, slope_lead),
         p_supply,
         force,
@@ -102,7 +127,9 @@ def rates(s: State, x: float, voltage: float, time: float, inertia: float, joint
 
 
 @njit
-def _step(s: State, x: float, x_next: float, voltage: float, time: float, h: float, inertia: float, joint: Any) -> State:
+def _step(
+    s: State, x: float, x_next: float, voltage: float, time: float, h: float, inertia: float, joint: Any
+) -> State:
     """One Rosenbrock-W step of `h` seconds; the spool goes from `x` to `x_next` meanwhile."""
     k, slope, _, _ = rates(s, x, voltage, time, inertia, joint)
     c_a = 1.0 / (1.0 - GAMMA * h * slope.p_a)

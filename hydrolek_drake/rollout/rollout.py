@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.physics import hooks
-from hydrolek_drake.physics import cylinder, linkage, load
+from hydrolek_drake.physics import cylinder, hooks, linkage, load
 from hydrolek_drake.rollout import kernel
 
 STATE_SIZE = 2 + len(kernel.State._fields)

@@ -38,7 +38,9 @@ def read_chain(plant: MultibodyPlant, names: tuple[str, ...]) -> Chain:
     )
 
 
-def read_mounts(plant: MultibodyPlant, names: tuple[str, ...], joints: np.ndarray, chain: Chain) -> list[Mount]:
+def read_mounts(
+    plant: MultibodyPlant, names: tuple[str, ...], joints: np.ndarray, chain: Chain
+) -> list[Mount]:
     """Mounting points of the linear cylinders, from each linkage's triangle.
 
     The fixed mount stands at `mount_angle` around the joint axis from an in-plane axis e1 (for a Z axis e1 = X,
@@ -47,7 +49,10 @@ def read_mounts(plant: MultibodyPlant, names: tuple[str, ...], joints: np.ndarra
     mounts = []
     for i, name in enumerate(names):
         record = joints[i]
-        if record["linkage"]["variant"] != linkage.TRIANGLE or record["cylinder"]["variant"] != cylinder.CYLINDER:
+        if (
+            record["linkage"]["variant"] != linkage.TRIANGLE
+            or record["cylinder"]["variant"] != cylinder.CYLINDER
+        ):
             continue
         parent_point, child_point = mount_points(record, chain.axis[i])
         joint = plant.GetJointByName(name)

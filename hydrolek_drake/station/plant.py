@@ -60,7 +60,11 @@ def add_plant(builder: DiagramBuilder, rig: Rig, joints: np.ndarray, time_step: 
             for name, joint in zip(rig.joints, joints, strict=True):
                 _add_rod_inertia(plant, name, joint)
                 tool = plant.GetFrameByName(f"{name.split('_')[0]}_tool")
-                payloads.extend(_payload(plant, name, joint, lambda body, tool=tool: plant.WeldFrames(tool, body.body_frame())))
+                payloads.extend(
+                    _payload(
+                        plant, name, joint, lambda body, tool=tool: plant.WeldFrames(tool, body.body_frame())
+                    )
+                )
 
         others = {name: 0.0 for name in arm_joint_names() if name not in rig.joints}
         arms = add_arms(builder, time_step=time_step, held={**others, **rig.held}, before_finalize=finish)
@@ -79,9 +83,15 @@ def _add_simple_joint(plant: MultibodyPlant, name: str, joint: np.ndarray) -> li
     """A sliding mass, or a turning body with the record's inertia and gravity moment."""
     p = joint["load"]
     if p["variant"] == load.SLIDING:
-        body = plant.AddRigidBody(f"{name}_body", SpatialInertia(float(p["inertia"]), np.zeros(3), UnitInertia.SolidCube(0.1)))
-        plant.AddJoint(PrismaticJoint(name, plant.world_frame(), body.body_frame(), np.array([1.0, 0.0, 0.0])))
-        return _payload(plant, name, joint, lambda added: plant.WeldFrames(body.body_frame(), added.body_frame()))
+        body = plant.AddRigidBody(
+            f"{name}_body", SpatialInertia(float(p["inertia"]), np.zeros(3), UnitInertia.SolidCube(0.1))
+        )
+        plant.AddJoint(
+            PrismaticJoint(name, plant.world_frame(), body.body_frame(), np.array([1.0, 0.0, 0.0]))
+        )
+        return _payload(
+            plant, name, joint, lambda added: plant.WeldFrames(body.body_frame(), added.body_frame())
+        )
     gravity = plant.gravity_field().gravity_vector()
     g = float(np.linalg.norm(gravity))
     inertia = float(p["inertia"])
@@ -99,23 +109,33 @@ def _add_simple_joint(plant: MultibodyPlant, name: str, joint: np.ndarray) -> li
         spatial = SpatialInertia(1.0, np.zeros(3), UnitInertia.SolidSphere(math.sqrt(2.5 * inertia)))
         centre = np.array([0.5, 0.0, 0.0])
     body = plant.AddRigidBody(f"{name}_body", spatial)
-    frame = plant.AddFrame(FixedOffsetFrame(f"{name}_frame", plant.world_frame(), RigidTransform(_UPRIGHT, np.zeros(3))))
+    frame = plant.AddFrame(
+        FixedOffsetFrame(f"{name}_frame", plant.world_frame(), RigidTransform(_UPRIGHT, np.zeros(3)))
+    )
     plant.AddJoint(RevoluteJoint(name, frame, body.body_frame(), _AXIS))
     length = float(np.linalg.norm(centre))
     along = RigidTransform(RollPitchYaw(0.0, math.pi / 2.0, math.atan2(centre[1], centre[0])), centre / 2.0)
-    plant.RegisterVisualGeometry(body, along, Cylinder(0.04 * length, length), f"{name}_link", np.array([0.9, 0.7, 0.1, 1.0]))
+    plant.RegisterVisualGeometry(
+        body, along, Cylinder(0.04 * length, length), f"{name}_link", np.array([0.9, 0.7, 0.1, 1.0])
+    )
     radius = math.sqrt(max(float(p["payload_inertia"]), 0.0))
     angle = math.atan2(-p["payload_gravity_sin"], p["payload_gravity_cos"])
     tip = RigidTransform(radius * np.array([math.cos(angle), math.sin(angle), 0.0]))
-    return _payload(plant, name, joint, lambda added: plant.WeldFrames(body.body_frame(), added.body_frame(), tip))
+    return _payload(
+        plant, name, joint, lambda added: plant.WeldFrames(body.body_frame(), added.body_frame(), tip)
+    )
 
 
-def _payload(plant: MultibodyPlant, name: str, joint: np.ndarray, weld: Callable[[RigidBody], object]) -> list[Payload]:
+def _payload(
+    plant: MultibodyPlant, name: str, joint: np.ndarray, weld: Callable[[RigidBody], object]
+) -> list[Payload]:
     effect = joint["effects"]["load_payload"]
     mass = float(effect["mass_kg"])
     if mass == 0.0:
         return []
-    body = plant.AddRigidBody(f"{name}_payload", SpatialInertia(mass, np.zeros(3), UnitInertia(0.0, 0.0, 0.0)))
+    body = plant.AddRigidBody(
+        f"{name}_payload", SpatialInertia(mass, np.zeros(3), UnitInertia(0.0, 0.0, 0.0))
+    )
     weld(body)
     return [Payload(body, mass, float(effect["time_s"]))]
 

@@ -13,7 +13,9 @@ from hydrolek_drake.physics import cylinder, load
 from hydrolek_drake.rollout.rollout import rest_pressures, rest_tilt_and_lead
 from hydrolek_drake.station.station import Station
 
-_EARLY = 1e-9  # seconds by which a played-back command comes early, so that rounding never makes it a step late
+_EARLY = (
+    1e-9  # seconds by which a played-back command comes early, so that rounding never makes it a step late
+)
 
 
 @dataclass(frozen=True)
@@ -54,13 +56,19 @@ def initial_context(station: Station, positions: np.ndarray | None = None) -> Co
     q = np.array(joints["load"]["initial_position"] if positions is None else positions, dtype=float)
     for name, value in zip(station.rig.joints, q, strict=True):
         joint = station.plant.GetJointByName(name)
-        station.plant.SetPositions(plant_context, _placed(station, plant_context, joint.position_start(), value))
+        station.plant.SetPositions(
+            plant_context, _placed(station, plant_context, joint.position_start(), value)
+        )
     for payload in station.payloads:
         if payload.time > context.get_time():
             payload.body.SetMass(plant_context, 0.0)
     gravity = station.plant.CalcGravityGeneralizedForces(plant_context)
-    needed = np.array([-gravity[station.plant.GetJointByName(name).velocity_start()] for name in station.rig.joints])
-    needed = needed + np.where(joints["load"]["variant"] == load.SLIDING, np.nan_to_num(joints["load"]["gravity_cos"]), 0.0)
+    needed = np.array(
+        [-gravity[station.plant.GetJointByName(name).velocity_start()] for name in station.rig.joints]
+    )
+    needed = needed + np.where(
+        joints["load"]["variant"] == load.SLIDING, np.nan_to_num(joints["load"]["gravity_cos"]), 0.0
+    )
     tilts, leads = np.zeros(len(q)), q.copy()
     for i, joint_record in enumerate(joints):
         tilts[i], leads[i] = rest_tilt_and_lead(joint_record, q[i], needed[i])
@@ -73,7 +81,9 @@ def initial_context(station: Station, positions: np.ndarray | None = None) -> Co
     zero = np.zeros(len(q))
     for name, state in (("play", leads), ("rocking_base", tilts)):
         if name in station.systems:
-            station.systems[name].GetMyMutableContextFromRoot(context).SetContinuousState(np.concatenate([state, zero]))
+            station.systems[name].GetMyMutableContextFromRoot(context).SetContinuousState(
+                np.concatenate([state, zero])
+            )
     sensor_context = station.systems["potentiometer"].GetMyMutableContextFromRoot(context)
     sensor_context.SetDiscreteState(0, q - tilts)
     return context

@@ -154,7 +154,9 @@ def _wire_mechanics(builder, add, rig: Rig, joints: np.ndarray, body: RigPlant) 
     chain = read_chain(plant, rig.joints)
     playing = joints["effects"]["linkage_backlash"]["gap_rad"] > 0.0
     rocking = joints["effects"]["base_compliance"]["stiffness_Nm_per_rad"] > 0.0
-    is_cylinder = (joints["linkage"]["variant"] == linkage.TRIANGLE) & (joints["cylinder"]["variant"] == cylinder.CYLINDER)
+    is_cylinder = (joints["linkage"]["variant"] == linkage.TRIANGLE) & (
+        joints["cylinder"]["variant"] == cylinder.CYLINDER
+    )
     by_moment = playing | rocking | ~is_cylinder
     mounts = [mount for mount in read_mounts(plant, rig.joints, joints, chain) if not by_moment[mount.joint]]
     link = add(Linkage(joints, chain, mounts, plant.num_multibody_states()))

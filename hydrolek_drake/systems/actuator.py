@@ -12,7 +12,9 @@ from hydrolek_drake.physics.cylinder import friction_force, pressure_force, pres
 
 
 @njit(cache=True)
-def _rates(joints: np.ndarray, pressure: np.ndarray, flow: np.ndarray, motion: np.ndarray, out: np.ndarray) -> None:
+def _rates(
+    joints: np.ndarray, pressure: np.ndarray, flow: np.ndarray, motion: np.ndarray, out: np.ndarray
+) -> None:
     n = len(joints)
     for i in range(n):
         out[i], out[n + i], _, _ = pressure_rates(
@@ -21,7 +23,9 @@ def _rates(joints: np.ndarray, pressure: np.ndarray, flow: np.ndarray, motion: n
 
 
 @njit(cache=True)
-def _forces(joints: np.ndarray, pressure: np.ndarray, motion: np.ndarray, time: float, out: np.ndarray) -> None:
+def _forces(
+    joints: np.ndarray, pressure: np.ndarray, motion: np.ndarray, time: float, out: np.ndarray
+) -> None:
     n = len(joints)
     for i in range(n):
         friction, _ = friction_force(motion[i], motion[n + i], time, joints[i])
@@ -55,7 +59,7 @@ class Actuator(LeafSystem):
             prerequisites_of_calc={self.xc_ticket(), self.time_ticket(), self.motion.ticket()},
         )
 
-    def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:  # noqa: N802
+    def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:
         """Continuity of the oil in both chambers."""
         rates = np.empty(2 * len(self._joints))
         pressure = context.get_continuous_state_vector().CopyToVector()

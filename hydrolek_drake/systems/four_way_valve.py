@@ -8,7 +8,9 @@ from hydrolek_drake.physics.valve import chamber_flows, openings
 
 
 @njit(cache=True)
-def _flows(joints: np.ndarray, x: np.ndarray, pressure: np.ndarray, p_supply: float, time: float, out: np.ndarray) -> None:
+def _flows(
+    joints: np.ndarray, x: np.ndarray, pressure: np.ndarray, p_supply: float, time: float, out: np.ndarray
+) -> None:
     n = len(joints)
     for i in range(n):
         joint = joints[i]

@@ -159,7 +159,9 @@ class Linkage(LeafSystem):
 
     def _calc_joint_motion(self, context: Context, output: BasicVector) -> None:
         state = self.plant_state.Eval(context)
-        output.SetFromVector(np.concatenate([state[self._chain.position_index], state[self._chain.velocity_index]]))
+        output.SetFromVector(
+            np.concatenate([state[self._chain.position_index], state[self._chain.velocity_index]])
+        )
 
     def _calc_rod_motion(self, context: Context, output: BasicVector) -> None:
         n = len(self._joints)

@@ -8,7 +8,9 @@ from hydrolek_drake.physics.load import SLIDING, gravity_load, passive_load
 
 
 @njit(cache=True)
-def _torques(joints: np.ndarray, motion: np.ndarray, moment: np.ndarray, acts: np.ndarray, time: float, out: np.ndarray) -> None:
+def _torques(
+    joints: np.ndarray, motion: np.ndarray, moment: np.ndarray, acts: np.ndarray, time: float, out: np.ndarray
+) -> None:
     n = len(joints)
     for i in range(n):
         passive, _ = passive_load(motion[i], motion[n + i], joints[i])
@@ -29,7 +31,9 @@ class Load(LeafSystem):
         out `joint_torque` (velocities of the plant): generalized forces [N m or N].
     """
 
-    def __init__(self, joints: np.ndarray, velocity_index: np.ndarray, velocities: int, by_moment: np.ndarray):
+    def __init__(
+        self, joints: np.ndarray, velocity_index: np.ndarray, velocities: int, by_moment: np.ndarray
+    ):
         """Build for the joints' records.
 
         Args:
@@ -50,7 +54,14 @@ class Load(LeafSystem):
 
     def _calc(self, context: Context, output: BasicVector) -> None:
         torque = np.empty(len(self._joints))
-        _torques(self._joints, self.motion.Eval(context), self.moment.Eval(context), self._acts, context.get_time(), torque)
+        _torques(
+            self._joints,
+            self.motion.Eval(context),
+            self.moment.Eval(context),
+            self._acts,
+            context.get_time(),
+            torque,
+        )
         full = np.zeros(output.size())
         full[self._index] = torque
         output.SetFromVector(full)

@@ -11,7 +11,9 @@ CHANNELS_PER_MODULE = 8
 
 
 @njit(cache=True)
-def _voltages(joints: np.ndarray, signal: np.ndarray, place_a: np.ndarray, place_b: np.ndarray, out: np.ndarray) -> None:
+def _voltages(
+    joints: np.ndarray, signal: np.ndarray, place_a: np.ndarray, place_b: np.ndarray, out: np.ndarray
+) -> None:
     for i in range(len(joints)):
         out[place_a[i]], out[place_b[i]] = calibrated_voltages(signal[i], joints[i])
 
@@ -40,16 +42,22 @@ class OperatorComputer(LeafSystem):
         super().__init__()
         self.set_name("operator_computer")
         if not np.all(joints["command"]["variant"] == CALIBRATED):
-            raise InputError("the operator computer needs joints.<joint>.command.variant: calibrated on every joint of the rig")
+            raise InputError(
+                "the operator computer needs joints.<joint>.command.variant: calibrated on every joint of the rig"
+            )
         self._joints = joints
         self.first_module = int(joints["command"]["module"].min())
         modules = int(joints["command"]["module"].max()) - self.first_module + 1
         self._place_a, self._place_b = channel_places(joints, self.first_module)
         places = np.concatenate([self._place_a, self._place_b])
         if len(set(places.tolist())) < len(places):
-            raise InputError("two joints of the rig share a channel of the field point (command.module, channel_a, channel_b)")
+            raise InputError(
+                "two joints of the rig share a channel of the field point (command.module, channel_a, channel_b)"
+            )
         self.signal = self.DeclareVectorInputPort("signal_commanded", len(joints))
-        self.channels = self.DeclareVectorOutputPort("channel_voltage", modules * CHANNELS_PER_MODULE, self._calc)
+        self.channels = self.DeclareVectorOutputPort(
+            "channel_voltage", modules * CHANNELS_PER_MODULE, self._calc
+        )
 
     def _calc(self, context: Context, output: BasicVector) -> None:
         voltages = np.zeros(output.size())

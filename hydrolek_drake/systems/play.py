@@ -9,7 +9,9 @@ from hydrolek_drake.physics.linkage import play_torque
 
 
 @njit(cache=True)
-def _contact(joints: np.ndarray, lead: np.ndarray, motion: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+def _contact(
+    joints: np.ndarray, lead: np.ndarray, motion: np.ndarray, moment: np.ndarray, out: np.ndarray
+) -> None:
     n = len(joints)
     for i in range(n):
         out[i] = moment[i]
@@ -18,7 +20,9 @@ def _contact(joints: np.ndarray, lead: np.ndarray, motion: np.ndarray, moment: n
 
 
 @njit(cache=True)
-def _rates(joints: np.ndarray, lead: np.ndarray, motion: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+def _rates(
+    joints: np.ndarray, lead: np.ndarray, motion: np.ndarray, moment: np.ndarray, out: np.ndarray
+) -> None:
     n = len(joints)
     for i in range(n):
         out[i], out[n + i] = lead[n + i], 0.0
@@ -59,11 +63,14 @@ class Play(LeafSystem):
         self.moment = self.DeclareVectorInputPort("moment", n)
         self._state = self.DeclareContinuousState(BasicVector(2 * n))
         self.side = self.DeclareVectorOutputPort(
-            "side_motion", 2 * n, self._calc_side, prerequisites_of_calc={self.xc_ticket(), self.motion.ticket()}
+            "side_motion",
+            2 * n,
+            self._calc_side,
+            prerequisites_of_calc={self.xc_ticket(), self.motion.ticket()},
         )
         self.transmitted = self.DeclareVectorOutputPort("moment_transmitted", n, self._calc_transmitted)
 
-    def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:  # noqa: N802
+    def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:
         """Motion of the actuators' side."""
         rates = np.empty(2 * self._n)
         lead = context.get_continuous_state_vector().CopyToVector()
@@ -72,7 +79,12 @@ class Play(LeafSystem):
 
     def _calc_side(self, context: Context, output: BasicVector) -> None:
         side = np.empty(2 * self._n)
-        _side(self._joints, context.get_continuous_state_vector().CopyToVector(), self.motion.Eval(context), side)
+        _side(
+            self._joints,
+            context.get_continuous_state_vector().CopyToVector(),
+            self.motion.Eval(context),
+            side,
+        )
         output.SetFromVector(side)
 
     def _calc_transmitted(self, context: Context, output: BasicVector) -> None:

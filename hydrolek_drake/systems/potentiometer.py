@@ -14,7 +14,9 @@ def _follow(joints: np.ndarray, held: np.ndarray, motion: np.ndarray, out: np.nd
 
 
 @njit(cache=True)
-def _readings(joints: np.ndarray, held: np.ndarray, motion: np.ndarray, time: float, noise: np.ndarray, out: np.ndarray) -> None:
+def _readings(
+    joints: np.ndarray, held: np.ndarray, motion: np.ndarray, time: float, noise: np.ndarray, out: np.ndarray
+) -> None:
     for i in range(len(joints)):
         joint = joints[i]
         value = reading(played(held[i], motion[i], joint), time, joint) + noise[i] * joint.sensor.noise
@@ -76,7 +78,9 @@ class Potentiometer(LeafSystem):
         return values
 
     def _calc(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._read(context, self._joints, context.get_discrete_state(self._noise).get_value()))
+        output.SetFromVector(
+            self._read(context, self._joints, context.get_discrete_state(self._noise).get_value())
+        )
 
     def _calc_ideal(self, context: Context, output: BasicVector) -> None:
         output.SetFromVector(self._read(context, self._ideal, np.zeros(len(self._joints))))

@@ -38,13 +38,21 @@ class RockingBase(LeafSystem):
         self._state = self.DeclareContinuousState(BasicVector(2 * n))
         self.tilt = self.DeclareStateOutputPort("tilt", self._state)
         self.relative = self.DeclareVectorOutputPort(
-            "motion_relative", 2 * n, self._calc, prerequisites_of_calc={self.xc_ticket(), self.motion.ticket()}
+            "motion_relative",
+            2 * n,
+            self._calc,
+            prerequisites_of_calc={self.xc_ticket(), self.motion.ticket()},
         )
 
-    def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:  # noqa: N802
+    def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:
         """Motion of the base."""
         rates = np.empty(2 * len(self._joints))
-        _rates(self._joints, context.get_continuous_state_vector().CopyToVector(), self.moment.Eval(context), rates)
+        _rates(
+            self._joints,
+            context.get_continuous_state_vector().CopyToVector(),
+            self.moment.Eval(context),
+            rates,
+        )
         derivatives.SetFromVector(rates)
 
     def _calc(self, context: Context, output: BasicVector) -> None:

@@ -8,7 +8,9 @@ from hydrolek_drake.physics.solenoid import advance
 
 
 @njit(cache=True)
-def _advance(joints: np.ndarray, state: np.ndarray, current: np.ndarray, step: float, substeps: int, out: np.ndarray) -> None:
+def _advance(
+    joints: np.ndarray, state: np.ndarray, current: np.ndarray, step: float, substeps: int, out: np.ndarray
+) -> None:
     n = len(joints)
     for i in range(n):
         x, v = advance(state[i], state[n + i], current[i], current[n + i], step, substeps, joints[i])
@@ -38,7 +40,9 @@ class SolenoidSpool(LeafSystem):
         self.current = self.DeclareVectorInputPort("coil_current", 2 * n)
         self._state = self.DeclareDiscreteState(np.zeros(3 * n))
         self.DeclarePeriodicDiscreteUpdateEvent(step, 0.0, self._update)
-        self.position = self.DeclareVectorOutputPort("spool_position", n, self._calc, prerequisites_of_calc={self.xd_ticket()})
+        self.position = self.DeclareVectorOutputPort(
+            "spool_position", n, self._calc, prerequisites_of_calc={self.xd_ticket()}
+        )
 
     def _update(self, context: Context, values: DiscreteValues) -> None:
         following = np.empty(3 * len(self._joints))

@@ -26,10 +26,13 @@ class Supply(LeafSystem):
         self.available = self.DeclareVectorInputPort("pressure_available", 1)
         self._state = self.DeclareContinuousState(BasicVector([0.0]))
         self.pressure = self.DeclareVectorOutputPort(
-            "supply_pressure", 1, self._calc, prerequisites_of_calc={self.xc_ticket(), self.available.ticket()}
+            "supply_pressure",
+            1,
+            self._calc,
+            prerequisites_of_calc={self.xc_ticket(), self.available.ticket()},
         )
 
-    def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:  # noqa: N802
+    def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:
         """Low-pass of the flow drawn."""
         flow = context.get_continuous_state_vector().GetAtIndex(0)
         drawn = float(self.flow.Eval(context)[2 * self._n :].sum())

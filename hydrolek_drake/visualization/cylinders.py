@@ -24,8 +24,8 @@ from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.systems.framework import DiagramBuilder, LeafSystem
 
-from hydrolek_drake.kinematics.cylinder_linkage import cylinder_linkages
 from hydrolek_drake.kinematics.arms import arm_joint, make_arms_plant
+from hydrolek_drake.kinematics.cylinder_linkage import cylinder_linkages
 
 _BARREL_COLOUR = Rgba(0.20, 0.21, 0.24)
 _ROD_COLOUR = Rgba(0.85, 0.86, 0.88)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from pydrake.math import RotationMatrix
 
-from hydrolek_drake.kinematics.cylinder_linkage import cylinder_linkages
 from hydrolek_drake.kinematics.arms import arm_joint, load_of_joint, make_arms_plant
+from hydrolek_drake.kinematics.cylinder_linkage import cylinder_linkages
 
 NAMES = [f"{side}_j{number}" for side in ("right", "left") for number in (1, 2, 3, 5, 7)]
 SUPPLY_PRESSURE = 16e6  # Pa, the brief's supply pressure

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.kinematics.forward import tool_pose, wrist_position
 from hydrolek_drake.kinematics.arms import arm_joint, make_arms_plant, position_indices
+from hydrolek_drake.kinematics.forward import tool_pose, wrist_position
 
 # Table 3.2, degrees; joint 1 is mirrored, the others are equal
 LIMITS_DEG = {

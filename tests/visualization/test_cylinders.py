@@ -5,8 +5,8 @@ import pytest
 from pydrake.geometry import Role
 from pydrake.systems.framework import DiagramBuilder
 
-from hydrolek_drake.kinematics.cylinder_linkage import cylinder_linkages
 from hydrolek_drake.kinematics.arms import add_arms, arm_joint
+from hydrolek_drake.kinematics.cylinder_linkage import cylinder_linkages
 from hydrolek_drake.visualization.cylinders import add_cylinders, arm_cylinder_mounts
 
 
