@@ -79,6 +79,7 @@ def add_arms(
     meshcat: Meshcat | None = None,
     held: Mapping[str, float] | None = None,
     before_finalize: Callable[[MultibodyPlant], None] | None = None,
+    collisions: bool = True,
 ) -> ArmsPlant:
     """Add base and both arms to a diagram, with gravity, finalized and connected.
 
@@ -88,13 +89,14 @@ def add_arms(
         meshcat: Browser view to show the scene in, if any.
         held: Joints that do not move, with their angles in rad: they become welds.
         before_finalize: Adds to the plant what must be there before it is finalized.
+        collisions: Whether the links may touch; looking for contact takes most of a step.
 
     Raises:
         InputError: `held` names a joint that the arms do not have, or `time_step` is negative.
     """
     if not 0.0 <= time_step < np.inf:
         raise InputError(f"time_step is {time_step} s; use 0 (continuous) or a positive step")
-    model = _urdf_with_welds(held or {})
+    model = _urdf_with_welds(held or {}, collisions)
     plant, scene_graph = AddMultibodyPlantSceneGraph(builder, time_step)
     plant.set_name("arms")
     scene_graph.set_name("scene_graph")
@@ -220,9 +222,9 @@ def _parse(
     plant.Finalize()
 
 
-def _urdf_with_welds(held: Mapping[str, float]) -> str:
-    """The URDF's text with each held joint turned into a weld at its angle."""
-    if not held:
+def _urdf_with_welds(held: Mapping[str, float], collisions: bool = True) -> str:
+    """The URDF's text with each held joint turned into a weld at its angle, without collision shapes on wish."""
+    if not held and collisions:
         return arms_urdf_path().read_text(encoding="utf-8")
     robot = ElementTree.parse(arms_urdf_path()).getroot()
     joints = {joint.attrib["name"]: joint for joint in _moving_joints(robot)}
@@ -234,6 +236,10 @@ def _urdf_with_welds(held: Mapping[str, float]) -> str:
         if not np.isfinite(angle):
             raise InputError(f"held joint '{name}' has angle {angle}; give a number in rad")
         _weld(joints[name], angle)
+    if not collisions:
+        for link in robot.iter("link"):
+            for shape in link.findall("collision"):
+                link.remove(shape)
     return ElementTree.tostring(robot, encoding="unicode")
 
 

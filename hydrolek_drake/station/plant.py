@@ -67,7 +67,13 @@ def add_plant(builder: DiagramBuilder, rig: Rig, joints: np.ndarray, time_step: 
                 )
 
         others = {name: 0.0 for name in arm_joint_names() if name not in rig.joints}
-        arms = add_arms(builder, time_step=time_step, held={**others, **rig.held}, before_finalize=finish)
+        arms = add_arms(
+            builder,
+            time_step=time_step,
+            held={**others, **rig.held},
+            before_finalize=finish,
+            collisions=time_step > 0.0,  # the discrete plant is there for contact
+        )
         return RigPlant(arms.plant, arms.scene_graph, tuple(payloads))
     plant, scene_graph = AddMultibodyPlantSceneGraph(builder, time_step)
     plant.set_name("plant")

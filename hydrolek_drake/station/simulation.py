@@ -121,7 +121,7 @@ def run(
     _fix_supply(station, context, 1.0)
     simulator = Simulator(station.diagram, context)
     config = SimulatorConfig(
-        integration_scheme="runge_kutta3",
+        integration_scheme="runge_kutta2",
         max_step_size=station.sizes.step,
         use_error_control=False,
         target_realtime_rate=realtime_rate,

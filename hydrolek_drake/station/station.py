@@ -159,11 +159,13 @@ def _wire_mechanics(builder, add, rig: Rig, joints: np.ndarray, body: RigPlant) 
     )
     by_moment = playing | rocking | ~is_cylinder
     mounts = [mount for mount in read_mounts(plant, rig.joints, joints, chain) if not by_moment[mount.joint]]
-    link = add(Linkage(joints, chain, mounts, plant.num_multibody_states()))
-    load = add(Load(joints, chain.velocity_index - plant.num_positions(), plant.num_velocities(), by_moment))
+    has_side = bool(playing.any() or rocking.any())
+    link = add(Linkage(joints, chain, mounts, plant.num_multibody_states(), has_side))
+    load = add(Load(joints, chain, plant.num_velocities(), by_moment))
     builder.Connect(plant.get_state_output_port(), link.plant_state)
-    builder.Connect(link.mount_force, plant.get_applied_spatial_force_input_port())
-    builder.Connect(link.joint_motion, load.motion)
+    if mounts:
+        builder.Connect(link.mount_force, plant.get_applied_spatial_force_input_port())
+    builder.Connect(plant.get_state_output_port(), load.plant_state)
     builder.Connect(load.torque, plant.get_applied_generalized_force_input_port())
     side, sensed, moment = link.joint_motion, link.joint_motion, link.moment
     if playing.any():
@@ -184,8 +186,10 @@ def _wire_mechanics(builder, add, rig: Rig, joints: np.ndarray, body: RigPlant) 
             builder.Connect(link.joint_motion, relative.get_input_port(0))
             builder.Connect(less.get_output_port(), relative.get_input_port(1))
             sensed = relative.get_output_port()
-    builder.Connect(side, link.side)
-    builder.Connect(moment, load.moment)
+    if has_side:
+        builder.Connect(side, link.side)
+    if by_moment.any():
+        builder.Connect(moment, load.moment)
     return _Mechanics(link, sensed)
 
 

@@ -55,49 +55,98 @@ class Chain:
 
 
 @njit(cache=True)
-def _rod_motion(joints: np.ndarray, q: np.ndarray, w: np.ndarray, out: np.ndarray) -> None:
+def _rod_motion(joints: np.ndarray, state: np.ndarray, q: np.ndarray, w: np.ndarray, out: np.ndarray) -> None:
+    """`q` and `w` say where each joint's position and velocity stand in `state`."""
     n = len(joints)
     for i in range(n):
-        stroke, lever = stroke_and_lever(q[i], joints[i])
-        out[i], out[n + i] = stroke, lever * w[i]
+        stroke, lever = stroke_and_lever(state[q[i]], joints[i])
+        out[i], out[n + i] = stroke, lever * state[w[i]]
 
 
 @njit(cache=True)
-def _moments(joints: np.ndarray, q: np.ndarray, force: np.ndarray, out: np.ndarray) -> None:
+def _moments(joints: np.ndarray, state: np.ndarray, q: np.ndarray, force: np.ndarray, out: np.ndarray) -> None:
     for i in range(len(joints)):
-        _, lever = stroke_and_lever(q[i], joints[i])
+        _, lever = stroke_and_lever(state[q[i]], joints[i])
         out[i] = lever * force[i]
 
 
 @njit(cache=True)
-def _poses(
-    q: np.ndarray,
+def _pushes(
+    state: np.ndarray,
+    position_index: np.ndarray,
+    force: np.ndarray,
     parent: np.ndarray,
     frame_rotation: np.ndarray,
     frame_origin: np.ndarray,
     axis: np.ndarray,
     prismatic: np.ndarray,
-    rotation: np.ndarray,
-    origin: np.ndarray,
+    mount_joint: np.ndarray,
+    p_parent: np.ndarray,
+    p_child: np.ndarray,
+    out: np.ndarray,
 ) -> None:
-    """World poses of the moving bodies by Rodrigues' formula along the tree."""
-    for i in range(len(q)):
+    """Each cylinder's force on its child body in the world frame [N], shape (mounts, 3).
+
+    World poses of the moving bodies by Rodrigues' formula along the tree, then the unit vector between mounts.
+    """
+    n = len(position_index)
+    rotation = np.empty((n, 3, 3))
+    origin = np.empty((n, 3))
+    turn = np.empty((3, 3))
+    for i in range(n):
         a = axis[i]
-        local = np.eye(3)
-        shift = np.zeros(3)
-        if prismatic[i]:
-            shift = a * q[i]
-        else:
-            s, c = np.sin(q[i]), np.cos(q[i])
-            cross = np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
-            local = np.eye(3) + s * cross + (1.0 - c) * (cross @ cross)
-        fixed_rotation, fixed_origin = frame_rotation[i], frame_origin[i]
-        if parent[i] >= 0:
-            up, at = rotation[parent[i]], origin[parent[i]]
-            fixed_origin = at + up @ fixed_origin
-            fixed_rotation = up @ fixed_rotation
-        origin[i] = fixed_origin + fixed_rotation @ shift
-        rotation[i] = fixed_rotation @ local
+        up = parent[i]
+        for r in range(3):
+            for c in range(3):
+                turn[r, c] = 1.0 if r == c else 0.0
+        q = state[position_index[i]]
+        slide = q if prismatic[i] else 0.0
+        if not prismatic[i]:
+            sin, cos = np.sin(q), np.cos(q)
+            for r in range(3):
+                for c in range(3):
+                    turn[r, c] = cos * turn[r, c] + (1.0 - cos) * a[r] * a[c]
+            turn[0, 1] -= sin * a[2]
+            turn[0, 2] += sin * a[1]
+            turn[1, 0] += sin * a[2]
+            turn[1, 2] -= sin * a[0]
+            turn[2, 0] -= sin * a[1]
+            turn[2, 1] += sin * a[0]
+        for r in range(3):
+            origin[i, r] = frame_origin[i, r]
+            for c in range(3):
+                rotation[i, r, c] = 0.0
+                for k in range(3):
+                    rotation[i, r, c] += frame_rotation[i, r, k] * turn[k, c]
+                origin[i, r] += frame_rotation[i, r, c] * a[c] * slide
+        if up >= 0:
+            own_rotation, own_origin = rotation[i].copy(), origin[i].copy()
+            for r in range(3):
+                origin[i, r] = origin[up, r]
+                for c in range(3):
+                    rotation[i, r, c] = 0.0
+                    origin[i, r] += rotation[up, r, c] * own_origin[c]
+                    for k in range(3):
+                        rotation[i, r, c] += rotation[up, r, k] * own_rotation[k, c]
+    along = np.empty(3)
+    for m in range(len(mount_joint)):
+        i = mount_joint[m]
+        up = parent[i]
+        square = 0.0
+        for r in range(3):
+            along[r] = origin[i, r]
+            if up >= 0:
+                along[r] -= origin[up, r]
+            else:
+                along[r] -= p_parent[m, r]
+            for c in range(3):
+                along[r] += rotation[i, r, c] * p_child[m, c]
+                if up >= 0:
+                    along[r] -= rotation[up, r, c] * p_parent[m, c]
+            square += along[r] * along[r]
+        scale = force[i] / np.sqrt(square)
+        for r in range(3):
+            out[m, r] = along[r] * scale
 
 
 class Linkage(LeafSystem):
@@ -109,7 +158,8 @@ class Linkage(LeafSystem):
 
     Ports:
         in `plant_state` (all positions and velocities of the plant).
-        in `side_motion` (2n): positions, then velocities of the actuator's side of each joint.
+        in `side_motion` (2n): positions, then velocities of the actuator's side of each joint; open if that is
+            the joint itself.
         in `rod_force` (n) [N].
         out `joint_motion` (2n): positions, then velocities of the joints [rad or m, 1/s].
         out `rod_motion` (2n): strokes, then velocities [m, m/s].
@@ -117,16 +167,25 @@ class Linkage(LeafSystem):
         out `mount_force`: list of forces on bodies, for the plant's `applied_spatial_force`.
     """
 
-    def __init__(self, joints: np.ndarray, chain: Chain, mounts: list[Mount], states: int):
-        """Build for the joints' records, the tree of bodies, the cylinders and the plant's number of states."""
+    def __init__(self, joints: np.ndarray, chain: Chain, mounts: list[Mount], states: int, has_side: bool):
+        """Build the system.
+
+        Args:
+            joints: records, shape (n,).
+            chain: the tree of moving bodies.
+            mounts: the cylinders that act at their mounting points.
+            states: the plant's number of positions and velocities.
+            has_side: whether `side_motion` is connected (play or a rocking base).
+        """
         super().__init__()
         self.set_name("linkage")
         n = len(joints)
         self._joints = joints
         self._chain = chain
         self._mounts = mounts
-        self._rotation = np.empty((n, 3, 3))
-        self._origin = np.empty((n, 3))
+        self._mount_joint = np.array([mount.joint for mount in mounts], dtype=np.int64)
+        self._p_parent = np.array([mount.p_parent for mount in mounts]).reshape(-1, 3)
+        self._p_child = np.array([mount.p_child for mount in mounts]).reshape(-1, 3)
         self._forces = self._force_templates()
         self.plant_state = self.DeclareVectorInputPort("plant_state", states)
         self.side = self.DeclareVectorInputPort("side_motion", 2 * n)
@@ -134,10 +193,14 @@ class Linkage(LeafSystem):
         self.joint_motion = self.DeclareVectorOutputPort(
             "joint_motion", 2 * n, self._calc_joint_motion, prerequisites_of_calc={self.plant_state.ticket()}
         )
+        source = self.side if has_side else self.plant_state
+        self._source = source
+        self._q = np.arange(n) if has_side else chain.position_index
+        self._w = np.arange(n, 2 * n) if has_side else chain.velocity_index
         self.rod_motion = self.DeclareVectorOutputPort(
-            "rod_motion", 2 * n, self._calc_rod_motion, prerequisites_of_calc={self.side.ticket()}
+            "rod_motion", 2 * n, self._calc_rod_motion, prerequisites_of_calc={source.ticket()}
         )
-        both = {self.side.ticket(), self.force.ticket()}
+        both = {source.ticket(), self.force.ticket()}
         self.moment = self.DeclareVectorOutputPort("moment", n, self._calc_moment, prerequisites_of_calc=both)
         self.mount_force = self.DeclareAbstractOutputPort(
             "mount_force",
@@ -164,40 +227,35 @@ class Linkage(LeafSystem):
         )
 
     def _calc_rod_motion(self, context: Context, output: BasicVector) -> None:
-        n = len(self._joints)
-        side = self.side.Eval(context)
-        motion = np.empty(2 * n)
-        _rod_motion(self._joints, side[:n], side[n:], motion)
+        motion = np.empty(2 * len(self._joints))
+        _rod_motion(self._joints, self._source.Eval(context), self._q, self._w, motion)
         output.SetFromVector(motion)
 
     def _calc_moment(self, context: Context, output: BasicVector) -> None:
-        n = len(self._joints)
-        moments = np.empty(n)
-        _moments(self._joints, self.side.Eval(context)[:n], self.force.Eval(context), moments)
+        moments = np.empty(len(self._joints))
+        _moments(self._joints, self._source.Eval(context), self._q, self.force.Eval(context), moments)
         output.SetFromVector(moments)
 
     def _calc_mount_force(self, context: Context, output: AbstractValue) -> None:
         chain = self._chain
-        q = self.plant_state.Eval(context)[chain.position_index]
-        force = self.force.Eval(context)
-        _poses(
-            q,
+        pushes = np.empty((len(self._mounts), 3))
+        _pushes(
+            self.plant_state.Eval(context),
+            chain.position_index,
+            self.force.Eval(context),
             chain.parent_joint,
             chain.frame_rotation,
             chain.frame_origin,
             chain.axis,
             chain.prismatic,
-            self._rotation,
-            self._origin,
+            self._mount_joint,
+            self._p_parent,
+            self._p_child,
+            pushes,
         )
         templates = iter(self._forces)
         no_torque = np.zeros(3)
-        for mount in self._mounts:
-            i, up = mount.joint, chain.parent_joint[mount.joint]
-            at_child = self._origin[i] + self._rotation[i] @ mount.p_child
-            at_parent = mount.p_parent if up < 0 else self._origin[up] + self._rotation[up] @ mount.p_parent
-            along = at_child - at_parent
-            push = along * (force[i] / np.sqrt(along @ along))
+        for mount, push in zip(self._mounts, pushes, strict=True):
             next(templates).F_Bq_W = SpatialForce(no_torque, push)
             if mount.parent is not None:
                 next(templates).F_Bq_W = SpatialForce(no_torque, -push)

@@ -5,18 +5,29 @@ from numba import njit
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from hydrolek_drake.physics.load import SLIDING, gravity_load, passive_load
+from hydrolek_drake.systems.linkage import Chain
 
 
 @njit(cache=True)
 def _torques(
-    joints: np.ndarray, motion: np.ndarray, moment: np.ndarray, acts: np.ndarray, time: float, out: np.ndarray
+    joints: np.ndarray,
+    state: np.ndarray,
+    q: np.ndarray,
+    w: np.ndarray,
+    moment: np.ndarray,
+    acts: np.ndarray,
+    time: float,
+    place: np.ndarray,
+    out: np.ndarray,
 ) -> None:
-    n = len(joints)
-    for i in range(n):
-        passive, _ = passive_load(motion[i], motion[n + i], joints[i])
-        out[i] = moment[i] * acts[i] - passive
+    """`q` and `w` say where each joint stands in `state`, `place` where in `out`."""
+    for i in range(len(joints)):
+        position, velocity = state[q[i]], state[w[i]]
+        passive, _ = passive_load(position, velocity, joints[i])
+        torque = moment[i] * acts[i] - passive
         if joints[i].load.variant == SLIDING:
-            out[i] -= gravity_load(motion[i], time, joints[i])
+            torque -= gravity_load(position, time, joints[i])
+        out[place[i]] = torque
 
 
 class Load(LeafSystem):
@@ -26,42 +37,43 @@ class Load(LeafSystem):
     added here.
 
     Ports:
-        in `joint_motion` (2n).
-        in `moment` (n): of the actuators [N m].
+        in `plant_state` (all positions and velocities of the plant).
+        in `moment` (n): of the actuators [N m]; may stay open if all of them act at their mounts.
         out `joint_torque` (velocities of the plant): generalized forces [N m or N].
     """
 
-    def __init__(
-        self, joints: np.ndarray, velocity_index: np.ndarray, velocities: int, by_moment: np.ndarray
-    ):
+    def __init__(self, joints: np.ndarray, chain: Chain, velocities: int, by_moment: np.ndarray):
         """Build for the joints' records.
 
         Args:
             joints: shape (n,).
-            velocity_index: each joint's place among the plant's velocities, shape (n,).
-            velocities: number of the plant's velocities.
+            chain: says where each joint stands in the plant's state.
+            velocities: number of the plant's velocities (and positions).
             by_moment: True where the actuator acts by its moment, not by forces at its mounts, shape (n,).
         """
         super().__init__()
         self.set_name("load")
         n = len(joints)
         self._joints = joints
-        self._index = velocity_index
+        self._chain = chain
+        self._place = chain.velocity_index - velocities
         self._acts = by_moment.astype(float)
-        self.motion = self.DeclareVectorInputPort("joint_motion", 2 * n)
+        self._none = np.zeros(n)
+        self.plant_state = self.DeclareVectorInputPort("plant_state", 2 * velocities)
         self.moment = self.DeclareVectorInputPort("moment", n)
         self.torque = self.DeclareVectorOutputPort("joint_torque", velocities, self._calc)
 
     def _calc(self, context: Context, output: BasicVector) -> None:
-        torque = np.empty(len(self._joints))
+        torque = np.zeros(output.size())
         _torques(
             self._joints,
-            self.motion.Eval(context),
-            self.moment.Eval(context),
+            self.plant_state.Eval(context),
+            self._chain.position_index,
+            self._chain.velocity_index,
+            self.moment.Eval(context) if self.moment.HasValue(context) else self._none,
             self._acts,
             context.get_time(),
+            self._place,
             torque,
         )
-        full = np.zeros(output.size())
-        full[self._index] = torque
-        output.SetFromVector(full)
+        output.SetFromVector(torque)

@@ -58,7 +58,8 @@ class Potentiometer(LeafSystem):
         self.motion = self.DeclareVectorInputPort("motion", 2 * n)
         self._held = self.DeclareDiscreteState(np.zeros(n))
         self._noise = self.DeclareDiscreteState(np.zeros(n))
-        self.DeclarePeriodicDiscreteUpdateEvent(step, 0.0, self._update)
+        if generator is not None or np.any(joints["effects"]["sensor_hysteresis"]["half_width_rad"] > 0.0):
+            self.DeclarePeriodicDiscreteUpdateEvent(step, 0.0, self._update)
         self.measured = self.DeclareVectorOutputPort("position_measured", n, self._calc)
         self.ideal = self.DeclareVectorOutputPort("position_ideal", n, self._calc_ideal)
         self.voltage = self.DeclareVectorOutputPort("potentiometer_voltage", n, self._calc_voltage)

@@ -1,9 +1,24 @@
 """Pump and return line, shared by all joints of both arms."""
 
 import numpy as np
+from numba import njit
 from pydrake.systems.framework import BasicVector, Context, ContinuousState, LeafSystem
 
 from hydrolek_drake.physics.supply import flow_rate_of_change, supply_pressure
+
+
+@njit(cache=True)
+def _pressure(joints: np.ndarray, flow: float, share: float) -> float:
+    tank = joints[0].supply.tank_pressure
+    return tank + min(max(share, 0.0), 1.0) * (supply_pressure(flow, joints[0]) - tank)
+
+
+@njit(cache=True)
+def _rate(joints: np.ndarray, flow: float, flows: np.ndarray) -> float:
+    drawn = 0.0
+    for i in range(2 * len(joints), 3 * len(joints)):
+        drawn += flows[i]
+    return flow_rate_of_change(flow, drawn, joints[0])
 
 
 class Supply(LeafSystem):
@@ -20,7 +35,7 @@ class Supply(LeafSystem):
         """Build for the joints' records; the supply's own parameters are those of the first joint."""
         super().__init__()
         self.set_name("supply")
-        self._joint = joints[0]
+        self._joints = joints
         self._n = len(joints)
         self.flow = self.DeclareVectorInputPort("oil_flow", 3 * self._n)
         self.available = self.DeclareVectorInputPort("pressure_available", 1)
@@ -35,12 +50,10 @@ class Supply(LeafSystem):
     def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:
         """Low-pass of the flow drawn."""
         flow = context.get_continuous_state_vector().GetAtIndex(0)
-        drawn = float(self.flow.Eval(context)[2 * self._n :].sum())
-        derivatives.get_mutable_vector().SetAtIndex(0, flow_rate_of_change(flow, drawn, self._joint))
+        rate = _rate(self._joints, flow, self.flow.Eval(context))
+        derivatives.get_mutable_vector().SetAtIndex(0, rate)
 
     def _calc(self, context: Context, output: BasicVector) -> None:
         flow = context.get_continuous_state_vector().GetAtIndex(0)
-        share = float(self.available.Eval(context)[0]) if self.available.HasValue(context) else 1.0
-        full = supply_pressure(flow, self._joint)
-        tank = float(self._joint["supply"]["tank_pressure"])
-        output.SetAtIndex(0, tank + np.clip(share, 0.0, 1.0) * (full - tank))
+        share = self.available.Eval(context)[0] if self.available.HasValue(context) else 1.0
+        output.SetAtIndex(0, _pressure(self._joints, flow, share))

@@ -1,19 +1,32 @@
-"""Transport delay of the command, exact to the moment although the diagram runs in steps."""
-
-from collections import deque
+"""Transport delay of the command, exact in the mean although the diagram runs in steps."""
 
 import numpy as np
-from pydrake.common.value import AbstractValue
-from pydrake.systems.framework import BasicVector, Context, LeafSystem, State
+from numba import njit
+from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem, State
 
 from hydrolek_drake.physics.command import drive_voltage, transport_delay
+
+
+@njit(cache=True)
+def _delays(joints: np.ndarray, out: np.ndarray) -> None:
+    for i in range(len(joints)):
+        out[i] = transport_delay(joints[i])
+
+
+@njit(cache=True)
+def _shift(joints: np.ndarray, line: np.ndarray, command: np.ndarray, out: np.ndarray) -> None:
+    """The line of past voltages moved on by one step, the newest first; shapes (steps, n)."""
+    for i in range(len(joints)):
+        out[0, i] = drive_voltage(command[i], joints[i])
+        for k in range(1, len(line)):
+            out[k, i] = line[k - 1, i]
 
 
 class TransportDelay(LeafSystem):
     """Delays each joint's command and turns it into the amplifier's voltage (thesis 6.1.3).
 
-    At every step it puts out the mean of the delayed command over the coming step, so a delay that is no
-    multiple of the step is still met exactly in the integral of the voltage.
+    The command is sampled at every step and held. The output is the mean of the delayed command over the
+    running step, so a delay that is no multiple of the step is met exactly in the integral of the voltage.
 
     Ports:
         in `command` (n): recorded or commanded voltage [V].
@@ -24,46 +37,40 @@ class TransportDelay(LeafSystem):
         """Build for the joints' records, shape (n,), and the diagram's step [s]."""
         super().__init__()
         self.set_name("transport_delay")
+        n = len(joints)
         self._joints = joints
-        self._step = step
-        self._delays = [transport_delay(joint) for joint in joints]
-        self.command = self.DeclareVectorInputPort("command", len(joints))
-        self._held = self.DeclareDiscreteState(np.zeros(len(joints)))
-        # Per joint the changes of the command that the amplifier has not yet seen: (time, voltage).
-        self._history = self.DeclareAbstractState(AbstractValue.Make([deque() for _ in joints]))
+        delays = np.empty(n)
+        _delays(joints, delays)
+        self._whole = np.floor(delays / step + 1e-9).astype(int)
+        self._rest = np.maximum(delays / step - self._whole, 0.0)
+        self._length = int(self._whole.max()) + 2
+        self._columns = np.arange(n)
+        self.command = self.DeclareVectorInputPort("command", n)
+        self._line = self.DeclareDiscreteState(np.zeros(self._length * n))
+        self.DeclareInitializationDiscreteUpdateEvent(self._fill)
+        # Unrestricted updates come before discrete ones at the same time, so the spool sees this step's voltage.
         self.DeclarePeriodicUnrestrictedUpdateEvent(step, 0.0, self._update)
         self.voltage = self.DeclareVectorOutputPort(
-            "voltage_delayed", len(joints), self._calc, prerequisites_of_calc={self.xd_ticket()}
+            "voltage_delayed", n, self._calc, prerequisites_of_calc={self.xd_ticket()}
         )
 
-    def _update(self, context: Context, state: State) -> None:
-        now = context.get_time()
-        command = self.command.Eval(context)
-        histories = [deque(h) for h in context.get_abstract_state(self._history).get_value()]
-        held = np.empty(len(histories))
-        for i, history in enumerate(histories):
-            voltage = drive_voltage(command[i], self._joints[i])
-            if not history:
-                history.append((-np.inf, voltage))  # before the start the first command stood
-            if voltage != history[-1][1]:
-                history.append((now, voltage))
-            held[i] = self._mean(history, now - self._delays[i])
-        state.get_mutable_abstract_state(self._history).set_value(histories)
-        state.get_mutable_discrete_state(self._held).SetFromVector(held)
+    def _fill(self, context: Context, values: DiscreteValues) -> None:
+        """Before the start the first command stood."""
+        line = np.zeros((self._length, len(self._joints)))
+        for _ in range(self._length):
+            moved = np.empty_like(line)
+            _shift(self._joints, line, self.command.Eval(context), moved)
+            line = moved
+        values.get_mutable_vector(self._line).SetFromVector(line.ravel())
 
-    def _mean(self, history: "deque[tuple[float, float]]", begin: float) -> float:
-        """Mean of the command over [begin, begin + step]; drops what lies before."""
-        tiny = 1e-9 * self._step
-        while len(history) > 1 and history[1][0] <= begin + tiny:
-            history.popleft()
-        end = begin + self._step
-        total, since, voltage = 0.0, begin, history[0][1]
-        for change, following in list(history)[1:]:
-            if change >= end - tiny:
-                break
-            total += voltage * (change - since)
-            since, voltage = change, following
-        return (total + voltage * (end - since)) / self._step
+    def _update(self, context: Context, state: State) -> None:
+        line = context.get_discrete_state(self._line).get_value().reshape(self._length, -1)
+        moved = np.empty_like(line)
+        _shift(self._joints, line, self.command.Eval(context), moved)
+        state.get_mutable_discrete_state(self._line).SetFromVector(moved.ravel())
 
     def _calc(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(context.get_discrete_state(self._held).get_value())
+        line = context.get_discrete_state(self._line).get_value().reshape(self._length, -1)
+        newer = line[self._whole, self._columns]
+        older = line[self._whole + 1, self._columns]
+        output.SetFromVector(newer + self._rest * (older - newer))
