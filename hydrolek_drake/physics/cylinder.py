@@ -108,11 +108,18 @@ def pressure_rates(
     stiffness_b = effective_bulk_modulus(p_b, joint) / volume_b
     rate_a = stiffness_a * (flow_a - p.area_a * velocity)
     rate_b = stiffness_b * (flow_b + p.area_b * velocity)
-    if p_a <= 0.0 and rate_a < 0.0:
-        rate_a = 0.0
-    if p_b <= 0.0 and rate_b < 0.0:
-        rate_b = 0.0
-    return rate_a, rate_b, stiffness_a, stiffness_b
+    return _floored(p_a, rate_a, joint), _floored(p_b, rate_b, joint), stiffness_a, stiffness_b
+
+
+@njit
+def _floored(pressure: float, rate: float, joint: Any) -> float:
+    """The rate with which a pressure may fall: none at zero, and no faster towards it than its time constant."""
+    time_constant = joint.fluid.floor_time
+    if time_constant > 0.0:
+        return max(rate, -pressure / time_constant)
+    if pressure <= 0.0 and rate < 0.0:
+        return 0.0
+    return rate
 
 
 @njit

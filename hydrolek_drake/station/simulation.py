@@ -17,6 +17,9 @@ _EARLY = (
     1e-9  # seconds by which a played-back command comes early, so that rounding never makes it a step late
 )
 
+# With the actuators' forces one step ahead, Drake's semi-explicit Euler is symplectic in pressure and velocity too.
+_SCHEMES = {"runge_kutta2": "runge_kutta2", "symplectic_euler": "semi_explicit_euler"}
+
 
 @dataclass(frozen=True)
 class Run:
@@ -121,7 +124,7 @@ def run(
     _fix_supply(station, context, 1.0)
     simulator = Simulator(station.diagram, context)
     config = SimulatorConfig(
-        integration_scheme="runge_kutta2",
+        integration_scheme=_SCHEMES[station.sizes.integrator],
         max_step_size=station.sizes.step,
         use_error_control=False,
         target_realtime_rate=realtime_rate,

@@ -37,11 +37,19 @@ class StepSizes:
         plant_step: of a discrete MultibodyPlant [s], as contact needs it; 0 for a continuous plant, which is
             more accurate.
         log_period: how often signals are written [s].
+        integrator: "runge_kutta2", or "symplectic_euler", which asks for one evaluation a step instead of two
+            and is of first order.
     """
 
     step: float = 1e-3
     plant_step: float = 0.0
     log_period: float = 1e-2
+    integrator: str = "runge_kutta2"
+
+    def __post_init__(self) -> None:
+        """Refuse an integrator that the actuators are not built for."""
+        if self.integrator not in ("runge_kutta2", "symplectic_euler"):
+            raise InputError(f"integrator '{self.integrator}' is unknown; use runge_kutta2 or symplectic_euler")
 
 
 @dataclass(frozen=True)
@@ -194,9 +202,10 @@ def _wire_mechanics(builder, add, rig: Rig, joints: np.ndarray, body: RigPlant) 
 
 
 def _wire_hydraulics(builder, add, rig, joints, sizes, delay, parts) -> None:  # type: ignore[no-untyped-def]
+    ahead = sizes.step if sizes.integrator == "symplectic_euler" and sizes.plant_step == 0.0 else 0.0
     amplifier = add(ProportionalAmplifier(joints))
     spool = add(SolenoidSpool(joints, sizes.step, round(rig.value("integration.spool_steps"))))
-    valve, supply, actuator = add(FourWayValve(joints)), add(Supply(joints)), add(Actuator(joints))
+    valve, supply, actuator = add(FourWayValve(joints)), add(Supply(joints)), add(Actuator(joints, ahead))
     builder.Connect(delay.voltage, amplifier.voltage)
     builder.Connect(amplifier.current, spool.current)
     builder.Connect(spool.position, valve.spool)

@@ -24,12 +24,24 @@ def _rates(
 
 @njit(cache=True)
 def _forces(
-    joints: np.ndarray, pressure: np.ndarray, motion: np.ndarray, time: float, out: np.ndarray
+    joints: np.ndarray,
+    pressure: np.ndarray,
+    flow: np.ndarray,
+    motion: np.ndarray,
+    time: float,
+    ahead: float,
+    out: np.ndarray,
 ) -> None:
     n = len(joints)
     for i in range(n):
-        friction, _ = friction_force(motion[i], motion[n + i], time, joints[i])
-        out[i] = pressure_force(pressure[i], pressure[n + i], joints[i]) - friction
+        joint = joints[i]
+        friction, _ = friction_force(motion[i], motion[n + i], time, joint)
+        p_a, p_b = pressure[i], pressure[n + i]
+        if ahead > 0.0:
+            rate_a, rate_b, _, _ = pressure_rates(p_a, p_b, flow[i], flow[n + i], motion[i], motion[n + i], joint)
+            p_a += ahead * rate_a
+            p_b += ahead * rate_b
+        out[i] = pressure_force(p_a, p_b, joint) - friction
 
 
 class Actuator(LeafSystem):
@@ -42,12 +54,21 @@ class Actuator(LeafSystem):
         out `rod_force` (n): positive pushes out [N]; moments [N m] for vane and motor.
     """
 
-    def __init__(self, joints: np.ndarray):
-        """Build for the joints' records, shape (n,)."""
+    def __init__(self, joints: np.ndarray, ahead: float):
+        """Build for the joints' records.
+
+        Args:
+            joints: shape (n,).
+            ahead: the force belongs to the pressures this much later [s]. One step for an explicit Euler
+                integrator, which this turns into the symplectic one: stable for oil springs where the plain
+                one is not. Zero for any other integrator.
+        """
         super().__init__()
         self.set_name("actuator")
+        self._ahead = ahead
         n = len(joints)
         self._joints = joints
+        self._no_flow = np.zeros(3 * n)
         self.flow = self.DeclareVectorInputPort("oil_flow", 3 * n)
         self.motion = self.DeclareVectorInputPort("rod_motion", 2 * n)
         self._state = self.DeclareContinuousState(BasicVector(2 * n))
@@ -56,7 +77,8 @@ class Actuator(LeafSystem):
             "rod_force",
             n,
             self._calc_force,
-            prerequisites_of_calc={self.xc_ticket(), self.time_ticket(), self.motion.ticket()},
+            prerequisites_of_calc={self.xc_ticket(), self.time_ticket(), self.motion.ticket()}
+            | ({self.flow.ticket()} if ahead > 0.0 else set()),
         )
 
     def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:
@@ -69,5 +91,6 @@ class Actuator(LeafSystem):
     def _calc_force(self, context: Context, output: BasicVector) -> None:
         force = np.empty(len(self._joints))
         pressure = context.get_continuous_state_vector().CopyToVector()
-        _forces(self._joints, pressure, self.motion.Eval(context), context.get_time(), force)
+        flow = self.flow.Eval(context) if self._ahead > 0.0 else self._no_flow
+        _forces(self._joints, pressure, flow, self.motion.Eval(context), context.get_time(), self._ahead, force)
         output.SetFromVector(force)

@@ -85,7 +85,7 @@ def _pushes(
     p_child: np.ndarray,
     out: np.ndarray,
 ) -> None:
-    """Each cylinder's force on its child body in the world frame [N], shape (mounts, 3).
+    """Each cylinder's force [N] on its child body in the world frame, shape (mounts, 3).
 
     World poses of the moving bodies by Rodrigues' formula along the tree, then the unit vector between mounts.
     """
@@ -210,14 +210,18 @@ class Linkage(LeafSystem):
         )
 
     def _force_templates(self) -> list[ExternallyAppliedSpatialForce]:
-        forces = []
-        for mount in self._mounts:
-            for body, point in ((mount.child, mount.p_child), (mount.parent, mount.p_parent)):
+        forces, rows, signs = [], [], []
+        for row, mount in enumerate(self._mounts):
+            for body, point, sign in ((mount.child, mount.p_child, 1.0), (mount.parent, mount.p_parent, -1.0)):
                 if body is not None:
                     force = ExternallyAppliedSpatialForce()
                     force.body_index = body
                     force.p_BoBq_B = point
                     forces.append(force)
+                    rows.append(row)
+                    signs.append(sign)
+        self._row = np.array(rows, dtype=int)
+        self._sign = np.array(signs).reshape(-1, 1)
         return forces
 
     def _calc_joint_motion(self, context: Context, output: BasicVector) -> None:
@@ -253,10 +257,7 @@ class Linkage(LeafSystem):
             self._p_child,
             pushes,
         )
-        templates = iter(self._forces)
         no_torque = np.zeros(3)
-        for mount, push in zip(self._mounts, pushes, strict=True):
-            next(templates).F_Bq_W = SpatialForce(no_torque, push)
-            if mount.parent is not None:
-                next(templates).F_Bq_W = SpatialForce(no_torque, -push)
+        for force, push in zip(self._forces, list(pushes[self._row] * self._sign), strict=True):
+            force.F_Bq_W = SpatialForce(no_torque, push)
         output.set_value(self._forces)
