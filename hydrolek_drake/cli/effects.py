@@ -11,11 +11,10 @@ def effects(
     ] = None,
 ) -> None:
     """List the known effects, or show one in full."""
-    from rich.console import Console
-
+    from hydrolek_drake.cli.output import console
     from hydrolek_drake.effects.catalogue import EFFECTS, effect_named
 
-    console = Console(highlight=False)
+    out = console()
     if effect_id is None:
         from rich.table import Table
 
@@ -25,7 +24,7 @@ def effects(
         table.add_column("stage", no_wrap=True)
         for effect in sorted(EFFECTS.values(), key=lambda effect: effect.id):
             table.add_row(effect.id, effect.title, effect.stage)
-        console.print(table)
+        out.print(table)
         return
     effect = effect_named(effect_id)
     lines = [
@@ -49,4 +48,4 @@ def effects(
         lines += ["", "can be confused with"]
         lines += [f"  {other}: {difference}" for other, difference in effect.confused_with.items()]
     for line in lines:
-        console.print(line, markup=False, soft_wrap=True)
+        out.print(line, markup=False, soft_wrap=True)

@@ -30,13 +30,14 @@ def replay(
     """Drive a rig's model with a recorded command and compare it with what was measured."""
     from rich.console import Console
 
+    from hydrolek_drake.cli.output import console
     from hydrolek_drake.recordings import read_recording
     from hydrolek_drake.replay import compare
     from hydrolek_drake.replay import replay as run_replay
     from hydrolek_drake.replay.table import signal_table
     from hydrolek_drake.rigs import load_rig
 
-    console, progress = Console(highlight=False), Console(stderr=True)
+    output, progress = console(), Console(stderr=True)
     loaded = load_rig(rig, parse_settings(set_))
     folders = _folders(recordings, out)
     for path in recordings:
@@ -44,23 +45,23 @@ def replay(
             replayed = run_replay(loaded, read_recording(path, loaded.columns), between)
             comparisons = compare(replayed)
         if len(recordings) > 1:
-            console.print(f"{path}", style="bold", markup=False)
+            output.print(f"{path}", style="bold", markup=False)
         for comparison in comparisons:
-            console.print(comparison.sentence(), markup=False, soft_wrap=True)
+            output.print(comparison.sentence(), markup=False, soft_wrap=True)
         for note in replayed.notes:
-            console.print(f"note: {note}", markup=False, soft_wrap=True)
+            output.print(f"note: {note}", markup=False, soft_wrap=True)
         for finding in replayed.recording.findings:
-            console.print(f"recording: {finding.message}", markup=False, soft_wrap=True)
-        console.print()
-        console.print(signal_table(comparisons))
+            output.print(f"recording: {finding.message}", markup=False, soft_wrap=True)
+        output.print()
+        output.print(signal_table(comparisons))
         if folders:
             from hydrolek_drake.replay.report import write_report
 
             with progress.status("writing the report"):
                 page = write_report(replayed, comparisons, folders[path])
-            console.print(f"\nreport: {page}", markup=False, soft_wrap=True)
+            output.print(f"\nreport: {page}", markup=False, soft_wrap=True)
         if path is not recordings[-1]:
-            console.print()
+            output.print()
 
 
 def _folders(recordings: list[Path], out: Path | None) -> dict[Path, Path]:

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from hydrolek_drake.rigs import Entry, Rig
 
 _OFF = "neutral:"
-_WIDTH_OF_FILES = 200  # letters: what goes to a file or a pipe is searched by line
 
 
 def rigs(
@@ -22,13 +21,10 @@ def rigs(
     set_: SetOption = None,
 ) -> None:
     """List the built-in rigs, or one rig's parameters with value, unit, range and source."""
-    from rich.console import Console
-
+    from hydrolek_drake.cli.output import console
     from hydrolek_drake.rigs import built_in_rigs, load_rig
 
-    console = Console(highlight=False)
-    if not console.is_terminal:
-        console.width = _WIDTH_OF_FILES
+    out = console()
     if name is None:
         from rich.table import Table
 
@@ -37,13 +33,13 @@ def rigs(
         table.add_column("machine")
         for built_in in built_in_rigs():
             table.add_row(built_in, load_rig(built_in).title)
-        console.print(table)
+        out.print(table)
         return
     rig = load_rig(name, parse_settings(set_))
-    console.print(f"{rig.name}: {rig.title}", markup=False, soft_wrap=True)
-    console.print(_parameters(rig))
+    out.print(f"{rig.name}: {rig.title}", markup=False, soft_wrap=True)
+    out.print(_parameters(rig))
     off = sum(_is_off(entry) for entry in rig.entries.values())
-    console.print(f"{off} parameters of physics that this machine does not have, or of effects, are off")
+    out.print(f"{off} parameters of physics that this machine does not have, or of effects, are off")
 
 
 def _is_off(entry: "Entry") -> bool:
