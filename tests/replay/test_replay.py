@@ -160,3 +160,47 @@ def test_divergence_is_a_note_and_is_compared_up_to_there():
     (axis,) = compare(result)
     assert 0 < axis.samples < time.size
     assert any("left all bounds at" in note for note in result.notes)
+
+
+@pytest.fixture
+def two_joint_rig(tmp_path):
+    path = tmp_path / "two_joints.yaml"
+    path.write_text(
+        "name: two_joints\nbased_on: joint_bench\njoints:\n  other:\n    like: joint\n"
+        "effects:\n  supply.pressure_droop:\n"
+        "    resistance_Pa_s_per_m3: {value: 2.0e+10, unit: Pa s/m^3, source: test}\n"
+    )
+    return load_rig(path)
+
+
+def _two_joint_recording(recording, command_other):
+    command, angle = recording.signal("joint.command"), recording.signal("joint.angle")
+    signals = {
+        "joint.command": command,
+        "joint.angle": angle,
+        "supply.pressure": np.full(angle.size, 16e6),
+        "other.angle": angle,
+    }
+    if command_other is not None:
+        signals["other.command"] = command_other
+    return Recording("two", recording.time, signals, recording.source)
+
+
+def test_joints_draw_on_one_supply(two_joint_rig, bench_recording):
+    recording = bench_recording("practice_01")
+    both = replay(
+        two_joint_rig, _two_joint_recording(recording, recording.signal("joint.command")), (0.0, 6.0)
+    )
+    assert list(both.outcomes) == ["joint", "other"]
+    (supply,) = [pair for pair in both.pairs if pair.key == "supply.pressure"]
+    full = two_joint_rig.value("supply.pressure")
+    one = both.outcomes["joint"].signals.supply_pressure
+    assert one.min() < full - 1e5
+    np.testing.assert_allclose(full - supply.model, 2.0 * (full - one), rtol=1e-9, atol=1.0)
+    assert supply.joint is None
+
+
+def test_joint_without_command_is_left_out_and_said_to_be(two_joint_rig, bench_recording):
+    result = replay(two_joint_rig, _two_joint_recording(bench_recording("practice_01"), None), (0.0, 6.0))
+    assert list(result.outcomes) == ["joint"]
+    assert any("other has no command" in note for note in result.notes)
