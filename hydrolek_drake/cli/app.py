@@ -1,0 +1,129 @@
+"""`hydrolek`: finds the command, runs it, and turns bad input into one line and exit status 2.
+
+Only the module of the command that was asked for is loaded, so that `hydrolek --help` answers at once.
+"""
+
+import difflib
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from hydrolek_drake.errors import InputError
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+
+
+class CommandEntry(NamedTuple):
+    """Where a command lives; the attribute is a function with typer's annotations, or a typer app."""
+
+    module: str
+    attribute: str
+    line: str
+
+
+COMMANDS: dict[str, CommandEntry] = {
+    "replay": CommandEntry(
+        "hydrolek_drake.cli.replay", "replay", "drive a rig's model with a recorded command and compare"
+    ),
+    "effects": CommandEntry(
+        "hydrolek_drake.cli.effects", "effects", "list the known effects, or show one in full"
+    ),
+    "rigs": CommandEntry(
+        "hydrolek_drake.cli.rigs", "rigs", "list the built-in rigs, or one rig's parameters"
+    ),
+}
+"""Name -> entry, in the order of the help."""
+
+
+def main() -> None:
+    """Entry point of the `hydrolek` program."""
+    sys.exit(run(sys.argv[1:]))
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run one command line.
+
+    Returns:
+        Exit status: 0 for success, 2 for bad input, 130 if the user interrupted.
+    """
+    try:
+        return _dispatch(list(arguments))
+    except InputError as error:
+        return _refuse(str(error), BAD_INPUT)
+    except KeyboardInterrupt:
+        return _refuse("interrupted", INTERRUPTED)
+    except BrokenPipeError:  # the reader, such as `head`, has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+
+
+def _dispatch(arguments: list[str]) -> int:
+    if not arguments or arguments[0] in ("-h", "--help", "help"):
+        print(_overview())
+        return 0
+    name, *rest = arguments
+    if name == "--version":
+        from hydrolek_drake import __version__
+
+        print(f"hydrolek {__version__}")
+        return 0
+    if name not in COMMANDS:
+        kind = "option" if name.startswith("-") else "command"
+        near = difflib.get_close_matches(name, COMMANDS, n=2)
+        hint = f"did you mean {' or '.join(near)}? " if near else ""
+        raise InputError(
+            f"no {kind} '{name}'; {hint}the commands are {', '.join(COMMANDS)}; see hydrolek --help"
+        )
+    return _run_command(name, rest)
+
+
+def _run_command(name: str, arguments: list[str]) -> int:
+    import typer
+
+    entry = COMMANDS[name]
+    found: Any = getattr(importlib.import_module(entry.module), entry.attribute)
+    if not isinstance(found, typer.Typer):
+        app = typer.Typer(add_completion=False, rich_markup_mode=None)
+        app.command()(found)
+        found = app
+    click_error = typer.BadParameter.__mro__[
+        2
+    ]  # ClickException: some versions of typer carry their own click
+    assert issubclass(click_error, Exception)
+    try:
+        status = typer.main.get_command(found).main(
+            arguments, prog_name=f"hydrolek {name}", standalone_mode=False
+        )
+    except click_error as error:
+        said: Any = error  # its type is typer's or click's
+        problem = " ".join(said.format_message().split()).rstrip(".")
+        return _refuse(f"{name}: {problem}; see hydrolek {name} --help", BAD_INPUT)
+    except typer.Abort:
+        return _refuse("interrupted", INTERRUPTED)
+    if status == INTERRUPTED:
+        return _refuse("interrupted", INTERRUPTED)
+    return status if isinstance(status, int) else 0
+
+
+def _overview() -> str:
+    width = max(map(len, COMMANDS))
+    return "\n".join(
+        [
+            "usage: hydrolek COMMAND ...",
+            "",
+            "Digital twin of hydraulic manipulators: replay recordings, find the physics that is missing.",
+            "",
+            "commands:",
+            *(f"  {name:<{width}}  {entry.line}" for name, entry in COMMANDS.items()),
+            "",
+            "hydrolek COMMAND --help tells more; exit status 0 is success, 2 bad input.",
+        ]
+    )
+
+
+def _refuse(message: str, status: int) -> int:
+    print(f"hydrolek: {' '.join(message.split())}", file=sys.stderr)
+    return status

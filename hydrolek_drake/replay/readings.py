@@ -1,0 +1,93 @@
+"""Which signals of a recording a joint's model can be held against, and both of them in the same unit."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.physics import sensor
+from hydrolek_drake.recordings import Recording, require
+from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rollout.rollout import Signals
+
+SUPPLY_KEY = "supply.pressure"
+
+
+@dataclass(frozen=True)
+class Pair:
+    """One signal as measured and as the model has it.
+
+    Attributes:
+        key: `<joint>.<quantity>` or `supply.pressure`.
+        unit: SI unit of both.
+        joint: whose movement explains the signal; None if several joints share it.
+        measured: NaN where the recording has no value. # (n,)
+        model: NaN after a divergence. # (n,)
+    """
+
+    key: str
+    unit: str
+    joint: str | None
+    measured: np.ndarray
+    model: np.ndarray
+
+    @property
+    def residual(self) -> np.ndarray:
+        """Measured minus model."""
+        return self.measured - self.model
+
+
+def position_key(rig: Rig, joint: str) -> str:
+    """Key of the joint's position: `<joint>.angle` if it turns, `<joint>.position` if it slides."""
+    return f"{joint}.{'position' if rig.variant(joint, 'load') == 'sliding' else 'angle'}"
+
+
+def measured_position(rig: Rig, joint: str, recording: Recording) -> np.ndarray:
+    """The recorded position [rad or m]; a potentiometer's voltage is converted with (3.3).
+
+    Raises:
+        InputError: the recording has neither, or the rig does not say how volts become an angle.
+    """
+    key, pot = position_key(rig, joint), f"{joint}.pot"
+    if key in recording.signals or pot not in recording.signals:
+        require(recording, [key])
+        return recording.signal(key)
+    if rig.variant(joint, "sensor") != "potentiometer":
+        raise InputError(
+            f"{recording.source}: {pot} is there but not {key}, and rig {rig.name} has no potentiometer at "
+            f"{joint}; record {key}, or give joints.{joint}.sensor the variant potentiometer with "
+            "volts_per_degree and zero_voltage"
+        )
+    require(recording, [pot], units={pot: "V"})
+    record: Any = rig.records()[rig.joints.index(joint)]
+    volts: Any = recording.signal(pot)  # Any: the equation is compiled for whatever it is given
+    return np.radians(sensor.angle_from_voltage(volts, record))
+
+
+def pairs_of_joint(rig: Rig, joint: str, recording: Recording, signals: Signals) -> list[Pair]:
+    """Position, and chamber pressures where they were recorded and the joint has chambers."""
+    key = position_key(rig, joint)
+    unit = "m" if key.endswith(".position") else "rad"
+    pairs = [Pair(key, unit, joint, measured_position(rig, joint, recording), signals.reading)]
+    if rig.variant(joint, "cylinder") != "electric_motor":
+        for quantity in ("pressure_a", "pressure_b"):
+            key = f"{joint}.{quantity}"
+            if key in recording.signals:
+                pairs.append(Pair(key, "Pa", joint, recording.signal(key), getattr(signals, quantity)))
+    return pairs
+
+
+def supply_pair(rig: Rig, recording: Recording, by_joint: dict[str, Signals]) -> Pair | None:
+    """The supply pressure, if it was recorded and a joint draws from it.
+
+    Each joint's rollout knows only its own demand, so the falls below the rig's pressure are added up.
+    """
+    drawing = [joint for joint in by_joint if rig.variant(joint, "cylinder") != "electric_motor"]
+    if SUPPLY_KEY not in recording.signals or not drawing:
+        return None
+    full = rig.value("supply.pressure")
+    model = full + sum((by_joint[joint].supply_pressure - full for joint in drawing), np.zeros(1))
+    return Pair(
+        SUPPLY_KEY, "Pa", drawing[0] if len(drawing) == 1 else None, recording.signal(SUPPLY_KEY), model
+    )
