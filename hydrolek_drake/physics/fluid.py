@@ -17,7 +17,9 @@ STAGE = Stage(
         Parameter(
             "laminar_transition", "Pa", "pressure drop below which orifice flow turns laminar", lowest=0.0
         ),
-        Parameter("floor_time", "s", "time constant with which a pressure may fall to zero", neutral=0.0, lowest=0.0),
+        Parameter(
+            "floor_time", "s", "time constant with which a pressure may fall to zero", neutral=0.0, lowest=0.0
+        ),
         Parameter("atmospheric_pressure", "Pa", "pressure to which an air content refers", lowest=0.0),
     ),
     {"oil": ()},

@@ -15,6 +15,7 @@ from pydrake.multibody.tree import (
     RigidBody,
     SpatialInertia,
     UnitInertia,
+    default_model_instance,
 )
 from pydrake.systems.framework import DiagramBuilder
 
@@ -55,16 +56,20 @@ def add_plant(builder: DiagramBuilder, rig: Rig, joints: np.ndarray, time_step: 
     """
     payloads: list[Payload] = []
     if rig.variant(rig.joints[0], "load") == "arm":
+        carrying: set[str] = set()
 
         def finish(plant: MultibodyPlant) -> None:
             for name, joint in zip(rig.joints, joints, strict=True):
                 _add_rod_inertia(plant, name, joint)
-                tool = plant.GetFrameByName(f"{name.split('_')[0]}_tool")
-                payloads.extend(
-                    _payload(
-                        plant, name, joint, lambda body, tool=tool: plant.WeldFrames(tool, body.body_frame())
-                    )
+                side = name.split("_")[0]
+                if side in carrying:  # all joints of an arm feel the same payload; it hangs there once
+                    continue
+                tool = plant.GetFrameByName(f"{side}_tool")
+                added = _payload(
+                    plant, name, joint, lambda body, tool=tool: plant.WeldFrames(tool, body.body_frame())
                 )
+                carrying.update({side} if added else ())
+                payloads.extend(added)
 
         others = {name: 0.0 for name in arm_joint_names() if name not in rig.joints}
         arms = add_arms(
@@ -140,7 +145,9 @@ def _payload(
     if mass == 0.0:
         return []
     body = plant.AddRigidBody(
-        f"{name}_payload", SpatialInertia(mass, np.zeros(3), UnitInertia(0.0, 0.0, 0.0))
+        f"{name}_payload",
+        default_model_instance(),
+        SpatialInertia(mass, np.zeros(3), UnitInertia(0.0, 0.0, 0.0)),
     )
     weld(body)
     return [Payload(body, mass, float(effect["time_s"]))]

@@ -49,7 +49,9 @@ class StepSizes:
     def __post_init__(self) -> None:
         """Refuse an integrator that the actuators are not built for."""
         if self.integrator not in ("runge_kutta2", "symplectic_euler"):
-            raise InputError(f"integrator '{self.integrator}' is unknown; use runge_kutta2 or symplectic_euler")
+            raise InputError(
+                f"integrator '{self.integrator}' is unknown; use runge_kutta2 or symplectic_euler"
+            )
 
 
 @dataclass(frozen=True)

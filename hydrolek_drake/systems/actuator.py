@@ -38,7 +38,9 @@ def _forces(
         friction, _ = friction_force(motion[i], motion[n + i], time, joint)
         p_a, p_b = pressure[i], pressure[n + i]
         if ahead > 0.0:
-            rate_a, rate_b, _, _ = pressure_rates(p_a, p_b, flow[i], flow[n + i], motion[i], motion[n + i], joint)
+            rate_a, rate_b, _, _ = pressure_rates(
+                p_a, p_b, flow[i], flow[n + i], motion[i], motion[n + i], joint
+            )
             p_a += ahead * rate_a
             p_b += ahead * rate_b
         out[i] = pressure_force(p_a, p_b, joint) - friction
@@ -92,5 +94,7 @@ class Actuator(LeafSystem):
         force = np.empty(len(self._joints))
         pressure = context.get_continuous_state_vector().CopyToVector()
         flow = self.flow.Eval(context) if self._ahead > 0.0 else self._no_flow
-        _forces(self._joints, pressure, flow, self.motion.Eval(context), context.get_time(), self._ahead, force)
+        _forces(
+            self._joints, pressure, flow, self.motion.Eval(context), context.get_time(), self._ahead, force
+        )
         output.SetFromVector(force)

@@ -64,7 +64,9 @@ def _rod_motion(joints: np.ndarray, state: np.ndarray, q: np.ndarray, w: np.ndar
 
 
 @njit(cache=True)
-def _moments(joints: np.ndarray, state: np.ndarray, q: np.ndarray, force: np.ndarray, out: np.ndarray) -> None:
+def _moments(
+    joints: np.ndarray, state: np.ndarray, q: np.ndarray, force: np.ndarray, out: np.ndarray
+) -> None:
     for i in range(len(joints)):
         _, lever = stroke_and_lever(state[q[i]], joints[i])
         out[i] = lever * force[i]
@@ -212,7 +214,10 @@ class Linkage(LeafSystem):
     def _force_templates(self) -> list[ExternallyAppliedSpatialForce]:
         forces, rows, signs = [], [], []
         for row, mount in enumerate(self._mounts):
-            for body, point, sign in ((mount.child, mount.p_child, 1.0), (mount.parent, mount.p_parent, -1.0)):
+            for body, point, sign in (
+                (mount.child, mount.p_child, 1.0),
+                (mount.parent, mount.p_parent, -1.0),
+            ):
                 if body is not None:
                     force = ExternallyAppliedSpatialForce()
                     force.body_index = body

@@ -2,7 +2,7 @@
 
 import numpy as np
 from numba import njit
-from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
+from pydrake.systems.framework import Context, DiscreteValues, LeafSystem
 
 from hydrolek_drake.physics.solenoid import advance
 
@@ -38,17 +38,15 @@ class SolenoidSpool(LeafSystem):
         self._step = step
         self._substeps = substeps
         self.current = self.DeclareVectorInputPort("coil_current", 2 * n)
-        self._state = self.DeclareDiscreteState(np.zeros(3 * n))
+        self._state = self.DeclareDiscreteState(np.zeros(2 * n))
+        self._mean = self.DeclareDiscreteState(np.zeros(n))
         self.DeclarePeriodicDiscreteUpdateEvent(step, 0.0, self._update)
-        self.position = self.DeclareVectorOutputPort(
-            "spool_position", n, self._calc, prerequisites_of_calc={self.xd_ticket()}
-        )
+        self.position = self.DeclareStateOutputPort("spool_position", self._mean)
 
     def _update(self, context: Context, values: DiscreteValues) -> None:
         following = np.empty(3 * len(self._joints))
         state = context.get_discrete_state(self._state).get_value()
         _advance(self._joints, state, self.current.Eval(context), self._step, self._substeps, following)
-        values.get_mutable_vector(self._state).SetFromVector(following)
-
-    def _calc(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(context.get_discrete_state(self._state).get_value()[2 * len(self._joints) :])
+        n = len(self._joints)
+        values.get_mutable_vector(self._state).SetFromVector(following[: 2 * n])
+        values.get_mutable_vector(self._mean).SetFromVector(following[2 * n :])

@@ -2,7 +2,7 @@
 
 import numpy as np
 from numba import njit
-from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem, State
+from pydrake.systems.framework import Context, DiscreteValues, LeafSystem, State
 
 from hydrolek_drake.physics.command import drive_voltage, transport_delay
 
@@ -47,12 +47,11 @@ class TransportDelay(LeafSystem):
         self._columns = np.arange(n)
         self.command = self.DeclareVectorInputPort("command", n)
         self._line = self.DeclareDiscreteState(np.zeros(self._length * n))
+        self._out = self.DeclareDiscreteState(np.zeros(n))
         self.DeclareInitializationDiscreteUpdateEvent(self._fill)
         # Unrestricted updates come before discrete ones at the same time, so the spool sees this step's voltage.
         self.DeclarePeriodicUnrestrictedUpdateEvent(step, 0.0, self._update)
-        self.voltage = self.DeclareVectorOutputPort(
-            "voltage_delayed", n, self._calc, prerequisites_of_calc={self.xd_ticket()}
-        )
+        self.voltage = self.DeclareStateOutputPort("voltage_delayed", self._out)
 
     def _fill(self, context: Context, values: DiscreteValues) -> None:
         """Before the start the first command stood."""
@@ -62,15 +61,13 @@ class TransportDelay(LeafSystem):
             _shift(self._joints, line, self.command.Eval(context), moved)
             line = moved
         values.get_mutable_vector(self._line).SetFromVector(line.ravel())
+        values.get_mutable_vector(self._out).SetFromVector(line[0])
 
     def _update(self, context: Context, state: State) -> None:
         line = context.get_discrete_state(self._line).get_value().reshape(self._length, -1)
         moved = np.empty_like(line)
         _shift(self._joints, line, self.command.Eval(context), moved)
         state.get_mutable_discrete_state(self._line).SetFromVector(moved.ravel())
-
-    def _calc(self, context: Context, output: BasicVector) -> None:
-        line = context.get_discrete_state(self._line).get_value().reshape(self._length, -1)
-        newer = line[self._whole, self._columns]
-        older = line[self._whole + 1, self._columns]
-        output.SetFromVector(newer + self._rest * (older - newer))
+        newer = moved[self._whole, self._columns]
+        older = moved[self._whole + 1, self._columns]
+        state.get_mutable_discrete_state(self._out).SetFromVector(newer + self._rest * (older - newer))
