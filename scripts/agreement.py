@@ -102,8 +102,10 @@ def write(
     lines = [
         "# Diagram and rollout agree",
         "",
-        f"Measured {datetime.date.today()} with `scripts/agreement.py`: {arguments.duration:g} s of random voltage, "
-        f"diagram at {arguments.step * 1e3:g} ms, rollout at a fifth of that. Largest difference of all: {worst:.4f} deg "
+        f"Measured {datetime.date.today()} with `scripts/agreement.py`: "
+        f"{arguments.duration:g} s of random voltage, "
+        f"diagram at {arguments.step * 1e3:g} ms, rollout at a fifth of that. "
+        f"Largest difference of all: {worst:.4f} deg "
         "(required: 0.02 deg).",
         "",
         "| joint | effect on | rms [deg] | largest [deg] |",

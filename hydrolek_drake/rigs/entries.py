@@ -61,7 +61,8 @@ def parse_entry(raw: Any, parameter: Parameter, where: str) -> Entry:
     value = _number(raw["value"], where) * factor
     if not parameter.lowest <= value <= parameter.highest:
         raise InputError(
-            f"{where}: value {value:g} {unit} is impossible; it must lie between {parameter.lowest:g} and {parameter.highest:g}"
+            f"{where}: value {value:g} {unit} is impossible; "
+            f"it must lie between {parameter.lowest:g} and {parameter.highest:g}"
         )
     limits = None
     if "range" in raw:

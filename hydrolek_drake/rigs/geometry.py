@@ -52,7 +52,8 @@ def _check_triangle(rig: "Rig", where: str, lower: float, upper: float) -> None:
         included = direction * position + offset
         if not 0.0 < included < math.pi:
             raise InputError(
-                f"{rig.path}: {where}.linkage: impossible triangle, at {name} ({math.degrees(position):.1f} deg) the angle "
+                f"{rig.path}: {where}.linkage: impossible triangle, at {name} "
+                f"({math.degrees(position):.1f} deg) the angle "
                 f"between the mounts is {math.degrees(included):.1f} deg; it must stay between 0 and 180"
             )
     if rig.variants[f"{where}.cylinder"] == "cylinder":
@@ -61,7 +62,8 @@ def _check_triangle(rig: "Rig", where: str, lower: float, upper: float) -> None:
         zero = rig.value(f"{where}.linkage.zero_stroke_length")
         if zero > shortest * (1.0 + 1e-6) + 1e-6:
             raise InputError(
-                f"{rig.path}: {where}.linkage.zero_stroke_length: {zero:g} m is longer than the mounts ever come together ({shortest:g} m)"
+                f"{rig.path}: {where}.linkage.zero_stroke_length: {zero:g} m is longer than the mounts "
+                f"ever come together ({shortest:g} m)"
             )
 
 
@@ -72,7 +74,8 @@ def _check_valve(rig: "Rig", where: str) -> None:
         overlap, full = (rig.value(f"{where}.valve.{name}_{side}") for name in ("overlap", "full_opening"))
         if not overlap < full:
             raise InputError(
-                f"{rig.path}: {where}.valve: full_opening_{side} ({full:g} m) must be larger than overlap_{side} ({overlap:g} m)"
+                f"{rig.path}: {where}.valve: full_opening_{side} ({full:g} m) must be larger than "
+                f"overlap_{side} ({overlap:g} m)"
             )
 
 

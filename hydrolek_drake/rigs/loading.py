@@ -13,7 +13,8 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs.rig import Rig
 
 _TOP_KEYS = (
-    "schema", "name", "title", "source", "based_on", "keep", "supply", "fluid", "joints", "effects", "recording", "integration",
+    "schema", "name", "title", "source", "based_on", "keep",
+    "supply", "fluid", "joints", "effects", "recording", "integration",
 )  # fmt: skip
 
 

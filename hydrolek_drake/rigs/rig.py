@@ -64,7 +64,8 @@ class Rig:
             for section in sections:
                 if section not in JOINT_STAGES and section != "effects":
                     raise InputError(
-                        f"{path}: joints.{joint}.{section}: unknown stage; a joint has {', '.join([*JOINT_STAGES, 'effects'])}"
+                        f"{path}: joints.{joint}.{section}: unknown stage; "
+                        f"a joint has {', '.join([*JOINT_STAGES, 'effects'])}"
                     )
             for name, stage in JOINT_STAGES.items():
                 _read_stage(sections.get(name), stage, f"joints.{joint}.{name}", path, variants, entries)

@@ -219,7 +219,7 @@ def integrate(
             if following <= last and command_times[following] + delay < target:
                 until = max(command_times[following] + delay, t)
             voltage = command.drive_voltage(command_values[held], joint)
-            steps = max(int(math.ceil((until - t) / longest_step - 1e-9)), 1)
+            steps = max(math.ceil((until - t) / longest_step - 1e-9), 1)
             h = (until - t) / steps
             if h > 0.0:
                 for i in range(steps):

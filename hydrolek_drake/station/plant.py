@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from pydrake.geometry import Cylinder, SceneGraph
@@ -10,6 +11,7 @@ from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, MultibodyPlant
 from pydrake.multibody.tree import (
     FixedOffsetFrame,
+    Frame,
     PrismaticJoint,
     RevoluteJoint,
     RigidBody,
@@ -65,9 +67,7 @@ def add_plant(builder: DiagramBuilder, rig: Rig, joints: np.ndarray, time_step: 
                 if side in carrying:  # all joints of an arm feel the same payload; it hangs there once
                     continue
                 tool = plant.GetFrameByName(f"{side}_tool")
-                added = _payload(
-                    plant, name, joint, lambda body, tool=tool: plant.WeldFrames(tool, body.body_frame())
-                )
+                added = _payload(plant, name, joint, partial(_weld_to, plant, tool))
                 carrying.update({side} if added else ())
                 payloads.extend(added)
 
@@ -135,6 +135,10 @@ def _add_simple_joint(plant: MultibodyPlant, name: str, joint: np.ndarray) -> li
     return _payload(
         plant, name, joint, lambda added: plant.WeldFrames(body.body_frame(), added.body_frame(), tip)
     )
+
+
+def _weld_to(plant: MultibodyPlant, frame: Frame, body: RigidBody) -> None:
+    plant.WeldFrames(frame, body.body_frame())
 
 
 def _payload(

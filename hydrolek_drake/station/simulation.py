@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
@@ -137,9 +138,9 @@ def run(
     plant_context = station.plant.GetMyMutableContextFromRoot(context)
     for payload in station.payloads:
         if start < payload.time < end:
-            events.append((payload.time, lambda p=payload: p.body.SetMass(plant_context, p.mass)))
+            events.append((payload.time, partial(payload.body.SetMass, plant_context, payload.mass)))
     if supply_lost_at is not None and start <= supply_lost_at < end:
-        events.append((supply_lost_at, lambda: _fix_supply(station, context, 0.0)))
+        events.append((supply_lost_at, partial(_fix_supply, station, context, 0.0)))
     for time, act in [*sorted(events, key=lambda e: e[0]), (end, lambda: None)]:
         _advance(simulator, time, on_progress)
         act()
