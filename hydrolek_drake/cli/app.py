@@ -34,6 +34,9 @@ COMMANDS: dict[str, CommandEntry] = {
     "rigs": CommandEntry(
         "hydrolek_drake.cli.rigs", "rigs", "list the built-in rigs, or one rig's parameters"
     ),
+    "benchmark": CommandEntry(
+        "hydrolek_drake.cli.benchmark", "benchmark", "speed and exactness of the executions"
+    ),
 }
 """Name -> entry, in the order of the help."""
 

@@ -1,0 +1,1 @@
+"""How fast the executions are, as ratios measured in one run."""

@@ -1,0 +1,47 @@
+"""`hydrolek benchmark`: the performance table."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def benchmark(
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="folder for benchmark.json")] = None,
+    repeats: Annotated[int, typer.Option(min=1, help="runs of each execution; the median counts")] = 3,
+    seed: Annotated[int, typer.Option(help="of the random voltages")] = 1,
+) -> None:
+    """Measure how fast the executions are against real time and each other, and how exact the rollout is."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from hydrolek_drake.benchmark.measure import measure
+    from hydrolek_drake.cli.output import console
+
+    output, progress = console(), Console(stderr=True)
+    with progress.status("measuring") as status:
+        figures = measure(seed, repeats, lambda what: status.update(f"measuring: {what}"))
+    table = Table("execution", "times real time", "lowest to highest", "runs", "rollout is faster by")
+    for speed in figures["speeds"]:
+        ratio = figures["ratios"].get(f"rollout over {speed['name']}")
+        table.add_row(
+            speed["name"],
+            f"{speed['times_real_time']:.4g}",
+            f"{speed['lowest']:.4g} to {speed['highest']:.4g}",
+            str(speed["runs"]),
+            "" if ratio is None else f"{ratio:.4g}",
+        )
+    output.print(table)
+    error = figures["rollout_error_deg"]
+    output.print(
+        f"rollout against its 0.01 ms reference: {error['rms']:.4f} deg rms, {error['largest']:.4f} deg at most; "
+        f"LSODA against it: {figures['lsoda_against_reference_deg']['largest']:.4f} deg at most; "
+        f"peak memory {figures['peak_memory_MB']:.0f} MB",
+        soft_wrap=True,
+    )
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+        draft = out / "benchmark.json.part"
+        draft.write_text(json.dumps(figures, indent=1) + "\n")
+        output.print(f"figures: {draft.rename(out / 'benchmark.json')}")
