@@ -58,7 +58,9 @@ def test_symplectic_euler_stays_near_runge_kutta():
     ends = []
     for integrator in ("runge_kutta2", "symplectic_euler"):
         station = make_station(
-            rig, sizes=StepSizes(step=1e-3, integrator=integrator), command=command_source(times, volts[:, None])
+            rig,
+            sizes=StepSizes(step=1e-3, integrator=integrator),
+            command=command_source(times, volts[:, None]),
         )
         ends.append(run(station, 4.0).signals["position"][:, 0])
     # First order: half a step of the joint's largest speed, 40 deg/s (Table 6.1), stays in any phase of the motion.

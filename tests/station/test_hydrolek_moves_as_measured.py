@@ -61,7 +61,9 @@ def test_dead_zone_within_ten_percent(side, joint, sign):
 @pytest.mark.parametrize(("side", "joint", "sign"), CASES)
 def test_dead_time_as_read_off_the_step_responses(side, joint, sign):
     times, angle, _, _ = move(side, joint, 10.0 * sign, 0.5, 1.0)
-    starts = times[np.abs(angle - angle[0]) > 0.2][0]  # four times the potentiometer's noise: where the eye sees it
+    starts = times[np.abs(angle - angle[0]) > 0.2][
+        0
+    ]  # four times the potentiometer's noise: where the eye sees it
     assert starts - STEP_AT == pytest.approx(DEAD_TIME[joint], abs=0.03)  # read by eye off samples of 0.01 s
 
 
@@ -90,7 +92,9 @@ def test_the_arm_lifts_150_kg_at_full_reach():
     times = np.arange(0.0, 4.0, 0.01)
     command = np.where(times >= 0.5, 10.0, 0.0)
     angle = np.degrees(
-        roll_out(lifting, times, command, times, state=rest_state(lifting, 0.0), longest_step=0.5e-3).signals.position
+        roll_out(
+            lifting, times, command, times, state=rest_state(lifting, 0.0), longest_step=0.5e-3
+        ).signals.position
     )
     assert abs(angle[49] - angle[10]) < 0.2  # the closed valve holds it
     assert angle[-1] > 20.0
