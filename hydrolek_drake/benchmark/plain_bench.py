@@ -4,6 +4,7 @@ A yardstick for `hydrolek benchmark` and an independent check of the rollout in 
 numbers and nothing else with the project's physics, and knows no effects.
 """
 
+import itertools
 import math
 from collections.abc import Callable
 
@@ -82,7 +83,7 @@ def simulate_plainly(rig: Rig, times: np.ndarray, volts: np.ndarray) -> np.ndarr
     changes = np.flatnonzero(np.diff(volts, prepend=np.nan))
     edges = [times[0], *(t for t in times[changes[1:]] + delay if t < times[-1]), times[-1]]
     angle = np.empty(len(times))
-    for i, (begin, end) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+    for i, (begin, end) in enumerate(itertools.pairwise(edges)):
         voltage = float(volts[changes[i]])
         inside = (times >= begin) & (times <= end)
         wanted = np.unique(np.concatenate([times[inside], [end]]))

@@ -28,7 +28,6 @@ from hydrolek_drake.systems.solenoid_spool import SolenoidSpool
 from hydrolek_drake.systems.supply import Supply
 from hydrolek_drake.systems.transport_delay import TransportDelay
 
-
 _Add = Callable[[Any], Any]  # adds a system to the diagram and returns it
 
 
