@@ -15,7 +15,14 @@ EFFECT = Effect(
     parameters=(
         Parameter("coulomb_N", "N", "Coulomb friction of the seals", neutral=0.0, lowest=0.0),
         Parameter("stribeck_N", "N", "further friction near zero speed", neutral=0.0, lowest=0.0),
-        Parameter("stribeck_velocity_m_per_s", "m/s", "speed over which it fades", neutral=1.0, lowest=0.0),
+        Parameter(
+            "stribeck_velocity_m_per_s",
+            "m/s",
+            "speed over which it fades",
+            neutral=1.0,
+            lowest=0.0,
+            positive=True,
+        ),
     ),
     size="stribeck_N",
     source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083, Stribeck curve",

@@ -33,15 +33,19 @@ STAGE = Stage(
             Parameter(
                 "gap_constant", "1/m", "how the air gap lowers the force, gamma/beta in (4.5)", lowest=0.0
             ),
-            Parameter("moving_mass", "kg", "plunger and spool, m_p in (4.5)", lowest=0.0),
+            Parameter("moving_mass", "kg", "plunger and spool, m_p in (4.5)", lowest=0.0, positive=True),
             Parameter("damping", "N s/m", "lambda_p in (4.5)", lowest=0.0),
             Parameter("spring", "N/m", "K_p in (4.5)", lowest=0.0),
             Parameter(
-                "stiction_velocity", "m/s", "below this the spool's Coulomb friction is smoothed", lowest=0.0
+                "stiction_velocity",
+                "m/s",
+                "below this the spool's Coulomb friction is smoothed",
+                lowest=0.0,
+                positive=True,
             ),
         ),
         "servo_valve": (
-            Parameter("rated_voltage", "V", "voltage of full spool stroke", lowest=0.0),
+            Parameter("rated_voltage", "V", "voltage of full spool stroke", lowest=0.0, positive=True),
             Parameter("full_stroke", "m", "spool stroke at rated voltage", lowest=0.0),
             Parameter("bandwidth", "rad/s", "natural frequency of the spool's position loop", lowest=0.0),
             Parameter("damping_ratio", "1", "damping ratio of the spool's position loop", lowest=0.0),
