@@ -103,12 +103,21 @@ def test_a_machine_with_physics_in_no_list_is_not_reproduced(bench, part):
 @pytest.mark.parametrize("effect", ["none", *EFFECTS])
 def test_rig_s_step_is_fine_enough_with_each_effect_on(bench, effect):
     assert effect == "none" or effect in SIZES, f"give {effect} a size in this test"
-    rig = bench.with_values(
-        {
-            "load.friction_velocity": np.radians(0.2),
-            **{f"effects.{effect}.{name}": value for name, value in SIZES.get(effect, {}).items()},
-        }
-    )
+    parameters = {f"effects.{effect}.{name}": value for name, value in SIZES.get(effect, {}).items()}
+    error = _step_error_deg(bench, {"load.friction_velocity": np.radians(0.2), **parameters})
+    print(f"{effect}: {error:.5f} deg")
+    assert error <= 0.02
+
+
+@pytest.mark.parametrize("force", [0.1, 0.6, 1.0])
+def test_rig_s_step_is_fine_enough_from_slight_to_severe_spool_stiction(bench, force):
+    """Severe: twice the 0.48 N at which the spool leaves its overlap."""
+    assert _step_error_deg(bench, {"effects.valve.spool_stiction.force_N": force}) <= 0.02
+
+
+def _step_error_deg(bench, values):
+    """Largest difference of the reading between the rig's step and 0.01 ms, over 10 s."""
+    rig = bench.with_values(values)
     drive = read_recording(DATA / "practice_01" / "train.csv")
     command = drive.signal("joint.command")
     asked = drive.time <= 10.0
@@ -116,6 +125,4 @@ def test_rig_s_step_is_fine_enough_with_each_effect_on(bench, effect):
         roll_out(rig.records(), drive.time, command, drive.time[asked], longest_step=step).signals.reading
         for step in (rig.value("integration.longest_step"), 1e-5)
     )
-    error = np.degrees(np.abs(coarse - fine)).max()
-    print(f"{effect}: {error:.5f} deg")
-    assert error <= 0.02
+    return np.degrees(np.abs(coarse - fine)).max()
