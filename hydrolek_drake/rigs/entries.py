@@ -64,6 +64,8 @@ def parse_entry(raw: Any, parameter: Parameter, where: str) -> Entry:
             f"{where}: value {value:g} {unit} is impossible; "
             f"it must lie between {parameter.lowest:g} and {parameter.highest:g}"
         )
+    if parameter.positive and not value > 0.0:
+        raise InputError(f"{where}: value {value:g} {unit} is impossible; it must be above zero")
     limits = None
     if "range" in raw:
         pair = raw["range"]
@@ -115,8 +117,10 @@ def _number(raw: Any, where: str) -> float:
         raise InputError(f"{where}: '{raw}' is not a number")
     try:
         value = float(raw)
-    except ValueError:
+    except (ValueError, OverflowError):
         raise InputError(f"{where}: '{raw}' is not a number") from None
     if value != value:
         raise InputError(f"{where}: the value is not a number (NaN)")
+    if abs(value) == float("inf"):
+        raise InputError(f"{where}: '{raw}' is not a finite number")
     return value
