@@ -71,8 +71,8 @@ def test_transport_delay_keeps_the_integral_of_the_voltage():
         context.SetTime(k * step)
         state = context.Clone().get_mutable_state()
         system._update(context, state)
-        context.SetDiscreteState(0, state.get_discrete_state().get_value(0))
-        context.SetDiscreteState(1, state.get_discrete_state().get_value(1))
+        for group in range(3):
+            context.SetDiscreteState(group, state.get_discrete_state().get_value(group))
         out.append(system.GetOutputPort("voltage_delayed").Eval(context)[0])
     np.testing.assert_allclose([out[21], out[22]], [0.6 * 5.0, 0.4 * 5.0], rtol=1e-9)
     assert sum(out) == pytest.approx(5.0)
