@@ -1,5 +1,6 @@
 """One parameter as a rig file states it, checked and converted to SI."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -8,6 +9,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.units import si_factor
 
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 _KEYS = ("value", "unit", "source", "range", "scale", "same_as", "note")
 
 
@@ -91,14 +93,13 @@ def parse_quantity(text: str, parameter: Parameter, where: str) -> float:
     Raises:
         InputError: not a number, wrong unit or out of bounds.
     """
-    number, _, unit = text.strip().partition(" ")
-    try:
-        value = float(number)
-    except ValueError:
+    found = _NUMBER.match(text.strip())
+    if found is None:
         raise InputError(
             f"{where}: '{text}' is not a number with a unit, such as '12 MPa' or '12e6'"
         ) from None
-    raw = {"value": value, "unit": unit.strip() or parameter.unit.split("|")[0], "source": "command line"}
+    unit = text.strip()[found.end() :].strip() or parameter.unit.split("|")[0]
+    raw = {"value": float(found.group()), "unit": unit, "source": "command line"}
     return parse_entry(raw, parameter, where).value
 
 

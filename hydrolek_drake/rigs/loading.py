@@ -51,11 +51,8 @@ def _find(name_or_path: str | Path) -> Path:
     if path.suffix in (".yaml", ".yml"):
         raise InputError(f"rig file {path} does not exist")
     near = difflib.get_close_matches(text, rigs, n=3)
-    raise InputError(
-        f"no rig '{text}'"
-        + (f"; did you mean {' or '.join(near)}?" if near else "")
-        + f" Built in: {', '.join(rigs)}; or give a file"
-    )
+    hint = f"did you mean {' or '.join(near)}? " if near else ""
+    raise InputError(f"no rig '{text}'; {hint}built in are {', '.join(rigs)}; or give a file")
 
 
 def _read(path: Path) -> dict[str, Any]:
