@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 
 from hydrolek_drake.physics.command import CALIBRATED, calibrated_voltages, drive_voltage, transport_delay
 from hydrolek_drake.physics.records import JOINT
+from hydrolek_drake.systems.operator_computer import channel_places
 
 
 @pytest.fixture(scope="module")
@@ -47,3 +48,14 @@ def test_drive_voltage_counts_from_neutral_with_polarity_and_limit(crane_joint, 
 def test_transport_delay_is_the_rig_s_plus_the_effect_s(bench_joint):
     joint = bench_joint({"command.delay": 0.017, "effects.command.delay.delay_s": 0.09})
     assert_allclose(transport_delay(joint), 0.107, rtol=1e-14)
+
+
+def test_channels_are_counted_through_the_modules_as_table_3_1_does():
+    """Thesis 3.3.1: to move joint 5 of the right arm upwards, a signal goes to module 4, channel 0."""
+    records = np.zeros(3, JOINT)
+    records["command"]["module"] = 3, 4, 5  # right J2, right J5, left J4
+    records["command"]["channel_a"] = 2, 0, 5
+    records["command"]["channel_b"] = 3, 1, 4
+    towards_a, towards_b = channel_places(records, first_module=3)
+    assert towards_a.tolist() == [2, 8, 21]
+    assert towards_b.tolist() == [3, 9, 20]
