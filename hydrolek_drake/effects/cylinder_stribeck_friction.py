@@ -27,7 +27,7 @@ EFFECT = Effect(
     size="stribeck_N",
     source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083, Stribeck curve",
     confused_with={
-        "cylinder.coulomb_friction": "Coulomb friction does not fall with speed: stick-slip at creeping speed decides",
+        "cylinder.coulomb_friction": "Coulomb friction does not fall with speed; creeping speed decides",
         "valve.spool_stiction": "a sticking spool shows in the pressures only after the command reverses",
     },
     needs={"cylinder": ("cylinder", "vane", "hydraulic_motor")},

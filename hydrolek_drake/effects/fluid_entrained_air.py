@@ -17,7 +17,7 @@ EFFECT = Effect(
         ),
     ),
     size="air_fraction",
-    source="isothermal compression of free air: V_air = fraction p_atm / p, so its compressibility is fraction p_atm / p^2",
+    source="isothermal compression of free air: V_air = fraction p_atm / p, compressibility fraction p_atm / p^2",
     confused_with={
         "base.compliance": "a soft base rings at a frequency that does not depend on the pressures",
     },

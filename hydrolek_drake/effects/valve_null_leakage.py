@@ -23,7 +23,8 @@ EFFECT = Effect(
     size="conductance_m3_per_s_Pa",
     source="Merritt, Hydraulic Control Systems (1967), ch. 5: laminar flow through the radial clearance of the lands",
     confused_with={
-        "cylinder.cross_port_leakage": "leakage past the piston lets the load sink, leaking lands also push both chambers towards half the supply pressure",
+        "cylinder.cross_port_leakage": "a leaking piston lets the load sink; leaking lands also push both "
+        "chambers to half the supply",
     },
     needs={"valve": ("plain", "pressure_compensated")},
 )
