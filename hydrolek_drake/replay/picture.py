@@ -62,6 +62,9 @@ def _draw(panel: Panel, axis: Any) -> None:
     for line in panel.lines:
         style = {"drawstyle": "steps-post"} if line.stepped else {}
         axis.plot(line.time, line.values, color=line.colour, linewidth=1.1, label=line.name, **style)
+    limits = panel.limits()
+    if limits is not None:
+        axis.set_ylim(*limits)
     name, _, unit = panel.title.partition(" [")
     axis.set_ylabel(f"{name}\n[{unit}", fontsize=8)
     axis.tick_params(labelsize=8)

@@ -65,3 +65,6 @@ def _draw(figure: Any, scatter: Any, panel: Panel, place: dict[str, int], named:
             layer="below", **place,
         )  # fmt: skip
     figure.update_yaxes(title_text=panel.title.replace(" [", "<br>["), **place)
+    limits = panel.limits()
+    if limits is not None:
+        figure.update_yaxes(range=limits, **place)

@@ -18,11 +18,13 @@ KINDS = ("constant", "steps", "random", "recording")
 class Command(Protocol):
     """Something that drives the joints of a rig."""
 
-    def table(self, duration: float, seed: int | None) -> tuple[np.ndarray, np.ndarray]:
+    def table(self, duration: float, period: float, seed: int | None) -> tuple[np.ndarray, np.ndarray]:
         """Times [s], shape (m,), beginning at 0, and values [V, or % with an operator], shape (m, joints).
 
         Args:
             duration: of the run [s].
+            period: at which signals are written [s]; random changes fall on its multiples, so that the
+                written command is exactly the one that acted.
             seed: of random commands; None for the scenario's own.
         """
         ...
@@ -40,7 +42,7 @@ class Steps:
     rows: tuple[tuple[tuple[float, float], ...], ...]
     rest: np.ndarray
 
-    def table(self, duration: float, seed: int | None) -> tuple[np.ndarray, np.ndarray]:
+    def table(self, duration: float, period: float, seed: int | None) -> tuple[np.ndarray, np.ndarray]:
         """See `Command`."""
         times = np.unique([0.0, duration, *(time for rows in self.rows for time, _ in rows)])
         values = np.tile(self.rest, (len(times), 1))
@@ -70,19 +72,19 @@ class RandomLevels:
     hold: tuple[float, float]
     seed: int
 
-    def table(self, duration: float, seed: int | None) -> tuple[np.ndarray, np.ndarray]:
+    def table(self, duration: float, period: float, seed: int | None) -> tuple[np.ndarray, np.ndarray]:
         """See `Command`; every joint draws from a stream of its own."""
         streams = np.random.default_rng(self.seed if seed is None else seed).spawn(len(self.rest))
         choices = np.linspace(-self.amplitude, self.amplitude, self.levels)
         rows: list[tuple[tuple[float, float], ...]] = []
         for joint, stream in enumerate(streams):
             drawn: list[tuple[float, float]] = []
-            time = 0.0
-            while self.driven[joint] and time < duration:
-                drawn.append((time, float(self.rest[joint] + stream.choice(choices))))
-                time += float(stream.uniform(*self.hold))
+            count = 0
+            while self.driven[joint] and count * period < duration:
+                drawn.append((count * period, float(self.rest[joint] + stream.choice(choices))))
+                count += max(round(float(stream.uniform(*self.hold)) / period), 1)
             rows.append(tuple(drawn))
-        return Steps(tuple(rows), self.rest).table(duration, None)
+        return Steps(tuple(rows), self.rest).table(duration, period, None)
 
 
 @dataclass(frozen=True)
@@ -97,7 +99,7 @@ class Playback:
     times: np.ndarray
     values: np.ndarray
 
-    def table(self, duration: float, seed: int | None) -> tuple[np.ndarray, np.ndarray]:
+    def table(self, duration: float, period: float, seed: int | None) -> tuple[np.ndarray, np.ndarray]:
         """See `Command`."""
         return self.times, self.values
 

@@ -80,7 +80,7 @@ class Scenario:
 
     def command_table(self, seed: int | None = None) -> tuple[np.ndarray, np.ndarray]:
         """Times [s], shape (m,), and commands [V or %], shape (m, joints), each held until the next."""
-        times, values = self.command.table(self.duration, seed)
+        times, values = self.command.table(self.duration, self.sizes.log_period, seed)
         if self.commands_zero_at is None:
             return times, values
         before = times < self.commands_zero_at
