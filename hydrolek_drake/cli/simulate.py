@@ -66,7 +66,7 @@ def simulate(
     output.print(joint_table(joints))
     if out is not None:
         with progress.status("writing the report"):
-            page = write_run(done, joints, out, None if view is None else view.meshcat.StaticHtml())
+            page = write_run(done, joints, out, None if view is None else view.static_html())
         output.print(f"\nreport: {page}", markup=False, soft_wrap=True)
     if done.run.interrupted:
         return _INTERRUPTED

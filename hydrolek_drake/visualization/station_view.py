@@ -21,15 +21,17 @@ from hydrolek_drake.physics.linkage import stroke_and_lever
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.station.chain import read_chain, read_mounts
 from hydrolek_drake.station.plant import RigPlant
+from hydrolek_drake.visualization.controls import with_open_controls
 from hydrolek_drake.visualization.cylinders import CylinderMount, add_cylinders
 from hydrolek_drake.visualization.urdf_tree import arm_cylinders
 
 # Composition of the picture, not physics.
 _WALL = 1.2  # outer to inner radius of a barrel
 _ARMS_EYE, _ARMS_TARGET = (2.35, -1.75, 1.6), (0.8, 0.02, 0.6)
-_JOINT_EYE, _JOINT_TARGET = (0.4, -1.3, 0.4), (0.2, 0.0, 0.15)
+_JOINT_EYE, _JOINT_TARGET = (0.3, -0.9, 0.35), (0.13, 0.0, 0.13)
 _STRUT_RADIUS = 0.012
 _STRUT_COLOUR = Rgba(0.45, 0.47, 0.5)
+_BACKGROUND = [0.86, 0.90, 0.94], [0.97, 0.98, 0.99]
 _FRAMES_PER_SECOND = 30.0
 
 
@@ -62,6 +64,12 @@ class StationView:
         self.meshcat.SetCameraPose(np.array(eye), np.array(target))
         self.meshcat.SetProperty("/Axes", "visible", False)
         self.meshcat.SetProperty("/Grid", "visible", arms)
+        for where, colour in zip(("top_color", "bottom_color"), _BACKGROUND, strict=True):
+            self.meshcat.SetProperty("/Background", where, colour)
+
+    def static_html(self) -> str:
+        """The view as a page that needs no network, with the controls of the recording open."""
+        return with_open_controls(self.meshcat.StaticHtml())
 
     def record(self, run: Callable[[], object]) -> None:
         """Call `run` and keep what is shown meanwhile, to be played with the time slider."""
