@@ -31,7 +31,9 @@ class Speed:
     runs: int
 
 
-def random_voltage(duration: float, joints: int, generator: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+def random_voltage(
+    duration: float, joints: int, generator: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray]:
     """Random levels within +-4 V, held for half a second, one column per joint."""
     times = np.arange(0.0, duration, 0.01)
     levels = generator.uniform(-4.0, 4.0, (int(duration / 0.5) + 1, joints))
@@ -50,16 +52,24 @@ def measure(seed: int, repeats: int, report: Callable[[str], None]) -> dict[str,
     speeds: list[Speed] = []
     whole = load_rig("hydrolek")
     times, volts = random_voltage(5.0, len(whole.joints), generator)
-    for label, integrator in (("symplectic Euler", "symplectic_euler"), ("Runge-Kutta 2", "runge_kutta2")):
+    for label, integrator, mount_forces in (
+        ("symplectic Euler, joint moments", "symplectic_euler", False),
+        ("symplectic Euler, mount forces", "symplectic_euler", True),
+        ("Runge-Kutta 2, mount forces", "runge_kutta2", True),
+    ):
         report(f"both arms as a Drake diagram, 1 ms, {label}")
-        sizes = StepSizes(step=1e-3, integrator=integrator)
-        speeds.append(_diagram_speed(f"diagram, both arms, 1 ms, {label}", whole, times, volts, sizes, repeats))
+        sizes = StepSizes(step=1e-3, integrator=integrator, mount_forces=mount_forces)
+        speeds.append(
+            _diagram_speed(f"diagram, both arms, 1 ms, {label}", whole, times, volts, sizes, repeats)
+        )
     rig = load_rig("joint_bench")
     times, volts = random_voltage(40.0, 1, generator)
     report("one joint as a Drake diagram")
     short = times < 10.0
     speeds.append(
-        _diagram_speed("diagram, one joint, 1 ms", rig, times[short], volts[short], StepSizes(step=1e-3), repeats)
+        _diagram_speed(
+            "diagram, one joint, 1 ms", rig, times[short], volts[short], StepSizes(step=1e-3), repeats
+        )
     )
     report("one joint compiled")
     records, step = rig.records(), rig.value("integration.longest_step")
@@ -84,14 +94,23 @@ def measure(seed: int, repeats: int, report: Callable[[str], None]) -> dict[str,
         "schema": 1,
         "machine": f"{platform.machine()}, Python {platform.python_version()}",
         "speeds": [asdict(s) for s in speeds],
-        "ratios": {f"rollout over {s.name}": fast.times_real_time / s.times_real_time for s in speeds if s is not fast},
-        "rollout_error_deg": {"rms": float(np.sqrt(np.mean(error**2))), "largest": float(np.abs(error).max())},
+        "ratios": {
+            f"rollout over {s.name}": fast.times_real_time / s.times_real_time
+            for s in speeds
+            if s is not fast
+        },
+        "rollout_error_deg": {
+            "rms": float(np.sqrt(np.mean(error**2))),
+            "largest": float(np.abs(error).max()),
+        },
         "lsoda_against_reference_deg": {"largest": float(np.abs(parting).max())},
         "peak_memory_MB": _peak_memory_mb(),
     }
 
 
-def _diagram_speed(name: str, rig: Any, times: np.ndarray, volts: np.ndarray, sizes: StepSizes, repeats: int) -> Speed:
+def _diagram_speed(
+    name: str, rig: Any, times: np.ndarray, volts: np.ndarray, sizes: StepSizes, repeats: int
+) -> Speed:
     def once(duration: float) -> None:
         station = make_station(rig, sizes=sizes, command=command_source(times, volts))
         begin = time.perf_counter()

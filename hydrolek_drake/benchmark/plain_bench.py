@@ -4,6 +4,7 @@ A yardstick for `hydrolek benchmark` and an independent check of the rollout in 
 numbers and nothing else with the project's physics, and knows no effects.
 """
 
+import itertools
 import math
 from collections.abc import Callable
 
@@ -70,7 +71,9 @@ def simulate_plainly(rig: Rig, times: np.ndarray, volts: np.ndarray) -> np.ndarr
     """Joint angle [rad] at `times` for voltages held between samples; LSODA as the bench's page uses it."""
     rates = plain_right_hand_side(rig)
     q = rig.value("load.initial_position")
-    a, b, phi = (rig.value(f"linkage.{name}") for name in ("distance_parent", "distance_child", "angle_offset"))
+    a, b, phi = (
+        rig.value(f"linkage.{name}") for name in ("distance_parent", "distance_child", "angle_offset")
+    )
     lever = a * b * math.sin(q + phi) / math.sqrt(a * a + b * b - 2 * a * b * math.cos(q + phi))
     p_b = rig.value("cylinder.initial_pressure_b")
     held = rig.value("load.gravity_cos") * math.cos(q) / lever
@@ -80,12 +83,20 @@ def simulate_plainly(rig: Rig, times: np.ndarray, volts: np.ndarray) -> np.ndarr
     changes = np.flatnonzero(np.diff(volts, prepend=np.nan))
     edges = [times[0], *(t for t in times[changes[1:]] + delay if t < times[-1]), times[-1]]
     angle = np.empty(len(times))
-    for i, (begin, end) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+    for i, (begin, end) in enumerate(itertools.pairwise(edges)):
         voltage = float(volts[changes[i]])
         inside = (times >= begin) & (times <= end)
         wanted = np.unique(np.concatenate([times[inside], [end]]))
         found = solve_ivp(
-            rates, (begin, end), state, "LSODA", wanted, args=(voltage,), max_step=5e-4, rtol=1e-8, atol=_ABSOLUTE
+            rates,
+            (begin, end),
+            state,
+            "LSODA",
+            wanted,
+            args=(voltage,),
+            max_step=5e-4,
+            rtol=1e-8,
+            atol=_ABSOLUTE,
         )
         angle[inside] = found.y[4, : int(inside.sum())]
         state = found.y[:, -1]

@@ -14,7 +14,9 @@ EFFECT = Effect(
     equation="currents times 1 - fraction (1 - e^(-t/time_constant))",
     parameters=(
         Parameter("fraction", "1", "share of the current that is lost when warm", neutral=0.0, highest=1.0),
-        Parameter("time_constant_s", "s", "time constant of the warming", neutral=1.0, lowest=0.0),
+        Parameter(
+            "time_constant_s", "s", "time constant of the warming", neutral=1.0, lowest=0.0, positive=True
+        ),
     ),
     size="fraction",
     source="copper's resistance rises 0.39 % per kelvin while the amplifier holds its voltage",

@@ -15,7 +15,7 @@ EFFECT = Effect(
         Parameter(
             "stiffness_Nm_per_rad", "N m/rad", "spring of the base (0: rigid)", neutral=0.0, lowest=0.0
         ),
-        Parameter("inertia_kg_m2", "kg m^2", "inertia of the base", neutral=1.0, lowest=0.0),
+        Parameter("inertia_kg_m2", "kg m^2", "inertia of the base", neutral=1.0, lowest=0.0, positive=True),
     ),
     size="stiffness_Nm_per_rad",
     source="thesis 6.1.5: moving faster 'could lead to some movement of the platform base'",

@@ -30,10 +30,10 @@ EFFECT = Effect(
 @EFFECT.hook("rod_friction")
 @njit
 def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, float]:
-    """Friction [N] and its slope [N s/m] at a rod velocity [m/s]."""
+    """Friction [N] and its secant slope [N s/m] (see valve_spool_stiction) at a rod velocity [m/s]."""
     coulomb = joint.effects.cylinder_coulomb_friction.coulomb_N
     if coulomb == 0.0:
         return 0.0, 0.0
     smooth = joint.cylinder.friction_velocity
     share = math.tanh(velocity / smooth)
-    return coulomb * share, coulomb / smooth * (1.0 - share * share)
+    return coulomb * share, coulomb * share / velocity if abs(share) > 1e-3 else coulomb / smooth

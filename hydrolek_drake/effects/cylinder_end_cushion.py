@@ -13,7 +13,7 @@ EFFECT = Effect(
     equation="damping v (1 - s/length) against the rod while s < length and v < 0",
     parameters=(
         Parameter("damping_N_s_per_m", "N s/m", "damping at the very end", neutral=0.0, lowest=0.0),
-        Parameter("length_m", "m", "stroke over which it acts", neutral=1.0, lowest=0.0),
+        Parameter("length_m", "m", "stroke over which it acts", neutral=1.0, lowest=0.0, positive=True),
     ),
     size="damping_N_s_per_m",
     source="cushioning spears of differential cylinders (Merritt 1967, ch. 6)",

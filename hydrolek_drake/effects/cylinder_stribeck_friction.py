@@ -15,7 +15,14 @@ EFFECT = Effect(
     parameters=(
         Parameter("coulomb_N", "N", "Coulomb friction of the seals", neutral=0.0, lowest=0.0),
         Parameter("stribeck_N", "N", "further friction near zero speed", neutral=0.0, lowest=0.0),
-        Parameter("stribeck_velocity_m_per_s", "m/s", "speed over which it fades", neutral=1.0, lowest=0.0),
+        Parameter(
+            "stribeck_velocity_m_per_s",
+            "m/s",
+            "speed over which it fades",
+            neutral=1.0,
+            lowest=0.0,
+            positive=True,
+        ),
     ),
     size="stribeck_N",
     source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083, Stribeck curve",
@@ -30,7 +37,7 @@ EFFECT = Effect(
 @EFFECT.hook("rod_friction")
 @njit
 def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, float]:
-    """Friction [N] and the positive part of its slope [N s/m] at a rod velocity [m/s]."""
+    """Friction [N] and its secant slope [N s/m] (see valve_spool_stiction) at a rod velocity [m/s]."""
     p = joint.effects.cylinder_stribeck_friction
     if p.coulomb_N == 0.0 and p.stribeck_N == 0.0:
         return 0.0, 0.0
@@ -38,4 +45,4 @@ def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, flo
     share = math.tanh(velocity / smooth)
     ratio = velocity / p.stribeck_velocity_m_per_s
     level = p.coulomb_N + p.stribeck_N * math.exp(-ratio * ratio)
-    return level * share, level / smooth * (1.0 - share * share)
+    return level * share, level * share / velocity if abs(share) > 1e-3 else level / smooth

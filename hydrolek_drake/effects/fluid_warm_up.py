@@ -14,7 +14,9 @@ EFFECT = Effect(
     equation="with s = fraction (1 - e^(-t/time_constant)): viscous friction times 1 - s, flow coefficient times 1 + s",
     parameters=(
         Parameter("fraction", "1", "change when warm", neutral=0.0, highest=1.0),
-        Parameter("time_constant_s", "s", "time constant of the warming", neutral=1.0, lowest=0.0),
+        Parameter(
+            "time_constant_s", "s", "time constant of the warming", neutral=1.0, lowest=0.0, positive=True
+        ),
     ),
     size="fraction",
     source="mineral oil loses about half of its viscosity per 15 K",

@@ -24,10 +24,10 @@ EFFECT = Effect(
 @EFFECT.hook("load_friction")
 @njit
 def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
-    """Friction [N] and its slope [N s/m]."""
+    """Friction [N] and its secant slope [N s/m] (see valve_spool_stiction)."""
     force = joint.effects.load_coulomb_friction.force_N
     if force == 0.0:
         return 0.0, 0.0
     smooth = joint.load.friction_velocity
     share = math.tanh(velocity / smooth)
-    return force * share, force / smooth * (1.0 - share * share)
+    return force * share, force * share / velocity if abs(share) > 1e-3 else force / smooth

@@ -26,10 +26,16 @@ EFFECT = Effect(
 @EFFECT.hook("spool_friction")
 @njit
 def spool_friction(velocity: float, joint: Any) -> tuple[float, float]:
-    """Friction [N] and its slope [N s/m] at a spool velocity [m/s]."""
+    """Friction [N] and its secant slope [N s/m] at a spool velocity [m/s].
+
+    The secant, not the tangent: it still damps a fast spool that the friction is about to stop. With the
+    tangent, which is flat there, a step overshoots the stop and the spool sticks at the wrong place.
+    """
     force = joint.effects.valve_spool_stiction.force_N
     if force == 0.0:
         return 0.0, 0.0
     smooth = joint.solenoid.stiction_velocity
     share = math.tanh(velocity / smooth)
-    return force * share, force / smooth * (1.0 - share * share)
+    if abs(share) < 1e-3:  # the secant's limit, equal to 3e-7
+        return force * share, force / smooth
+    return force * share, force * share / velocity

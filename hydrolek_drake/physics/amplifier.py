@@ -16,7 +16,9 @@ STAGE = Stage(
             Parameter("min_current", "A", "coil current at 0 V, I_min in (4.4)", lowest=0.0),
             Parameter("max_current_a", "A", "current of coil A at full voltage, I_maxA in (4.4)", lowest=0.0),
             Parameter("max_current_b", "A", "current of coil B at full voltage, I_maxB in (4.4)", lowest=0.0),
-            Parameter("full_voltage", "V", "voltage of full current, 10 V in (4.4)", lowest=0.0),
+            Parameter(
+                "full_voltage", "V", "voltage of full current, 10 V in (4.4)", lowest=0.0, positive=True
+            ),
         ),
         "none": (),
     },

@@ -13,8 +13,12 @@ from hydrolek_drake.physics.fluid import effective_bulk_modulus
 from hydrolek_drake.physics.parameters import Parameter, Stage
 
 _CHAMBERS = (
-    Parameter("dead_volume_a", "m^3", "oil on side A at zero stroke, with its hose", lowest=0.0),
-    Parameter("dead_volume_b", "m^3", "oil on side B at full stroke, with its hose", lowest=0.0),
+    Parameter(
+        "dead_volume_a", "m^3", "oil on side A at zero stroke, with its hose", lowest=0.0, positive=True
+    ),
+    Parameter(
+        "dead_volume_b", "m^3", "oil on side B at full stroke, with its hose", lowest=0.0, positive=True
+    ),
     Parameter(
         "initial_pressure_b", "Pa", "pressure on side B at the start; side A balances the load", lowest=0.0
     ),
@@ -25,14 +29,24 @@ STAGE = Stage(
     (),
     {
         "cylinder": (
-            Parameter("area_a", "m^2", "piston area on the bore side, A_A in (4.9)", lowest=0.0),
-            Parameter("area_b", "m^2", "piston area on the rod side, A_B in (4.9)", lowest=0.0),
+            Parameter(
+                "area_a", "m^2", "piston area on the bore side, A_A in (4.9)", lowest=0.0, positive=True
+            ),
+            Parameter(
+                "area_b", "m^2", "piston area on the rod side, A_B in (4.9)", lowest=0.0, positive=True
+            ),
             *_CHAMBERS,
             Parameter(
                 "stroke", "m", "stroke over which side B's oil volume is counted, S in (4.9)", lowest=0.0
             ),
             Parameter("viscous_friction", "N s/m", "viscous friction of the seals, B_D in (4.9)", lowest=0.0),
-            Parameter("friction_velocity", "m/s", "below this Coulomb friction is smoothed", lowest=0.0),
+            Parameter(
+                "friction_velocity",
+                "m/s",
+                "below this Coulomb friction is smoothed",
+                lowest=0.0,
+                positive=True,
+            ),
             Parameter("rod_mass", "kg", "rod and piston, M_R in (4.9)", neutral=0.0, lowest=0.0),
             Parameter(
                 "stop_penetration",
@@ -43,12 +57,18 @@ STAGE = Stage(
             ),
         ),
         "vane": (
-            Parameter("area_a", "m^3/rad", "displacement of side A", lowest=0.0),
-            Parameter("area_b", "m^3/rad", "displacement of side B", lowest=0.0),
+            Parameter("area_a", "m^3/rad", "displacement of side A", lowest=0.0, positive=True),
+            Parameter("area_b", "m^3/rad", "displacement of side B", lowest=0.0, positive=True),
             *_CHAMBERS,
             Parameter("stroke", "rad", "travel over which side B's oil volume is counted", lowest=0.0),
             Parameter("viscous_friction", "N m s/rad", "viscous friction of the seals", lowest=0.0),
-            Parameter("friction_velocity", "rad/s", "below this Coulomb friction is smoothed", lowest=0.0),
+            Parameter(
+                "friction_velocity",
+                "rad/s",
+                "below this Coulomb friction is smoothed",
+                lowest=0.0,
+                positive=True,
+            ),
             Parameter(
                 "stop_penetration",
                 "N m s/rad^2",
@@ -58,11 +78,17 @@ STAGE = Stage(
             ),
         ),
         "hydraulic_motor": (
-            Parameter("area_a", "m^3/rad", "displacement of side A", lowest=0.0),
-            Parameter("area_b", "m^3/rad", "displacement of side B", lowest=0.0),
+            Parameter("area_a", "m^3/rad", "displacement of side A", lowest=0.0, positive=True),
+            Parameter("area_b", "m^3/rad", "displacement of side B", lowest=0.0, positive=True),
             *_CHAMBERS,
             Parameter("viscous_friction", "N m s/rad", "viscous friction of the seals", lowest=0.0),
-            Parameter("friction_velocity", "rad/s", "below this Coulomb friction is smoothed", lowest=0.0),
+            Parameter(
+                "friction_velocity",
+                "rad/s",
+                "below this Coulomb friction is smoothed",
+                lowest=0.0,
+                positive=True,
+            ),
         ),
         "electric_motor": (Parameter("force_constant", "N/V", "force over command voltage", lowest=0.0),),
     },

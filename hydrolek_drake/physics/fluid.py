@@ -12,15 +12,21 @@ STAGE = Stage(
     "fluid",
     "the oil",
     (
-        Parameter("density", "kg/m^3", "rho in (4.7)", lowest=0.0),
-        Parameter("bulk_modulus", "Pa", "stiffness of oil with hoses", lowest=0.0),
+        Parameter("density", "kg/m^3", "rho in (4.7)", lowest=0.0, positive=True),
+        Parameter("bulk_modulus", "Pa", "stiffness of oil with hoses", lowest=0.0, positive=True),
         Parameter(
-            "laminar_transition", "Pa", "pressure drop below which orifice flow turns laminar", lowest=0.0
+            "laminar_transition",
+            "Pa",
+            "pressure drop below which orifice flow turns laminar",
+            lowest=0.0,
+            positive=True,
+        ),
+        Parameter(
+            "atmospheric_pressure", "Pa", "pressure to which an air content refers", lowest=0.0, positive=True
         ),
         Parameter(
             "floor_time", "s", "time constant with which a pressure may fall to zero", neutral=0.0, lowest=0.0
         ),
-        Parameter("atmospheric_pressure", "Pa", "pressure to which an air content refers", lowest=0.0),
     ),
     {"oil": ()},
 )

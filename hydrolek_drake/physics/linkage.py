@@ -40,10 +40,18 @@ STAGE = Stage(
     {
         "triangle": (
             Parameter(
-                "distance_parent", "m", "joint axis to the cylinder's mount on the fixed side, a", lowest=0.0
+                "distance_parent",
+                "m",
+                "joint axis to the cylinder's mount on the fixed side, a",
+                lowest=0.0,
+                positive=True,
             ),
             Parameter(
-                "distance_child", "m", "joint axis to the cylinder's mount on the moving side, b", lowest=0.0
+                "distance_child",
+                "m",
+                "joint axis to the cylinder's mount on the moving side, b",
+                lowest=0.0,
+                positive=True,
             ),
             Parameter("angle_offset", "rad", "angle between the mounts at joint angle zero, phi"),
             Parameter(

@@ -25,10 +25,11 @@ _ROTATING = (
         "below this Coulomb friction of the load is smoothed",
         neutral=1.0,
         lowest=0.0,
+        positive=True,
     ),
 )
 _MOMENTS = (
-    Parameter("inertia", "kg m^2", "moment of inertia about the joint axis", lowest=0.0),
+    Parameter("inertia", "kg m^2", "moment of inertia about the joint axis", lowest=0.0, positive=True),
     Parameter("gravity_cos", "N m", "gravity moment at joint angle zero", neutral=0.0),
     Parameter("gravity_sin", "N m", "gravity moment at joint angle 90 deg", neutral=0.0),
     Parameter(
@@ -49,7 +50,7 @@ STAGE = Stage(
         "rotating": (*_MOMENTS, *_ROTATING),
         "arm": (*_MOMENTS, *_ROTATING),
         "sliding": (
-            Parameter("inertia", "kg", "moving mass", lowest=0.0),
+            Parameter("inertia", "kg", "moving mass", lowest=0.0, positive=True),
             Parameter("gravity_cos", "N", "constant force against the positive direction", neutral=0.0),
             Parameter("payload_inertia", "kg/kg", "1", neutral=1.0, lowest=0.0),
             Parameter("damping", "N s/m", "viscous friction of the guides", lowest=0.0),
@@ -64,6 +65,7 @@ STAGE = Stage(
                 "below this Coulomb friction of the load is smoothed",
                 neutral=1.0,
                 lowest=0.0,
+                positive=True,
             ),
         ),
     },

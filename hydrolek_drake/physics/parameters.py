@@ -20,6 +20,7 @@ class Parameter:
         neutral: value that switches the physics behind it off; None if a rig must state it.
         lowest: smallest admissible value (physics, not taste).
         highest: largest admissible value.
+        positive: zero and below are not admissible, since something is divided by it.
     """
 
     name: str
@@ -28,6 +29,7 @@ class Parameter:
     neutral: float | None = None
     lowest: float = -np.inf
     highest: float = np.inf
+    positive: bool = False
 
 
 @dataclass(frozen=True)

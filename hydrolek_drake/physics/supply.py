@@ -14,7 +14,11 @@ STAGE = Stage(
         Parameter("pressure", "Pa", "pump pressure, P_S", lowest=0.0),
         Parameter("tank_pressure", "Pa", "return line pressure, P_T", lowest=0.0),
         Parameter(
-            "flow_time_constant", "s", "how fast the supply pressure answers to the flow drawn", lowest=0.0
+            "flow_time_constant",
+            "s",
+            "how fast the supply pressure answers to the flow drawn",
+            lowest=0.0,
+            positive=True,
         ),
     ),
     {"constant_pressure": ()},

@@ -51,5 +51,5 @@ def _missing(recording: Recording, key: str) -> str:
     return (
         f"{recording.source}: signal {key} is missing; the file has {', '.join(sorted(recording.signals))}"
         f"{unused}; "
-        f"if it is there under another name, map it in the rig: 'columns: {{{example}: {key}_<unit>}}'"
+        f"if it is there under another name, map it in the rig: 'recording: {{columns: {{{example}: {key}_<unit>}}}}'"
     )

@@ -1,5 +1,6 @@
 """One parameter as a rig file states it, checked and converted to SI."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -8,6 +9,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.units import si_factor
 
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 _KEYS = ("value", "unit", "source", "range", "scale", "same_as", "note")
 
 
@@ -64,6 +66,8 @@ def parse_entry(raw: Any, parameter: Parameter, where: str) -> Entry:
             f"{where}: value {value:g} {unit} is impossible; "
             f"it must lie between {parameter.lowest:g} and {parameter.highest:g}"
         )
+    if parameter.positive and not value > 0.0:
+        raise InputError(f"{where}: value {value:g} {unit} is impossible; it must be above zero")
     limits = None
     if "range" in raw:
         pair = raw["range"]
@@ -89,14 +93,13 @@ def parse_quantity(text: str, parameter: Parameter, where: str) -> float:
     Raises:
         InputError: not a number, wrong unit or out of bounds.
     """
-    number, _, unit = text.strip().partition(" ")
-    try:
-        value = float(number)
-    except ValueError:
+    found = _NUMBER.match(text.strip())
+    if found is None:
         raise InputError(
             f"{where}: '{text}' is not a number with a unit, such as '12 MPa' or '12e6'"
         ) from None
-    raw = {"value": value, "unit": unit.strip() or parameter.unit.split("|")[0], "source": "command line"}
+    unit = text.strip()[found.end() :].strip() or parameter.unit.split("|")[0]
+    raw = {"value": float(found.group()), "unit": unit, "source": "command line"}
     return parse_entry(raw, parameter, where).value
 
 
@@ -115,8 +118,10 @@ def _number(raw: Any, where: str) -> float:
         raise InputError(f"{where}: '{raw}' is not a number")
     try:
         value = float(raw)
-    except ValueError:
+    except (ValueError, OverflowError):
         raise InputError(f"{where}: '{raw}' is not a number") from None
     if value != value:
         raise InputError(f"{where}: the value is not a number (NaN)")
+    if abs(value) == float("inf"):
+        raise InputError(f"{where}: '{raw}' is not a finite number")
     return value

@@ -33,8 +33,32 @@ def check(rig: "Rig") -> None:
             raise InputError(
                 f"{rig.path}: {where}.load: lower_stop {lower:g} must lie below upper_stop {upper:g}"
             )
+        _check_signs(rig, where)
         _check_triangle(rig, where, lower, upper)
         _check_valve(rig, where)
+        _check_sensor(rig, where)
+
+
+def _check_signs(rig: "Rig", where: str) -> None:
+    for name in ("linkage.direction", "command.polarity"):
+        sign = rig.value(f"{where}.{name}")
+        if abs(sign) != 1.0:
+            raise InputError(f"{rig.path}: {where}.{name}: {sign:g} is not a direction; use 1 or -1")
+
+
+def _check_sensor(rig: "Rig", where: str) -> None:
+    lower, upper = (rig.value(f"{where}.sensor.{name}") for name in ("travel_lower", "travel_upper"))
+    if not lower < upper:
+        raise InputError(
+            f"{rig.path}: {where}.sensor: travel_lower {lower:g} must lie below travel_upper {upper:g}"
+        )
+    if (
+        rig.variants[f"{where}.sensor"] == "potentiometer"
+        and rig.value(f"{where}.sensor.volts_per_degree") == 0.0
+    ):
+        raise InputError(
+            f"{rig.path}: {where}.sensor.volts_per_degree: 0 V/deg tells no angle; use a scaling such as 0.1"
+        )
 
 
 def _check_triangle(rig: "Rig", where: str, lower: float, upper: float) -> None:
@@ -58,7 +82,7 @@ def _check_triangle(rig: "Rig", where: str, lower: float, upper: float) -> None:
             )
     if rig.variants[f"{where}.cylinder"] == "cylinder":
         inner = direction * (lower if direction > 0 else upper) + offset
-        shortest = math.sqrt(a * a + b * b - 2.0 * a * b * math.cos(inner))
+        shortest = math.sqrt(max(a * a + b * b - 2.0 * a * b * math.cos(inner), 0.0))
         zero = rig.value(f"{where}.linkage.zero_stroke_length")
         if zero > shortest * (1.0 + 1e-6) + 1e-6:
             raise InputError(

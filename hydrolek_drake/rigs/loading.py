@@ -17,6 +17,9 @@ _TOP_KEYS = (
     "supply", "fluid", "joints", "effects", "recording", "integration",
 )  # fmt: skip
 
+SCHEMA = 1
+_YAML = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # ten times as fast, where PyYAML has libyaml
+
 
 def built_in_rigs() -> dict[str, Path]:
     """Name and file of every built-in rig."""
@@ -34,10 +37,12 @@ def load_rig(name_or_path: str | Path, settings: Mapping[str, str] | None = None
     Raises:
         InputError: one line saying which file, key and value is wrong and what would be right.
     """
-    path = _find(name_or_path)
-    tree = _resolve(path, ())
-    rig = Rig.from_tree(tree, path)
-    return rig.with_settings(settings) if settings else rig
+    try:
+        path = _find(name_or_path)
+        rig = Rig.from_tree(_resolve(path, ()), path)
+        return rig.with_settings(settings) if settings else rig
+    except InputError as error:  # a value that is quoted from the file may hold line breaks
+        raise InputError(" ".join(str(error).split())) from None
 
 
 def _find(name_or_path: str | Path) -> Path:
@@ -46,21 +51,25 @@ def _find(name_or_path: str | Path) -> Path:
     if text in rigs:
         return rigs[text]
     path = Path(text)
-    if path.is_file():
+    if _is_file(path):
         return path
     if path.suffix in (".yaml", ".yml"):
         raise InputError(f"rig file {path} does not exist")
     near = difflib.get_close_matches(text, rigs, n=3)
-    raise InputError(
-        f"no rig '{text}'"
-        + (f"; did you mean {' or '.join(near)}?" if near else "")
-        + f" Built in: {', '.join(rigs)}; or give a file"
-    )
+    hint = f"did you mean {' or '.join(near)}? " if near else ""
+    raise InputError(f"no rig '{text}'; {hint}built in are {', '.join(rigs)}; or give a file")
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):  # a name that no file can have
+        return False
 
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        tree = yaml.safe_load(path.read_text(encoding="utf-8"))
+        tree = yaml.load(path.read_text(encoding="utf-8"), Loader=_YAML)
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"rig file {path} cannot be read: {error}") from None
     except yaml.YAMLError as error:
@@ -71,6 +80,8 @@ def _read(path: Path) -> dict[str, Any]:
     for key in tree:
         if key not in _TOP_KEYS:
             raise InputError(f"{path}: unknown key '{key}'; a rig has {', '.join(_TOP_KEYS)}")
+    if tree.get("schema", SCHEMA) != SCHEMA:
+        raise InputError(f"{path}: schema {tree['schema']} is not known to this version; use {SCHEMA}")
     return tree
 
 
@@ -82,16 +93,26 @@ def _resolve(path: Path, seen: tuple[Path, ...]) -> dict[str, Any]:
     base = tree.pop("based_on", None)
     if base is not None:
         beside = path.parent / f"{base}"
-        parent = _resolve(beside if beside.is_file() else _find(base), (*seen, path.resolve()))
-        tree = _merged(parent, tree)
+        try:
+            other = beside if _is_file(beside) else _find(str(base))
+        except InputError as error:
+            raise InputError(f"{path}: based_on: {error}") from None
+        tree = _merged(_resolve(other, (*seen, path.resolve())), tree)
     keep = tree.pop("keep", None)
     joints = tree.get("joints")
     if not isinstance(joints, dict) or not joints:
         raise InputError(f"{path}: 'joints' is missing; a rig needs at least one joint")
+    for name in joints:
+        if not isinstance(name, str) or not name or "." in name:
+            raise InputError(
+                f"{path}: joints: '{name}' is not a name; use text without dots, such as right_j2"
+            )
     tree["joints"] = {name: _like(name, joints, path, ()) for name in joints}
     if keep is not None:
+        if not isinstance(keep, list) or not keep:
+            raise InputError(f"{path}: keep: '{keep}' must be a list of joints, of {', '.join(joints)}")
         for name in keep:
-            if name not in joints:
+            if not isinstance(name, str) or name not in joints:
                 raise InputError(f"{path}: keep: no joint '{name}'; there are {', '.join(joints)}")
         held = tree.setdefault("_held", {})
         held.update({name: tree["joints"][name] for name in joints if name not in keep})
@@ -107,7 +128,7 @@ def _like(name: str, joints: Mapping[str, Any], path: Path, seen: tuple[str, ...
     if "like" not in joint:
         return copy.deepcopy(joint)
     other = joint["like"]
-    if other not in joints:
+    if not isinstance(other, str) or other not in joints:
         raise InputError(f"{path}: joints.{name}.like: no joint '{other}'; there are {', '.join(joints)}")
     if other in seen:
         raise InputError(f"{path}: joints.{name}.like goes in a circle")

@@ -1,6 +1,5 @@
 """A machine: its joints, stages, parameters and the names of its recordings' columns."""
 
-import copy
 import difflib
 import math
 from collections.abc import Mapping
@@ -16,6 +15,7 @@ from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.records import JOINT, JOINT_STAGES, SHARED_STAGES
 from hydrolek_drake.rigs import geometry
 from hydrolek_drake.rigs.entries import Entry, parse_entry, parse_quantity
+from hydrolek_drake.rigs.writing import written_tree
 
 LONGEST_STEP = Parameter("longest_step", "s", "upper bound of the rollout's integration step", lowest=1e-9)
 SPOOL_STEPS = Parameter("spool_steps", "1", "steps of the spool within one step of the rest", lowest=1.0)
@@ -60,6 +60,7 @@ class Rig:
         entries: dict[str, Entry] = {}
         for name, stage in SHARED_STAGES.items():
             _read_stage(tree.get(name), stage, name, path, variants, entries)
+        everywhere = _effects_section(tree, f"{path}: effects")
         for joint, sections in tree["joints"].items():
             for section in sections:
                 if section not in JOINT_STAGES and section != "effects":
@@ -70,7 +71,7 @@ class Rig:
             for name, stage in JOINT_STAGES.items():
                 _read_stage(sections.get(name), stage, f"joints.{joint}.{name}", path, variants, entries)
             _read_effects(
-                {**(tree.get("effects") or {}), **(sections.get("effects") or {})},
+                {**everywhere, **_effects_section(sections, f"{path}: joints.{joint}.effects")},
                 f"joints.{joint}.effects",
                 path,
                 entries,
@@ -84,6 +85,9 @@ class Rig:
             entries[where] = parse_entry(integration[parameter.name], parameter, f"{path}: {where}")
         recording = tree.get("recording") or {}
         _check_keys(recording, ("columns", "initial_position"), "recording", path)
+        columns = recording.get("columns") or {}
+        if not isinstance(columns, Mapping):
+            raise InputError(f"{path}: recording.columns must be a mapping, such as {{qm: axis.position_m}}")
         initial = recording.get("initial_position", "rig")
         if initial not in ("rig", "recording"):
             raise InputError(
@@ -97,7 +101,7 @@ class Rig:
             variants=variants,
             entries=entries,
             held=_held(tree, path),
-            columns=dict(recording.get("columns") or {}),
+            columns={str(theirs): str(ours) for theirs, ours in columns.items()},
             initial_position=initial,
             tree=tree,
         )
@@ -195,11 +199,7 @@ class Rig:
 
     def as_tree(self) -> dict[str, Any]:
         """The rig as a tree that can be written as a file and loads to the same rig."""
-        tree = copy.deepcopy(self.tree)
-        for path, entry in self.entries.items():
-            if entry.same_as is None:
-                _write_back(tree, path, entry, declaration(self, path))
-        return tree
+        return written_tree(self)
 
 
 def declaration(rig: Rig, full_path: str) -> Parameter:
@@ -252,9 +252,6 @@ def _read_stage(
         full = f"{where}.{p.name}"
         if p.name in section:
             entries[full] = parse_entry(section[p.name], p, f"{path}: {full}")
-            other = entries[full].same_as
-            if other is not None and (other == p.name or other not in {q.name for q in parameters}):
-                raise InputError(f"{path}: {full}.same_as: no other parameter '{other}' in this stage")
         elif variant == "arm" and p.name in geometry.FROM_ARM:
             continue
         elif p.neutral is not None:
@@ -262,15 +259,36 @@ def _read_stage(
         else:
             raise InputError(f"{path}: {full} is missing: {p.meaning} [{p.unit}]")
     if variant == "arm":
+        units = {p.name: p.unit for p in parameters}
         for name, entry in geometry.arm_entries().items():
-            entries.setdefault(f"{where}.{name}", entry)
+            entries.setdefault(f"{where}.{name}", replace(entry, unit=units[name]))
+    _check_same_as(where, tuple(p.name for p in parameters), path, entries)
+
+
+def _check_same_as(where: str, names: tuple[str, ...], path: Path, entries: dict[str, Entry]) -> None:
+    for name in names:
+        followed = [name]
+        while (other := entries[f"{where}.{followed[-1]}"].same_as) is not None:
+            full = f"{where}.{followed[-1]}.same_as"
+            if other not in names or other == followed[-1]:
+                raise InputError(f"{path}: {full}: no other parameter '{other}' in this section")
+            if other in followed:
+                raise InputError(f"{path}: {full}: '{other}' goes in a circle")
+            followed.append(other)
+
+
+def _effects_section(sections: Mapping[str, Any], where: str) -> Mapping[str, Any]:
+    section = sections.get("effects") or {}
+    if not isinstance(section, Mapping):
+        raise InputError(f"{where} must be a mapping of effects, such as {{command.delay: {{delay_s: ...}}}}")
+    return section
 
 
 def _read_effects(section: Mapping[str, Any], where: str, path: Path, entries: dict[str, Entry]) -> None:
     for effect_id in section:
         if effect_id not in EFFECTS:
             try:
-                effect_named(effect_id)
+                effect_named(str(effect_id))
             except InputError as error:
                 raise InputError(f"{path}: {where}: {error}") from None
     for effect in EFFECTS.values():
@@ -282,6 +300,7 @@ def _read_effects(section: Mapping[str, Any], where: str, path: Path, entries: d
                 entries[full] = parse_entry(given[p.name], p, f"{path}: {full}")
             else:
                 entries[full] = Entry(float(p.neutral or 0.0), p.unit, "neutral: effect is off")
+        _check_same_as(f"{where}.{effect.id}", tuple(p.name for p in effect.parameters), path, entries)
 
 
 def _fill(record: Any, stage: Stage, where: str, rig: Rig) -> None:
@@ -296,34 +315,11 @@ def _fill(record: Any, stage: Stage, where: str, rig: Rig) -> None:
 def _held(tree: dict[str, Any], path: Path) -> dict[str, float]:
     held = {}
     for joint, sections in (tree.get("_held") or {}).items():
-        load = sections.get("load", {})
+        load = sections.get("load")
         stage = JOINT_STAGES["load"]
-        parameter = next(p for p in stage.parameters("arm") if p.name == "initial_position")
-        where = f"joints.{joint}.load.initial_position"
-        held[joint] = parse_entry(load.get("initial_position"), parameter, f"{path}: {where}").value
+        where = f"{path}: joints.{joint}.load"
+        if not isinstance(load, Mapping) or load.get("variant") not in tuple(stage.variants):
+            raise InputError(f"{where}.variant is missing or unknown; choose {', '.join(stage.variants)}")
+        parameter = next(p for p in stage.parameters(load["variant"]) if p.name == "initial_position")
+        held[joint] = parse_entry(load.get("initial_position"), parameter, f"{where}.initial_position").value
     return held
-
-
-def _write_back(tree: dict[str, Any], path: str, entry: Entry, parameter: Parameter) -> None:
-    head, _, effect_part = path.partition(".effects.")
-    if effect_part:
-        effect_id, _, name = effect_part.rpartition(".")
-        if entry.value == parameter.neutral and entry.range is None:
-            return
-        keys = [*head.split("."), "effects", effect_id, name]
-    else:
-        keys = path.split(".")
-        if entry.source.startswith("neutral:") and entry.value == parameter.neutral:
-            return
-    node = tree
-    for key in keys[:-1]:
-        node = node.setdefault(key, {})
-    written: dict[str, Any] = {
-        "value": float(entry.value),
-        "unit": entry.unit.split("|")[0],
-        "source": entry.source,
-    }
-    if entry.range is not None:
-        written["range"] = [float(v) for v in entry.range]
-        written["scale"] = entry.scale
-    node[keys[-1]] = written

@@ -169,6 +169,21 @@ def _inertia_at(time: float, rod: float, joint: Any) -> float:
     return load.moving_inertia(time, joint) + rod
 
 
+@njit
+def _out_of_bounds(x: float, s: State) -> bool:
+    """Whether anything is NaN or far beyond what a machine can do."""
+    return not (
+        abs(s.q) < 1e3
+        and abs(s.w) < 1e6
+        and s.p_a < 1e12
+        and s.p_b < 1e12
+        and abs(x) < 1e3
+        and abs(s.flow) < 1e3
+        and abs(s.tilt) < 1e3
+        and abs(s.lead_q) < 1e3
+    )
+
+
 @njit(cache=True)
 def integrate(
     joints: np.ndarray,
@@ -230,7 +245,7 @@ def integrate(
                     x = x_next
                     play = sensor.played(play, s.q - s.tilt, joint)
             t = until
-        if not (abs(s.q) < 1e3 and abs(s.w) < 1e6 and s.p_a < 1e12 and s.p_b < 1e12):
+        if _out_of_bounds(x, s):
             return row
         voltage = command.drive_voltage(command_values[held], joint)
         _, _, p_supply, force = rates(s, x, voltage, t - begin, _inertia_at(t - begin, rod, joint), joint)

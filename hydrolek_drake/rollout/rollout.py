@@ -1,10 +1,12 @@
 """A rig's joint driven through a command: the compiled execution's front door."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from hydrolek_drake.physics import cylinder, hooks, linkage, load
+from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, flat, position_of
 from hydrolek_drake.rollout import kernel
 
 STATE_SIZE = 2 + len(kernel.State._fields)
@@ -77,13 +79,14 @@ def rest_tilt_and_lead(record: np.void, position: float, needed: float) -> tuple
 def rest_pressures(record: np.void, side: float, needed: float) -> tuple[float, float]:
     """Chamber pressures that hold a moment `needed` [N m] with the actuator's side at `side` [rad or m]."""
     p = record["cylinder"]
+    area_a, area_b = float(p["area_a"]), float(p["area_b"])
     _, lever = linkage.stroke_and_lever(side, record)
     p_b = float(p["initial_pressure_b"])
-    p_a = (needed / lever + p["area_b"] * p_b) / p["area_a"]
+    p_a = (needed / lever + area_b * p_b) / area_a
     if p_a < 0.0:  # the load pulls the rod out: side B carries it
         p_a = float(record["supply"]["tank_pressure"])
-        p_b = (p["area_a"] * p_a - needed / lever) / p["area_b"]
-    return float(p_a), float(p_b)
+        p_b = (area_a * p_a - needed / lever) / area_b
+    return p_a, p_b
 
 
 def roll_out(
@@ -107,20 +110,55 @@ def roll_out(
         longest_step: upper bound of the integration step [s].
         spool_steps: steps of the spool within one step of the rest.
     """
-    start = rest_state(joint) if state is None else state.copy()
     out = np.full((len(times), len(kernel.SIGNALS)), np.nan)
     times = np.ascontiguousarray(times, dtype=float)
-    rows = kernel.integrate(
-        joint,
-        start,
-        np.ascontiguousarray(command_times, dtype=float),
-        np.ascontiguousarray(command_values, dtype=float),
-        times,
-        longest_step,
-        spool_steps,
-        out,
-    )
-    diverged = None
-    if rows < len(times):
-        diverged = f"left all bounds at {times[rows]:.3f} s"
+    start = np.full(STATE_SIZE, np.nan) if state is None else state.copy()
+    diverged = _missing_number(joint)
+    if diverged is None:
+        try:
+            start = rest_state(joint) if state is None else start
+            rows = kernel.integrate(
+                joint,
+                start,
+                np.ascontiguousarray(command_times, dtype=float),
+                np.ascontiguousarray(command_values, dtype=float),
+                times,
+                longest_step,
+                spool_steps,
+                out,
+            )
+            if rows < len(times):
+                diverged = f"left all bounds at {times[rows]:.3f} s"
+        except ZeroDivisionError:
+            out[:] = np.nan
+            diverged = "a parameter by which something is divided is zero"
     return Outcome(Signals(times, *out.T), diverged, start)
+
+
+_VARIANTS = np.array([position_of(stage, "variant") for stage in STAGES])
+
+
+def _missing_number(joint: np.ndarray) -> str | None:
+    """Which parameter of the chosen variants or of an effect is NaN, or None.
+
+    NaN would not always show: a comparison with it is false, so that a valve with NaN overlap stays shut.
+    """
+    vector = flat(joint)[0]
+    places, names = _used(tuple(vector[_VARIANTS]))
+    missing = np.isnan(vector[places])
+    if not missing.any():
+        return None
+    return f"{names[int(np.argmax(missing))]} is not a number (NaN)"
+
+
+@cache
+def _used(variants: tuple[float, ...]) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Places in a flat record, and names, of the parameters that count for these variants."""
+    used = {}
+    for stage, code in zip(STAGES.values(), variants, strict=True):
+        for parameter in stage.parameters(list(stage.variants)[int(code)]):
+            used[position_of(stage.name, parameter.name)] = f"{stage.name}.{parameter.name}"
+    for key in EFFECT_RECORD.names or ():
+        for name in EFFECT_RECORD[key].names or ():
+            used[position_of(key, name)] = f"effects.{key}.{name}"
+    return np.array(list(used)), tuple(used.values())

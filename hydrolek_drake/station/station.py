@@ -2,10 +2,11 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from pydrake.multibody.plant import MultibodyPlant
-from pydrake.systems.framework import Diagram, DiagramBuilder, System
+from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort, System
 from pydrake.systems.primitives import Adder, Gain, LogVectorOutput, VectorLogSink
 
 from hydrolek_drake.errors import InputError
@@ -27,6 +28,8 @@ from hydrolek_drake.systems.solenoid_spool import SolenoidSpool
 from hydrolek_drake.systems.supply import Supply
 from hydrolek_drake.systems.transport_delay import TransportDelay
 
+_Add = Callable[[Any], Any]  # adds a system to the diagram and returns it
+
 
 @dataclass(frozen=True)
 class StepSizes:
@@ -39,12 +42,15 @@ class StepSizes:
         log_period: how often signals are written [s].
         integrator: "runge_kutta2", or "symplectic_euler", which asks for one evaluation a step instead of two
             and is of first order.
+        mount_forces: whether cylinders push at their mounting points, as in the thesis (4.2.4), or act by
+            force times lever on their joint, which is the same by virtual work and takes less time.
     """
 
     step: float = 1e-3
     plant_step: float = 0.0
     log_period: float = 1e-2
     integrator: str = "runge_kutta2"
+    mount_forces: bool = True
 
     def __post_init__(self) -> None:
         """Refuse an integrator that the actuators are not built for."""
@@ -108,14 +114,14 @@ def make_station(
     body = add_plant(builder, rig, joints, sizes.plant_step)
     systems: dict[str, System] = {}
 
-    def add(system: System) -> System:
+    def add(system: Any) -> Any:
         builder.AddSystem(system)
         systems[system.get_name()] = system
         return system
 
     delay = add(TransportDelay(joints, sizes.step))
     _wire_command(builder, add, joints, delay, command, operator)
-    parts = _wire_mechanics(builder, add, rig, joints, body)
+    parts = _wire_mechanics(builder, add, rig, joints, body, sizes)
     electric = joints["cylinder"]["variant"] == cylinder.ELECTRIC_MOTOR
     if electric.all():
         motor = add(ElectricMotor(joints))
@@ -141,10 +147,17 @@ def make_station(
 @dataclass(frozen=True)
 class _Mechanics:
     linkage: Linkage
-    sensed: object
+    sensed: OutputPort
 
 
-def _wire_command(builder, add, joints, delay, command, operator) -> None:  # type: ignore[no-untyped-def]
+def _wire_command(
+    builder: DiagramBuilder,
+    add: _Add,
+    joints: np.ndarray,
+    delay: TransportDelay,
+    command: System | None,
+    operator: bool,
+) -> None:
     entry = delay.command
     name = "command"
     if operator:
@@ -159,7 +172,9 @@ def _wire_command(builder, add, joints, delay, command, operator) -> None:  # ty
         builder.Connect(command.get_output_port(0), entry)
 
 
-def _wire_mechanics(builder, add, rig: Rig, joints: np.ndarray, body: RigPlant) -> _Mechanics:  # type: ignore[no-untyped-def]
+def _wire_mechanics(
+    builder: DiagramBuilder, add: _Add, rig: Rig, joints: np.ndarray, body: RigPlant, sizes: StepSizes
+) -> _Mechanics:
     plant = body.plant
     chain = read_chain(plant, rig.joints)
     playing = joints["effects"]["linkage_backlash"]["gap_rad"] > 0.0
@@ -167,7 +182,7 @@ def _wire_mechanics(builder, add, rig: Rig, joints: np.ndarray, body: RigPlant) 
     is_cylinder = (joints["linkage"]["variant"] == linkage.TRIANGLE) & (
         joints["cylinder"]["variant"] == cylinder.CYLINDER
     )
-    by_moment = playing | rocking | ~is_cylinder
+    by_moment = playing | rocking | ~is_cylinder | (not sizes.mount_forces)
     mounts = [mount for mount in read_mounts(plant, rig.joints, joints, chain) if not by_moment[mount.joint]]
     has_side = bool(playing.any() or rocking.any())
     link = add(Linkage(joints, chain, mounts, plant.num_multibody_states(), has_side))
@@ -203,7 +218,15 @@ def _wire_mechanics(builder, add, rig: Rig, joints: np.ndarray, body: RigPlant) 
     return _Mechanics(link, sensed)
 
 
-def _wire_hydraulics(builder, add, rig, joints, sizes, delay, parts) -> None:  # type: ignore[no-untyped-def]
+def _wire_hydraulics(
+    builder: DiagramBuilder,
+    add: _Add,
+    rig: Rig,
+    joints: np.ndarray,
+    sizes: StepSizes,
+    delay: TransportDelay,
+    parts: _Mechanics,
+) -> None:
     ahead = sizes.step if sizes.integrator == "symplectic_euler" and sizes.plant_step == 0.0 else 0.0
     amplifier = add(ProportionalAmplifier(joints))
     spool = add(SolenoidSpool(joints, sizes.step, round(rig.value("integration.spool_steps"))))

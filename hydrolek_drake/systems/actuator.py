@@ -91,10 +91,8 @@ class Actuator(LeafSystem):
         derivatives.SetFromVector(rates)
 
     def _calc_force(self, context: Context, output: BasicVector) -> None:
-        force = np.empty(len(self._joints))
         pressure = context.get_continuous_state_vector().CopyToVector()
         flow = self.flow.Eval(context) if self._ahead > 0.0 else self._no_flow
-        _forces(
-            self._joints, pressure, flow, self.motion.Eval(context), context.get_time(), self._ahead, force
-        )
-        output.SetFromVector(force)
+        motion = self.motion.Eval(context)
+        force = output.get_mutable_value()
+        _forces(self._joints, pressure, flow, motion, context.get_time(), self._ahead, force)

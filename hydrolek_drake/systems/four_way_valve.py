@@ -43,13 +43,11 @@ class FourWayValve(LeafSystem):
         self.flow = self.DeclareVectorOutputPort("oil_flow", 3 * n, self._calc)
 
     def _calc(self, context: Context, output: BasicVector) -> None:
-        flow = np.empty(3 * len(self._joints))
         _flows(
             self._joints,
             self.spool.Eval(context),
             self.pressure.Eval(context),
             float(self.supply.Eval(context)[0]),
             context.get_time(),
-            flow,
+            output.get_mutable_value(),
         )
-        output.SetFromVector(flow)

@@ -236,14 +236,11 @@ class Linkage(LeafSystem):
         )
 
     def _calc_rod_motion(self, context: Context, output: BasicVector) -> None:
-        motion = np.empty(2 * len(self._joints))
-        _rod_motion(self._joints, self._source.Eval(context), self._q, self._w, motion)
-        output.SetFromVector(motion)
+        _rod_motion(self._joints, self._source.Eval(context), self._q, self._w, output.get_mutable_value())
 
     def _calc_moment(self, context: Context, output: BasicVector) -> None:
-        moments = np.empty(len(self._joints))
-        _moments(self._joints, self._source.Eval(context), self._q, self.force.Eval(context), moments)
-        output.SetFromVector(moments)
+        state, force = self._source.Eval(context), self.force.Eval(context)
+        _moments(self._joints, state, self._q, force, output.get_mutable_value())
 
     def _calc_mount_force(self, context: Context, output: AbstractValue) -> None:
         chain = self._chain

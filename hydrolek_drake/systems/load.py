@@ -64,7 +64,8 @@ class Load(LeafSystem):
         self.torque = self.DeclareVectorOutputPort("joint_torque", velocities, self._calc)
 
     def _calc(self, context: Context, output: BasicVector) -> None:
-        torque = np.zeros(output.size())
+        torque = output.get_mutable_value()
+        torque[:] = 0.0
         _torques(
             self._joints,
             self.plant_state.Eval(context),
@@ -76,4 +77,3 @@ class Load(LeafSystem):
             self._place,
             torque,
         )
-        output.SetFromVector(torque)

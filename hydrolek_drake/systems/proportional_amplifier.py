@@ -31,6 +31,4 @@ class ProportionalAmplifier(LeafSystem):
         self.current = self.DeclareVectorOutputPort("coil_current", 2 * len(joints), self._calc)
 
     def _calc(self, context: Context, output: BasicVector) -> None:
-        currents = np.empty(2 * len(self._joints))
-        _currents(self._joints, self.voltage.Eval(context), context.get_time(), currents)
-        output.SetFromVector(currents)
+        _currents(self._joints, self.voltage.Eval(context), context.get_time(), output.get_mutable_value())

@@ -9,13 +9,14 @@ from hydrolek_drake.physics.solenoid import advance
 
 @njit(cache=True)
 def _advance(
-    joints: np.ndarray, state: np.ndarray, current: np.ndarray, step: float, substeps: int, out: np.ndarray
+    joints: np.ndarray, state: np.ndarray, current: np.ndarray, step: float, substeps: int, mean: np.ndarray
 ) -> None:
+    """Advance positions and velocities in place; `mean` becomes the mean position over the step."""
     n = len(joints)
     for i in range(n):
         x, v = advance(state[i], state[n + i], current[i], current[n + i], step, substeps, joints[i])
-        out[i], out[n + i] = x, v
-        out[2 * n + i] = 0.5 * (state[i] + x)
+        mean[i] = 0.5 * (state[i] + x)
+        state[i], state[n + i] = x, v
 
 
 class SolenoidSpool(LeafSystem):
@@ -44,9 +45,7 @@ class SolenoidSpool(LeafSystem):
         self.position = self.DeclareStateOutputPort("spool_position", self._mean)
 
     def _update(self, context: Context, values: DiscreteValues) -> None:
-        following = np.empty(3 * len(self._joints))
-        state = context.get_discrete_state(self._state).get_value()
-        _advance(self._joints, state, self.current.Eval(context), self._step, self._substeps, following)
-        n = len(self._joints)
-        values.get_mutable_vector(self._state).SetFromVector(following[: 2 * n])
-        values.get_mutable_vector(self._mean).SetFromVector(following[2 * n :])
+        state = values.get_mutable_value(self._state)
+        state[:] = context.get_discrete_state(self._state).get_value()
+        mean = values.get_mutable_value(self._mean)
+        _advance(self._joints, state, self.current.Eval(context), self._step, self._substeps, mean)

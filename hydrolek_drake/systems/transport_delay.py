@@ -2,7 +2,7 @@
 
 import numpy as np
 from numba import njit
-from pydrake.systems.framework import Context, DiscreteValues, LeafSystem, State
+from pydrake.systems.framework import Context, LeafSystem, State
 
 from hydrolek_drake.physics.command import drive_voltage, transport_delay
 
@@ -14,12 +14,25 @@ def _delays(joints: np.ndarray, out: np.ndarray) -> None:
 
 
 @njit(cache=True)
-def _shift(joints: np.ndarray, line: np.ndarray, command: np.ndarray, out: np.ndarray) -> None:
-    """The line of past voltages moved on by one step, the newest first; shapes (steps, n)."""
-    for i in range(len(joints)):
-        out[0, i] = drive_voltage(command[i], joints[i])
-        for k in range(1, len(line)):
-            out[k, i] = line[k - 1, i]
+def _take_in(
+    joints: np.ndarray,
+    command: np.ndarray,
+    whole: np.ndarray,
+    rest: np.ndarray,
+    row: np.ndarray,
+    line: np.ndarray,
+    out: np.ndarray,
+) -> None:
+    """Write this step's voltages into the ring `line` (steps times n) and read the delayed ones from it."""
+    n = len(joints)
+    length = len(line) // n
+    newest = int(row[0])
+    for i in range(n):
+        line[newest * n + i] = drive_voltage(command[i], joints[i])
+        newer = line[((newest - whole[i]) % length) * n + i]
+        older = line[((newest - whole[i] - 1) % length) * n + i]
+        out[i] = newer + rest[i] * (older - newer)
+    row[0] = (newest + 1) % length
 
 
 class TransportDelay(LeafSystem):
@@ -44,30 +57,28 @@ class TransportDelay(LeafSystem):
         self._whole = np.floor(delays / step + 1e-9).astype(int)
         self._rest = np.maximum(delays / step - self._whole, 0.0)
         self._length = int(self._whole.max()) + 2
-        self._columns = np.arange(n)
         self.command = self.DeclareVectorInputPort("command", n)
+        self._row = self.DeclareDiscreteState(np.zeros(1))
         self._line = self.DeclareDiscreteState(np.zeros(self._length * n))
         self._out = self.DeclareDiscreteState(np.zeros(n))
-        self.DeclareInitializationDiscreteUpdateEvent(self._fill)
+        self.DeclareInitializationUnrestrictedUpdateEvent(self._fill)
         # Unrestricted updates come before discrete ones at the same time, so the spool sees this step's voltage.
         self.DeclarePeriodicUnrestrictedUpdateEvent(step, 0.0, self._update)
         self.voltage = self.DeclareStateOutputPort("voltage_delayed", self._out)
 
-    def _fill(self, context: Context, values: DiscreteValues) -> None:
+    def _fill(self, context: Context, state: State) -> None:
         """Before the start the first command stood."""
-        line = np.zeros((self._length, len(self._joints)))
         for _ in range(self._length):
-            moved = np.empty_like(line)
-            _shift(self._joints, line, self.command.Eval(context), moved)
-            line = moved
-        values.get_mutable_vector(self._line).SetFromVector(line.ravel())
-        values.get_mutable_vector(self._out).SetFromVector(line[0])
+            self._update(context, state)
 
     def _update(self, context: Context, state: State) -> None:
-        line = context.get_discrete_state(self._line).get_value().reshape(self._length, -1)
-        moved = np.empty_like(line)
-        _shift(self._joints, line, self.command.Eval(context), moved)
-        state.get_mutable_discrete_state(self._line).SetFromVector(moved.ravel())
-        newer = moved[self._whole, self._columns]
-        older = moved[self._whole + 1, self._columns]
-        state.get_mutable_discrete_state(self._out).SetFromVector(newer + self._rest * (older - newer))
+        values = state.get_mutable_discrete_state()
+        _take_in(
+            self._joints,
+            self.command.Eval(context),
+            self._whole,
+            self._rest,
+            values.get_mutable_value(self._row),
+            values.get_mutable_value(self._line),
+            values.get_mutable_value(self._out),
+        )

@@ -1,0 +1,61 @@
+"""A rig back to the tree of a file that loads to the same rig."""
+
+import copy
+import math
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from hydrolek_drake.rigs.entries import Entry
+    from hydrolek_drake.rigs.rig import Rig
+
+
+def written_tree(rig: "Rig") -> dict[str, Any]:
+    """The rig's tree with its present values; what is neutral, or follows from the arms, is left out."""
+    from hydrolek_drake.rigs.rig import declaration
+
+    tree = copy.deepcopy(rig.tree)
+    held = tree.pop("_held", None)
+    tree.pop("effects", None)  # each joint gets its own below
+    for sections in tree["joints"].values():
+        sections.pop("effects", None)
+    for path, entry in rig.entries.items():
+        neutral = entry.value == declaration(rig, path).neutral
+        if ".effects." in path:
+            left_out = neutral and entry.range is None
+        else:
+            left_out = neutral and entry.source.startswith("neutral:")
+        if not left_out and not (entry.same_as is None and math.isnan(entry.value)):
+            _write(tree, path, entry)
+    if held:
+        tree["joints"].update(held)
+        tree["keep"] = list(rig.joints)
+    return tree
+
+
+def _write(tree: dict[str, Any], path: str, entry: "Entry") -> None:
+    head, _, of_effect = path.partition(".effects.")
+    if of_effect:
+        effect_id, _, name = of_effect.rpartition(".")
+        keys = [*head.split("."), "effects", effect_id, name]
+    else:
+        keys = path.split(".")
+    node = tree
+    for key in keys[:-1]:
+        if not isinstance(node.get(key), dict):
+            node[key] = {}  # a stage without parameters may stand in the file as nothing
+        node = node[key]
+    node[keys[-1]] = _written(entry)
+
+
+def _written(entry: "Entry") -> dict[str, Any]:
+    if entry.same_as is not None:
+        return {"same_as": entry.same_as}
+    written: dict[str, Any] = {
+        "value": float(entry.value),
+        "unit": entry.unit.split("|")[0],
+        "source": entry.source,
+    }
+    if entry.range is not None:
+        written["range"] = [float(v) for v in entry.range]
+        written["scale"] = entry.scale
+    return written

@@ -1,0 +1,281 @@
+"""Each effect's closed form, seen in the simulated machine."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from hydrolek_drake.physics import amplifier, cylinder, fluid, hooks, sensor
+
+LOWER, UPPER = np.radians(-10.3), np.radians(65.6)
+STEP_UP = ((0.0, 0.2), (0.0, 7.0))
+AT_REST = ((0.0,), (0.0,))
+
+
+def _lever(angle):
+    included = angle + np.radians(60.0)
+    return 0.12 * 0.35 * np.sin(included) / np.sqrt(0.12**2 + 0.35**2 - 2 * 0.12 * 0.35 * np.cos(included))
+
+
+@pytest.fixture
+def record(bench):
+    return lambda values: bench.with_values(values).records()[0]
+
+
+def test_delay_shifts_the_response_by_exactly_the_delay(drive):
+    delay = 0.0371  # no multiple of the step
+    times = np.linspace(0.0, 1.5, 301)
+    plain = drive(command=STEP_UP, times=times).position
+    later = drive({"effects.command.delay.delay_s": delay}, command=STEP_UP, times=times[times < 1.4] + delay)
+    assert np.ptp(plain) > 0.3
+    assert_allclose(later.position, plain[times < 1.4], atol=1e-7)
+
+
+def test_fade_follows_its_time_course(record):
+    joint = record(
+        {"effects.amplifier.gain_fade.fraction": 0.13, "effects.amplifier.gain_fade.time_constant_s": 7.0}
+    )
+    for time in (0.0, 3.0, 7.0, 100.0):
+        expected = 0.8 * (1 - 0.13 * (1 - np.exp(-time / 7)))
+        assert_allclose(amplifier.coil_currents(8.0, time, joint)[0], expected, rtol=1e-13)
+
+
+def test_warm_up_thins_the_oil_on_its_time_course(record):
+    joint = record({"effects.fluid.warm_up.fraction": 0.13, "effects.fluid.warm_up.time_constant_s": 7.0})
+    for time in (0.0, 3.0, 7.0, 100.0):
+        share = 0.13 * (1 - np.exp(-time / 7))
+        assert_allclose(hooks.flow_gain(time, joint), 1 + share, rtol=1e-13)
+        assert_allclose(
+            cylinder.friction_force(0.1, 0.03, time, joint)[0], 3000 * (1 - share) * 0.03, rtol=1e-13
+        )
+
+
+def test_shifted_null_takes_voltage_from_one_direction_and_gives_it_to_the_other(drive):
+    """The spool that just opens: x = overlap + shift towards A, overlap - shift towards B (both at rest)."""
+    shift = 1.5e-5
+    for sign, overlap in ((1, 6e-5 + shift), (-1, 6e-5 - shift)):
+        moves = []
+        for factor in (0.97, 1.03):
+            spool = overlap * factor
+            current = np.sqrt(8000 * spool * (1 + 120 * spool) ** 2 / 30)
+            signals = drive(
+                {"effects.valve.asymmetric_overlap.shift_m": shift},
+                command=((0.0,), (sign * 10 * current,)),
+                times=np.array([0.0, 3.0]),
+            )
+            moves.append(sign * (signals.position[1] - signals.position[0]))
+        assert abs(moves[0]) < 1e-12
+        assert moves[1] > 1e-4
+
+
+def test_spool_sticks_below_its_friction_and_lags_by_it(drive):
+    """Driven slowly up and down, the spool stands friction/spring below and above its frictionless place."""
+    force, volts = 0.25, 2.6
+    start = np.arange(0.0, 11.0, 0.01)
+    up = np.interp(start, [0, 10], [0, volts])
+    down = np.interp(start, [0, 10], [5.0, volts])
+    settled = [
+        drive(
+            {
+                "effects.valve.spool_stiction.force_N": force,
+                "solenoid.stiction_velocity": 1e-6,
+                "solenoid.gap_constant": 1e-9,
+            },
+            command=(start, way),
+            times=np.array([0.0, 10.1]),
+            longest_step=1e-4,
+        ).spool[-1]
+        for way in (up, down)
+    ]
+    middle = 30 * (0.1 * volts) ** 2 / 8000
+    assert_allclose(middle - settled[0], force / 8000, rtol=0.05)  # damping adds at this speed
+    assert_allclose(settled[1] - middle, force / 8000, rtol=0.05)
+
+
+def test_leaking_lands_settle_both_chambers_half_way_between_supply_and_tank(drive):
+    """Q_A = Q_B = 0 needs P_A = P_B = (P_S + P_T)/2, whatever the load, which then lies on its stop."""
+    signals = drive(
+        {"effects.valve.null_leakage.conductance_m3_per_s_Pa": 1e-11},
+        command=AT_REST,
+        times=np.array([0.0, 60.0]),
+    )
+    assert_allclose((signals.pressure_a[-1], signals.pressure_b[-1]), 0.5 * (16e6 + 0.2e6), rtol=1e-3)
+    assert signals.position[-1] < LOWER
+
+
+def test_droop_lowers_the_supply_by_resistance_times_flow(drive):
+    resistance = 5e10
+    signals = drive(
+        {"effects.supply.pressure_droop.resistance_Pa_s_per_m3": resistance},
+        command=STEP_UP,
+        times=np.linspace(0.0, 1.0, 1001),
+    )
+    moving = slice(500, 700)
+    # at slow change, what is drawn is what side A takes: area times speed
+    drawn = 800e-6 * _lever(signals.position[moving]) * signals.velocity[moving]
+    assert_allclose(16e6 - signals.supply_pressure[moving], resistance * drawn, rtol=0.02)
+    assert signals.supply_pressure[moving].max() < 15e6
+
+
+def test_air_softens_the_oil_at_low_pressure_only(record):
+    joint = record({"effects.fluid.entrained_air.air_fraction": 0.1})
+    for pressure in (0.3e6, 2e6, 15e6):
+        expected = 1 / (1e-9 + 0.1 * 1e5 / pressure**2)
+        assert_allclose(fluid.effective_bulk_modulus(pressure, joint), expected, rtol=1e-13)
+    assert fluid.effective_bulk_modulus(15e6, joint) > 0.9e9
+
+
+def test_leakage_past_the_piston_is_in_proportion_to_the_pressure_difference(record):
+    joint = record({"effects.cylinder.cross_port_leakage.conductance_m3_per_s_Pa": 1.3e-12})
+    assert hooks.cross_conductance(joint) == 1.3e-12
+
+
+@pytest.mark.parametrize(("share", "holds"), [(0.9, True), (1.1, False)])
+def test_coulomb_friction_balances_a_load_below_its_value(bench, share, holds):
+    """A load that the pressures do not know, on a cylinder with both sides open to the tank's pressure."""
+    from hydrolek_drake.rollout import rest_state, roll_out
+
+    coulomb = 900.0
+    rig = bench.with_values(
+        {
+            "effects.cylinder.coulomb_friction.coulomb_N": coulomb,
+            "cylinder.friction_velocity": 1e-7,
+            "load.gravity_cos": share * coulomb * _lever(np.radians(25.0)) / np.cos(np.radians(25.0)),
+            "cylinder.dead_volume_a": 1e3,  # so large that the pressures stay whatever the piston does
+        }
+    )
+    records = rig.records()
+    start = rest_state(records)
+    start[2] = start[3] = 0.0
+    signals = roll_out(
+        records, np.zeros(1), np.zeros(1), np.array([0.0, 0.5]), state=start, longest_step=1e-4
+    ).signals
+    moved = signals.position[0] - signals.position[1]
+    assert (moved < 1e-5) == holds
+    assert moved >= 0.0
+
+
+def test_coulomb_and_stribeck_friction_curves(record):
+    v = np.array([-0.05, -0.003, 0.0007, 0.02])
+    coulomb = record({"effects.cylinder.coulomb_friction.coulomb_N": 700.0, "cylinder.viscous_friction": 0.0})
+    both = record(
+        {
+            "effects.cylinder.stribeck_friction.coulomb_N": 300.0,
+            "effects.cylinder.stribeck_friction.stribeck_N": 400.0,
+            "effects.cylinder.stribeck_friction.stribeck_velocity_m_per_s": 0.004,
+            "cylinder.viscous_friction": 0.0,
+        }
+    )
+    for speed in v:
+        assert_allclose(
+            cylinder.friction_force(0.1, speed, 0.0, coulomb)[0], 700 * np.tanh(speed / 0.5e-3), rtol=1e-13
+        )
+        level = 300 + 400 * np.exp(-((speed / 0.004) ** 2))
+        assert_allclose(
+            cylinder.friction_force(0.1, speed, 0.0, both)[0], level * np.tanh(speed / 0.5e-3), rtol=1e-13
+        )
+
+
+@pytest.mark.parametrize(
+    ("stroke", "velocity", "expected"),
+    [(0.012, -0.03, -1e5 * 0.03 * 0.6), (0.012, 0.03, 0.0), (0.031, -0.03, 0.0), (0.0, -0.03, -1e5 * 0.03)],
+)
+def test_cushion_brakes_only_the_last_part_of_retraction(record, stroke, velocity, expected):
+    joint = record(
+        {
+            "effects.cylinder.end_cushion.damping_N_s_per_m": 1e5,
+            "effects.cylinder.end_cushion.length_m": 0.03,
+            "cylinder.viscous_friction": 0.0,
+        }
+    )
+    assert_allclose(cylinder.friction_force(stroke, velocity, 0.0, joint)[0], expected, rtol=1e-12, atol=0)
+
+
+def test_backlash_lets_the_link_hang_half_the_gap_below_and_no_further(drive):
+    """Started centred, the load falls through half the gap and rests on the contact's spring."""
+    gap = 0.012
+    signals = drive({"effects.linkage.backlash.gap_rad": gap}, command=AT_REST, times=np.array([0.0, 5.0]))
+    fallen = signals.position[0] - signals.position[1]
+    contact = 265 * np.cos(signals.position[1]) / 2e5
+    # the oil, set for this load at the start, gives nothing more once it carries it again
+    assert_allclose(fallen, gap / 2 + contact, rtol=0.02)
+
+
+def test_base_tilts_by_moment_over_stiffness(bench):
+    from hydrolek_drake.rollout import rest_state, roll_out
+
+    stiffness = 3e4
+    values = {
+        "effects.base.compliance.stiffness_Nm_per_rad": stiffness,
+        "effects.base.compliance.inertia_kg_m2": 80.0,
+        "base.rocking_damping_ratio": 0.5,
+    }
+    records = bench.with_values(values).records()
+    start = rest_state(records)
+    moment = 265 * np.cos(np.radians(25.0))
+    assert_allclose(start[7], -moment / stiffness, rtol=1e-12)
+    # the link holds its angle in space; the sensor on the base sees the tilt on top
+    signals = roll_out(records, np.zeros(1), np.zeros(1), np.array([0.0, 5.0]), longest_step=5e-4).signals
+    assert_allclose(signals.reading - signals.position, moment / stiffness, rtol=1e-6)
+    # started level, the rocking dies out at the same tilt
+    start[7] = 0.0
+    late = roll_out(
+        records, np.zeros(1), np.zeros(1), np.array([0.0, 20.0]), state=start, longest_step=5e-4
+    ).signals
+    tilt = late.position[-1] - late.reading[-1]
+    assert_allclose(tilt, -265 * np.cos(late.position[-1]) / stiffness, rtol=1e-4)
+
+
+def test_payload_raises_the_static_pressure_by_its_moment(drive):
+    mass = 5.0
+    signals = drive(
+        {"effects.load.payload.mass_kg": mass, "effects.load.payload.time_s": 0.0},
+        command=AT_REST,
+        times=np.array([0.0, 1.0]),
+    )
+    plain = drive(command=AT_REST, times=np.array([0.0, 1.0]))
+    angle = np.radians(25.0)
+    expected = mass * 9.81 * np.cos(angle) / (800e-6 * _lever(angle))
+    assert_allclose(signals.pressure_a - plain.pressure_a, expected, rtol=1e-9)
+
+
+def test_bow_is_largest_in_mid_travel_and_zero_at_the_ends(record):
+    joint = record({"effects.sensor.nonlinearity.amplitude_rad": 0.02})
+    middle = 0.5 * (LOWER + UPPER)
+    assert_allclose(sensor.reading(middle, 0.0, joint) - middle, 0.02, rtol=1e-12)
+    quarter = LOWER + 0.25 * (UPPER - LOWER)
+    assert_allclose(sensor.reading(quarter, 0.0, joint) - quarter, 0.75 * 0.02, rtol=1e-12)
+    for end in (LOWER, UPPER):
+        assert_allclose(sensor.reading(end, 0.0, joint), end, atol=1e-15)
+
+
+def test_reading_with_play_lags_by_half_of_it_in_both_directions(drive):
+    half = 0.008
+    signals = drive({"effects.sensor.hysteresis.half_width_rad": half})
+    lag = signals.position - signals.reading
+    fast = np.abs(signals.velocity) > 0.2
+    late = fast & (np.abs(lag) > 0.999 * half)
+    assert np.abs(lag).max() <= half + 1e-12
+    assert late.sum() > 0.8 * fast.sum()
+    assert np.all(np.sign(lag[late]) == np.sign(signals.velocity[late]))
+
+
+def test_drift_has_its_slope(drive):
+    times = np.linspace(0.0, 60.0, 7)
+    signals = drive({"effects.sensor.drift.rate_rad_per_min": 0.03}, command=AT_REST, times=times)
+    assert_allclose(signals.reading - signals.position, 0.03 * times / 60, rtol=1e-12, atol=1e-15)
+
+
+def test_frictions_of_the_load_are_their_laws(record):
+    joint = record(
+        {
+            "effects.load.coulomb_friction.force_N": 31.0,
+            "effects.load.viscous_friction.damping_N_s_per_m": 17.0,
+            "effects.load.offset_force.force_N": 5.0,
+            "effects.load.friction_asymmetry.coulomb_N": 3.0,
+            "effects.load.friction_asymmetry.damping_N_s_per_m": 2.0,
+        }
+    )
+    for w in (-0.3, 0.002, 0.7):
+        share = np.tanh(w / np.radians(0.2))
+        expected = 31 * share + 17 * w + 5 + (3 + 2 * abs(w)) * share**2
+        assert_allclose(hooks.load_friction(w, joint)[0], expected, rtol=1e-12)

@@ -1,0 +1,55 @@
+"""Stroke, lever and play between the actuator and the joint."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from hydrolek_drake.physics.linkage import play_torque, stroke_and_lever
+
+REVERSED = {"linkage.direction": -1.0, "linkage.angle_offset": np.radians(100.0)}
+
+
+@pytest.mark.parametrize("values", [{}, REVERSED], ids=["extension raises", "extension lowers"])
+@pytest.mark.parametrize("q", [-0.13, 0.41, 1.07])
+def test_lever_is_the_derivative_of_the_stroke(bench_joint, values, q):
+    if values:
+        values = {**values, "linkage.zero_stroke_length": 0.24}
+    joint = bench_joint(values)
+    step = 1e-6
+    slope = (stroke_and_lever(q + step, joint)[0] - stroke_and_lever(q - step, joint)[0]) / (2 * step)
+    lever = stroke_and_lever(q, joint)[1]
+    assert_allclose(lever, slope, rtol=1e-8)
+    assert np.sign(lever) == (values or {"linkage.direction": 1.0})["linkage.direction"]
+
+
+def test_stroke_is_the_law_of_cosines_less_the_length_with_the_rod_in(bench_joint):
+    q = 0.37
+    length = np.sqrt(0.12**2 + 0.35**2 - 2 * 0.12 * 0.35 * np.cos(q + np.pi / 3))
+    stroke, lever = stroke_and_lever(q, bench_joint())
+    assert_allclose(stroke, length - 0.2873493667, rtol=1e-12)
+    assert_allclose(lever, 0.12 * 0.35 * np.sin(q + np.pi / 3) / length, rtol=1e-12)
+    assert_allclose(stroke_and_lever(np.radians(-10.3), bench_joint())[0], 0.0, atol=1e-9)
+
+
+def test_force_times_stroke_is_moment_times_angle(bench_joint):
+    """Virtual work over the whole travel: the work of a constant rod force is force times stroke."""
+    joint = bench_joint()
+    angles = np.linspace(np.radians(-10.3), np.radians(65.6), 2001)
+    strokes, levers = np.array([stroke_and_lever(q, joint) for q in angles]).T
+    work = 1234.0 * np.trapezoid(levers, angles)
+    assert_allclose(work, 1234.0 * (strokes[-1] - strokes[0]), rtol=1e-7)  # trapezoid's own error
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_a_direct_drive_has_lever_plus_or_minus_one(slide_joint, direction):
+    joint = slide_joint({"linkage.direction": direction, "linkage.zero_stroke_position": 0.03})
+    assert_allclose(stroke_and_lever(0.11, joint), (direction * 0.08, direction), rtol=1e-14)
+
+
+def test_play_carries_nothing_inside_its_gap_and_is_spring_and_damper_where_closed(bench_joint):
+    gap = 0.015
+    joint = bench_joint({"effects.linkage.backlash.gap_rad": gap})
+    assert play_torque(0.007, 3.0, joint) == 0.0
+    assert play_torque(-0.007, -3.0, joint) == 0.0
+    assert_allclose(play_torque(0.009, 0.3, joint), 2e5 * (0.009 - gap / 2) + 400 * 0.3, rtol=1e-12)
+    assert_allclose(play_torque(-0.009, -0.3, joint), -2e5 * (0.009 - gap / 2) - 400 * 0.3, rtol=1e-12)

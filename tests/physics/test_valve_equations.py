@@ -1,0 +1,121 @@
+"""Equations (4.7), (4.8): four edges, overlap and both directions."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from hydrolek_drake.physics.valve import chamber_flows, openings
+
+P_S, P_T = 16e6, 0.2e6
+UNEQUAL = {
+    "valve.overlap_a": 0.05e-3,
+    "valve.overlap_b": 0.08e-3,
+    "valve.full_opening_a": 0.35e-3,
+    "valve.full_opening_b": 0.40e-3,
+    "valve.max_area_a": 0.6e-6,
+    "valve.max_area_b": 0.5e-6,
+}
+
+
+def _orifice(area, drop):
+    return 0.7 * area * (2 / 870) ** 0.5 * drop / (drop**2 + 0.2e6**2) ** 0.25
+
+
+@pytest.mark.parametrize(
+    ("x", "expected"),
+    [
+        (0.0, (0, 0)),
+        (0.049e-3, (0, 0)),  # inside the dead-zone, both sides
+        (-0.079e-3, (0, 0)),
+        (0.11e-3, ((0.11 - 0.05) / 0.30, 0)),
+        (-0.11e-3, (0, (0.11 - 0.08) / 0.32)),
+        (0.35e-3, (1, 0)),
+        (0.9e-3, (1, 0)),
+        (-0.9e-3, (0, 1)),
+    ],
+)
+def test_openings_are_zero_between_the_overlaps_and_limited_at_full_opening(bench_joint, x, expected):
+    assert_allclose(openings(x, bench_joint(UNEQUAL)), expected, rtol=1e-12, atol=1e-12)
+
+
+def test_a_shifted_null_moves_both_edges_and_leaves_their_slope(bench_joint):
+    shift = 0.012e-3
+    joint = bench_joint({**UNEQUAL, "effects.valve.asymmetric_overlap.shift_m": shift})
+    assert_allclose(openings(0.11e-3, joint)[0], (0.11 - 0.062) / 0.30, rtol=1e-12)
+    assert_allclose(openings(-0.11e-3, joint)[1], (0.11 - 0.068) / 0.32, rtol=1e-12)
+    assert openings(0.061e-3, joint) == (0.0, 0.0)
+
+
+def test_flows_towards_a_are_equations_4_7_and_4_8(bench_joint):
+    p_a, p_b = 7.3e6, 3.1e6
+    flow_a, flow_b, drawn, _, _ = chamber_flows(0.4, 0.0, P_S, p_a, p_b, 0.0, bench_joint(UNEQUAL))
+    assert_allclose(flow_a, _orifice(0.4 * 0.6e-6, P_S - p_a), rtol=1e-13)
+    assert_allclose(flow_b, -_orifice(0.4 * 0.6e-6, p_b - P_T), rtol=1e-13)
+    assert_allclose(drawn, flow_a, rtol=1e-13)
+
+
+def test_flows_towards_b_are_the_same_with_the_chambers_exchanged(bench_joint):
+    p_a, p_b = 7.3e6, 3.1e6
+    flow_a, flow_b, drawn, _, _ = chamber_flows(0.0, 0.7, P_S, p_a, p_b, 0.0, bench_joint(UNEQUAL))
+    assert_allclose(flow_b, _orifice(0.7 * 0.5e-6, P_S - p_b), rtol=1e-13)
+    assert_allclose(flow_a, -_orifice(0.7 * 0.5e-6, p_a - P_T), rtol=1e-13)
+    assert_allclose(drawn, flow_b, rtol=1e-13)
+
+
+def test_a_chamber_above_the_supply_flows_back(bench_joint):
+    flow_a, _, drawn, _, _ = chamber_flows(0.5, 0.0, P_S, 17.3e6, 1e6, 0.0, bench_joint(UNEQUAL))
+    assert_allclose(flow_a, -_orifice(0.5 * 0.6e-6, 1.3e6), rtol=1e-13)
+    assert drawn == flow_a
+
+
+def test_a_closed_valve_passes_nothing(bench_joint):
+    assert chamber_flows(0.0, 0.0, P_S, 7.3e6, 3.1e6, 0.0, bench_joint(UNEQUAL)) == (0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def test_symmetric_valve_is_symmetric(bench_joint):
+    joint = bench_joint()
+    towards_a = chamber_flows(0.4, 0.0, P_S, 7.3e6, 3.1e6, 0.0, joint)
+    towards_b = chamber_flows(0.0, 0.4, P_S, 3.1e6, 7.3e6, 0.0, joint)
+    assert_allclose(towards_a[:2], towards_b[1::-1], rtol=1e-14)
+
+
+def test_leakage_over_the_lands_joins_each_edge_and_leakage_past_the_piston_moves_oil_across(bench_joint):
+    land, past = 1.7e-13, 2.3e-12
+    joint = bench_joint(
+        {
+            "effects.valve.null_leakage.conductance_m3_per_s_Pa": land,
+            "effects.cylinder.cross_port_leakage.conductance_m3_per_s_Pa": past,
+        }
+    )
+    p_a, p_b = 7.3e6, 3.1e6
+    flow_a, flow_b, drawn, settle_a, settle_b = chamber_flows(0.0, 0.0, P_S, p_a, p_b, 0.0, joint)
+    assert_allclose(flow_a, land * (P_S - p_a) - land * (p_a - P_T) - past * (p_a - p_b), rtol=1e-12)
+    assert_allclose(flow_b, land * (P_S - p_b) - land * (p_b - P_T) + past * (p_a - p_b), rtol=1e-12)
+    assert_allclose(drawn, land * (2 * P_S - p_a - p_b), rtol=1e-12)
+    assert_allclose((settle_a, settle_b), 2 * land + past, rtol=1e-12)
+
+
+def test_compensated_valve_meters_in_whatever_the_load_while_its_compensator_has_pressure(crane_joint):
+    full = 40e-3 / 60
+    for p_a in (1e6, 5e6, 8.5e6):
+        flow_a = chamber_flows(0.3, 0.0, 9.3e6, p_a, 0.5e6, 0.0, crane_joint)[0]
+        assert_allclose(flow_a, 0.3 * full, rtol=1e-9)
+
+
+def test_compensated_valve_is_an_orifice_below_its_compensator_s_pressure_and_checks_back_flow(crane_joint):
+    full = 40e-3 / 60
+    flow_a = chamber_flows(0.3, 0.0, 9.3e6, 9.3e6 - 0.35e6, 0.5e6, 0.0, crane_joint)[0]
+    assert_allclose(flow_a, 0.3 * full * 0.5**0.5, rtol=1e-9)
+    assert chamber_flows(0.3, 0.0, 9.3e6, 9.9e6, 0.5e6, 0.0, crane_joint)[0] == 0.0
+
+
+def test_compensated_valve_is_continuous_at_its_compensator_s_pressure(crane_joint):
+    flows = [chamber_flows(0.3, 0.0, 9.3e6, 9.3e6 - 0.7e6 + d, 0.5e6, 0.0, crane_joint)[0] for d in (-1, 1)]
+    assert_allclose(flows[0], flows[1], rtol=1e-5)
+
+
+def test_compensated_valve_meters_out_by_its_flow_coefficient(crane_joint):
+    drop = 2.3e6
+    flow_b = chamber_flows(0.3, 0.0, 9.3e6, 5e6, 0.1e6 + drop, 0.0, crane_joint)[1]
+    assert_allclose(flow_b, -0.3 * 7.958e-7 * drop / (drop**2 + 0.02e6**2) ** 0.25, rtol=1e-12)
+    assert_allclose(flow_b, -0.3 * 7.958e-7 * np.sqrt(drop), rtol=1e-4)

@@ -1,0 +1,72 @@
+"""Order of the integrator, and independence of the steps."""
+
+import numpy as np
+from numpy.testing import assert_allclose
+
+from hydrolek_drake.rollout import roll_out
+
+
+def test_integrator_is_of_second_order_on_a_smooth_motion(bench):
+    # the joint moves and its spool is open from the start: no kink at overlap or stops
+    values = {"command.delay": 0.0, "load.initial_position": np.radians(-5.0)}
+    records = bench.with_values(values).records()
+    changes = np.arange(-1.0, 1.0, 0.02)
+    volts = 5.5 + 1.5 * np.sin(2 * np.pi * changes / 0.7)
+    opened = roll_out(records, changes, volts, np.array([-1.0, 0.0]), longest_step=1e-4).state
+    times = np.array([0.0, 0.3, 0.35])
+    finals = {}
+    steps = [2e-3, 1e-3, 5e-4, 2.5e-4, 2e-6]
+    for step in steps:
+        outcome = roll_out(records, changes, volts, times, state=opened, longest_step=step)
+        finals[step] = outcome.signals
+    reference = finals[steps[-1]]
+    for name in ("position", "velocity", "pressure_a", "pressure_b", "spool"):
+        errors = [abs(getattr(finals[s], name)[-1] - getattr(reference, name)[-1]) for s in steps[:-1]]
+        slope = np.polyfit(np.log(steps[1:-1]), np.log(errors[1:]), 1)[0]
+        print(f"{name}: slope {slope:.3f}, errors {errors}")
+        assert_allclose(slope, 2.0, atol=0.25)
+
+
+def _steps():
+    changes = np.arange(0.0, 2.0, 0.05)
+    return changes, 8.0 * np.sign(np.sin(9.0 * changes))
+
+
+def test_results_change_smoothly_with_the_delay_whatever_the_step(bench):
+    """Delays 0.05 ms apart at steps of 0.5 ms.
+
+    If commands took effect at the next step only, the end would jump by speed times step, 0.02 deg. What is
+    left is where in a step the spool crosses its overlap.
+    """
+    step = 5e-4
+    delays = 0.02 + 5e-5 * np.arange(61)
+    ends = []
+    for delay in delays:
+        records = bench.with_values({"command.delay": delay}).records()
+        signals = roll_out(records, *_steps(), np.array([0.0, 1.93]), longest_step=step).signals
+        ends.append(signals.position[-1])
+    scaled = (delays - delays.mean()) / np.ptp(delays)
+    ripple = np.array(ends) - np.polyval(np.polyfit(scaled, ends, 3), scaled)
+    jump = abs(signals.velocity[-1]) * step
+    print(f"ripple {np.degrees(np.abs(ripple).max()):.2e} deg, a jump would be {np.degrees(jump):.2e} deg")
+    assert np.degrees(jump) > 0.02
+    assert np.abs(ripple).max() < 0.05 * jump
+
+
+def test_step_between_changes_of_the_command_hardly_matters(bench):
+    records = bench.records()
+    times = np.arange(0.0, 2.0, 0.0137)
+    coarse, fine = (
+        roll_out(records, *_steps(), times, longest_step=step).signals.position for step in (5e-4, 1e-5)
+    )
+    assert_allclose(coarse, fine, atol=np.radians(0.02))
+
+
+def test_a_rollout_in_two_parts_is_the_rollout_in_one(bench):
+    records = bench.records()
+    times = np.arange(0.0, 2.0, 0.01)
+    whole = roll_out(records, *_steps(), times, longest_step=5e-4)
+    first = roll_out(records, *_steps(), times[:90], longest_step=5e-4)
+    second = roll_out(records, *_steps(), times[89:], state=first.state, longest_step=5e-4)
+    assert_allclose(second.signals.position, whole.signals.position[89:], rtol=1e-12)
+    assert_allclose(second.state, whole.state, rtol=1e-9, atol=1e-15)

@@ -1,0 +1,67 @@
+"""Diagram and compiled rollout are two executions of one physics."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.effects import EFFECTS
+from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.station.simulation import command_source, run
+from hydrolek_drake.station.station import StepSizes, make_station
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
+import agreement  # the study that docs/agreement.md records, here for a few seconds a case
+
+REQUIRED_DEG = 0.02
+STEP = 0.5e-3  # seconds
+
+
+@pytest.mark.parametrize("joint", agreement.JOINTS)
+def test_every_instrumented_joint_agrees_with_its_rollout(joint):
+    rms, _ = agreement.compare(load_rig(joint), duration=4.0, step=STEP, seed=3)
+    assert rms <= REQUIRED_DEG
+
+
+@pytest.mark.parametrize(("number", "effect"), list(enumerate(sorted(EFFECTS))))
+def test_every_effect_agrees_with_its_rollout(number, effect):
+    joint = agreement.JOINTS[number % len(agreement.JOINTS)]
+    rig = agreement.with_effect(load_rig(joint), effect)
+    assert rig.effects_on(joint.removeprefix("hydrolek_")) == (effect,)
+    rms, _ = agreement.compare(rig, duration=3.0, step=STEP, seed=number)
+    assert rms <= REQUIRED_DEG
+
+
+def test_the_difference_shrinks_with_the_step():
+    rig = load_rig("hydrolek_right_j3")
+    coarse, fine = (agreement.compare(rig, duration=3.0, step=step, seed=5)[0] for step in (1e-3, 0.25e-3))
+    assert fine < 0.5 * coarse
+
+
+def test_forces_at_the_mounts_are_the_joint_moments_of_virtual_work():
+    rig = load_rig("hydrolek")
+    times = np.arange(0.0, 1.0, 0.01)
+    volts = np.random.default_rng(2).uniform(-3.0, 3.0, (1, len(rig.joints))).repeat(len(times), axis=0)
+    positions = []
+    for mount_forces in (True, False):
+        sizes = StepSizes(step=1e-3, mount_forces=mount_forces)
+        station = make_station(rig, sizes=sizes, command=command_source(times, volts))
+        positions.append(run(station, 1.0).signals["position"])
+    assert np.ptp(positions[0], axis=0).max() > 0.1
+    np.testing.assert_allclose(positions[0], positions[1], rtol=0.0, atol=1e-6)
+
+
+def test_symplectic_euler_stays_near_runge_kutta():
+    rig = load_rig("hydrolek_right_j2")
+    times, volts = agreement.random_voltage(4.0, np.random.default_rng(9))
+    ends = []
+    for integrator in ("runge_kutta2", "symplectic_euler"):
+        station = make_station(
+            rig,
+            sizes=StepSizes(step=1e-3, integrator=integrator),
+            command=command_source(times, volts[:, None]),
+        )
+        ends.append(run(station, 4.0).signals["position"][:, 0])
+    # First order: half a step of the joint's largest speed, 40 deg/s (Table 6.1), stays in any phase of the motion.
+    assert np.degrees(np.abs(ends[0] - ends[1])).max() < 40.0 * 2e-3

@@ -1,0 +1,244 @@
+"""Each stage's LeafSystem on a bare context: ports, values, feedthrough."""
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.physics import amplifier, command, cylinder, fluid, linkage, load, sensor, solenoid, valve
+from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.systems.actuator import Actuator
+from hydrolek_drake.systems.electric_motor import ElectricMotor
+from hydrolek_drake.systems.four_way_valve import FourWayValve
+from hydrolek_drake.systems.operator_computer import FieldPoint, OperatorComputer
+from hydrolek_drake.systems.play import Play
+from hydrolek_drake.systems.potentiometer import Potentiometer
+from hydrolek_drake.systems.proportional_amplifier import ProportionalAmplifier
+from hydrolek_drake.systems.rocking_base import RockingBase
+from hydrolek_drake.systems.solenoid_spool import SolenoidSpool
+from hydrolek_drake.systems.supply import Supply
+from hydrolek_drake.systems.transport_delay import TransportDelay
+
+JOINTS = load_rig("hydrolek").records()
+N = len(JOINTS)
+
+
+def evaluate(system, port, **inputs):
+    context = system.CreateDefaultContext()
+    for name, value in inputs.items():
+        system.GetInputPort(name).FixValue(context, np.asarray(value, float))
+    return system.GetOutputPort(port).Eval(context)
+
+
+def test_operator_computer_puts_table_3_1_on_the_channels():
+    signal = np.zeros(N)
+    right_j5 = list(load_rig("hydrolek").joints).index("right_j5")
+    signal[right_j5] = 40.0  # the thesis's example: joint 5 of the right arm upwards is module 4, channel 0
+    channels = evaluate(OperatorComputer(JOINTS), "channel_voltage", signal_commanded=signal)
+    module_4 = channels[8:16]
+    p = JOINTS[right_j5]["command"]
+    assert module_4[0] == pytest.approx(p["calibration_a"] + 0.4 * (p["calibration_b"] - p["calibration_a"]))
+    assert np.count_nonzero(channels) == 1
+
+
+def test_field_point_undoes_the_channels():
+    signal = np.linspace(-90.0, 95.0, N)
+    channels = evaluate(OperatorComputer(JOINTS), "channel_voltage", signal_commanded=signal)
+    volts = evaluate(FieldPoint(JOINTS), "command", channel_voltage=channels)
+    expected = [np.subtract(*command.calibrated_voltages(s, j)) for s, j in zip(signal, JOINTS, strict=True)]
+    np.testing.assert_allclose(volts, expected, rtol=1e-14)
+
+
+def test_operator_computer_refuses_shared_channels_and_uncalibrated_rigs():
+    twice = JOINTS.copy()
+    twice[1]["command"]["channel_a"] = twice[0]["command"]["channel_a"]
+    with pytest.raises(InputError, match="share a channel"):
+        OperatorComputer(twice)
+    with pytest.raises(InputError, match="calibrated"):
+        OperatorComputer(load_rig("joint_bench").records())
+
+
+def test_transport_delay_keeps_the_integral_of_the_voltage():
+    """A pulse delayed by 18.4 steps comes out spread over two steps with the same area."""
+    step = 1e-3
+    joints = load_rig("joint_bench").with_values({"command.delay": 18.4e-3}).records()
+    system = TransportDelay(joints, step)
+    context = system.CreateDefaultContext()
+    port = system.GetInputPort("command")
+    port.FixValue(context, [0.0])
+    out = []
+    for k in range(40):
+        port.FixValue(context, [5.0 if k == 3 else 0.0])
+        context.SetTime(k * step)
+        state = context.Clone().get_mutable_state()
+        system._update(context, state)
+        for group in range(3):
+            context.SetDiscreteState(group, state.get_discrete_state().get_value(group))
+        out.append(system.GetOutputPort("voltage_delayed").Eval(context)[0])
+    np.testing.assert_allclose([out[21], out[22]], [0.6 * 5.0, 0.4 * 5.0], rtol=1e-9)
+    assert sum(out) == pytest.approx(5.0)
+
+
+def test_proportional_amplifier_is_equation_4_4():
+    volts = np.linspace(-11.0, 11.0, N)
+    currents = evaluate(ProportionalAmplifier(JOINTS), "coil_current", voltage_delayed=volts)
+    expected = np.array([amplifier.coil_currents(v, 0.0, j) for v, j in zip(volts, JOINTS, strict=True)])
+    np.testing.assert_array_equal(currents, expected.T.ravel())
+
+
+def test_solenoid_spool_advances_with_the_shared_step():
+    step, currents = 1e-3, np.linspace(0.1, 0.9, 2 * N)
+    system = SolenoidSpool(JOINTS, step, 1)
+    context = system.CreateDefaultContext()
+    system.GetInputPort("coil_current").FixValue(context, currents)
+    values = system.AllocateDiscreteVariables()
+    system._update(context, values)
+    expected = [
+        solenoid.advance(0.0, 0.0, currents[i], currents[N + i], step, 1, JOINTS[i]) for i in range(N)
+    ]
+    np.testing.assert_array_equal(values.get_vector(0).get_value(), np.array(expected).T.ravel())
+    np.testing.assert_array_equal(values.get_vector(1).get_value(), 0.5 * np.array(expected)[:, 0])
+
+
+def test_four_way_valve_conserves_oil():
+    """What enters the chambers without leakage comes from the pump or goes to the tank, edge by edge."""
+    rng = np.random.default_rng(4)
+    x = rng.uniform(-0.2e-3, 0.2e-3, N)
+    pressure = rng.uniform(1e6, 15e6, 2 * N)
+    flow = evaluate(
+        FourWayValve(JOINTS), "oil_flow", spool_position=x, pressure=pressure, supply_pressure=[15.3e6]
+    ).reshape(3, N)
+    for i, joint in enumerate(JOINTS):
+        open_a, open_b = valve.openings(x[i], joint)
+        drop_a, drop_b = 15.3e6 - pressure[i], 15.3e6 - pressure[N + i]
+        p = joint["valve"]
+        drawn = open_a * fluid.orifice_conductance(p["max_area_a"], drop_a, p["discharge"], joint) * drop_a
+        drawn += open_b * fluid.orifice_conductance(p["max_area_b"], drop_b, p["discharge"], joint) * drop_b
+        assert flow[2, i] == pytest.approx(drawn, rel=1e-12, abs=1e-18)
+
+
+def test_supply_falls_to_the_tank_when_a_hose_bursts():
+    system = Supply(JOINTS)
+    flow = np.zeros(3 * N)
+    assert evaluate(system, "supply_pressure", oil_flow=flow)[0] == JOINTS[0]["supply"]["pressure"]
+    lost = evaluate(system, "supply_pressure", oil_flow=flow, pressure_available=[0.0])[0]
+    assert lost == JOINTS[0]["supply"]["tank_pressure"]
+
+
+def test_actuator_state_and_force():
+    rng = np.random.default_rng(5)
+    pressure, flow = rng.uniform(1e6, 9e6, 2 * N), rng.uniform(-1e-5, 1e-5, 3 * N)
+    motion = np.concatenate([rng.uniform(0.01, 0.03, N), rng.uniform(-0.02, 0.02, N)])
+    system = Actuator(JOINTS, 0.0)
+    context = system.CreateDefaultContext()
+    context.SetContinuousState(pressure)
+    system.GetInputPort("oil_flow").FixValue(context, flow)
+    system.GetInputPort("rod_motion").FixValue(context, motion)
+    rates = system.EvalTimeDerivatives(context).CopyToVector()
+    force = system.GetOutputPort("rod_force").Eval(context)
+    for i, joint in enumerate(JOINTS):
+        a, b, _, _ = cylinder.pressure_rates(
+            pressure[i], pressure[N + i], flow[i], flow[N + i], motion[i], motion[N + i], joint
+        )
+        assert (rates[i], rates[N + i]) == (a, b)
+        friction, _ = cylinder.friction_force(motion[i], motion[N + i], 0.0, joint)
+        p = joint["cylinder"]
+        assert force[i] == pytest.approx(p["area_a"] * pressure[i] - p["area_b"] * pressure[N + i] - friction)
+
+
+def test_electric_motor_is_a_force_constant():
+    joints = load_rig("emps").records()
+    force = evaluate(ElectricMotor(joints), "rod_force", voltage_delayed=[-1.7])
+    assert force[0] == pytest.approx(-1.7 * joints[0]["cylinder"]["force_constant"])
+
+
+def test_potentiometer_reads_volts_of_table_3_2():
+    rig = load_rig("hydrolek_right_j2")
+    angle = np.radians(30.0)
+    volts = evaluate(Potentiometer(rig.records(), 1e-3, None), "potentiometer_voltage", motion=[angle, 0.0])
+    assert volts[0] == pytest.approx(2.794 + 0.164 * 30.0)
+
+
+def test_noise_and_resolution_come_from_the_rig_and_the_generator():
+    joints = load_rig("joint_bench").records()
+    readings = []
+    for seed in (1, 1, 2):
+        system = Potentiometer(joints, 1e-3, np.random.default_rng(seed))
+        context = system.CreateDefaultContext()
+        system.GetInputPort("motion").FixValue(context, [0.4, 0.0])
+        values = system.AllocateDiscreteVariables()
+        series = []
+        for _ in range(2000):
+            values.SetFrom(context.get_discrete_state())
+            system._update(context, values)
+            context.SetDiscreteState(1, values.get_vector(1).get_value())
+            series.append(system.GetOutputPort("position_measured").Eval(context)[0])
+        readings.append(np.array(series))
+    np.testing.assert_array_equal(readings[0], readings[1])
+    assert np.any(readings[0] != readings[2])
+    p = joints[0]["sensor"]
+    assert readings[0].std() == pytest.approx(float(p["noise"]), rel=0.1)
+    steps = readings[0] / p["resolution"]
+    np.testing.assert_allclose(steps, np.round(steps), atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("system", "direct"),
+    [
+        (TransportDelay(JOINTS, 1e-3), set()),
+        (SolenoidSpool(JOINTS, 1e-3, 1), set()),
+        (ProportionalAmplifier(JOINTS), {("voltage_delayed", "coil_current")}),
+        (
+            FourWayValve(JOINTS),
+            {(name, "oil_flow") for name in ("spool_position", "pressure", "supply_pressure")},
+        ),
+        (Supply(JOINTS), {("pressure_available", "supply_pressure")}),
+        (Actuator(JOINTS, 0.0), {("rod_motion", "rod_force")}),
+        (Actuator(JOINTS, 1e-3), {("rod_motion", "rod_force"), ("oil_flow", "rod_force")}),
+        (
+            Play(JOINTS),
+            {
+                ("joint_motion", "side_motion"),
+                ("joint_motion", "moment_transmitted"),
+                ("moment", "moment_transmitted"),
+            },
+        ),
+        (RockingBase(JOINTS), {("motion", "motion_relative")}),
+    ],
+    ids=lambda value: value.get_name() if hasattr(value, "get_name") else "",
+)
+def test_feedthrough_is_what_it_must_be(system, direct):
+    """Loops of pressure, force and motion stay free of algebraic cycles."""
+    found = {
+        (system.get_input_port(i).get_name(), system.get_output_port(o).get_name())
+        for i in range(system.num_input_ports())
+        for o in range(system.num_output_ports())
+        if system.HasDirectFeedthrough(i, o)
+    }
+    assert found == direct
+
+
+def test_play_passes_joints_without_play_through():
+    motion, moment = np.linspace(0.1, 1.0, 2 * N), np.linspace(-5.0, 5.0, N)
+    system = Play(JOINTS)
+    np.testing.assert_array_equal(evaluate(system, "side_motion", joint_motion=motion, moment=moment), motion)
+    transmitted = evaluate(system, "moment_transmitted", joint_motion=motion, moment=moment)
+    np.testing.assert_array_equal(transmitted, moment)
+
+
+def test_rod_inertia_reflects_with_the_lever_of_mid_travel():
+    for joint in JOINTS:
+        if joint["cylinder"]["rod_mass"] > 0.0:
+            middle = 0.5 * (joint["load"]["lower_stop"] + joint["load"]["upper_stop"])
+            _, lever = linkage.stroke_and_lever(middle, joint)
+            assert load.reflected_rod_inertia(joint) == pytest.approx(
+                joint["cylinder"]["rod_mass"] * lever**2
+            )
+
+
+def test_sensor_bow_vanishes_at_both_ends():
+    joint = (
+        load_rig("joint_bench").with_values({"effects.sensor.nonlinearity.amplitude_rad": 0.02}).records()[0]
+    )
+    for end in ("travel_lower", "travel_upper"):
+        position = float(joint["sensor"][end])
+        assert sensor.reading(position, 0.0, joint) == pytest.approx(position)
