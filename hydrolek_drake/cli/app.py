@@ -25,6 +25,9 @@ class CommandEntry(NamedTuple):
 
 
 COMMANDS: dict[str, CommandEntry] = {
+    "simulate": CommandEntry(
+        "hydrolek_drake.cli.simulate", "simulate", "run a scenario on its Drake diagram"
+    ),
     "replay": CommandEntry(
         "hydrolek_drake.cli.replay", "replay", "drive a rig's model with a recorded command and compare"
     ),
@@ -33,6 +36,9 @@ COMMANDS: dict[str, CommandEntry] = {
     ),
     "rigs": CommandEntry(
         "hydrolek_drake.cli.rigs", "rigs", "list the built-in rigs, or one rig's parameters"
+    ),
+    "show": CommandEntry(
+        "hydrolek_drake.cli.show", "show", "show a saved run of the arms in the browser"
     ),
     "benchmark": CommandEntry(
         "hydrolek_drake.cli.benchmark", "benchmark", "speed and exactness of the executions"

@@ -2,15 +2,14 @@
 
 import html
 from collections.abc import Iterable
-from typing import Any
 
 from hydrolek_drake.replay.comparison import Comparison, times_of
 from hydrolek_drake.replay.display import display_factor, display_unit
 from hydrolek_drake.replay.panels import NOISE_COLOUR, SPAN_COLOUR, panels
+from hydrolek_drake.replay.plots_html import plots_html
 from hydrolek_drake.replay.replay import Replay
 
-_ROW_PX = 105
-_STYLE = """
+STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; color: #1f2933; max-width: 1100px; margin: 2rem auto;
 padding: 0 1rem }
 h1 { font-size: 1.3rem; margin-bottom: .3rem } h2 { font-size: 1.05rem; margin-top: 2rem }
@@ -29,7 +28,7 @@ def page(replay: Replay, comparisons: tuple[Comparison, ...], title: str) -> str
     sentences = [html.escape(comparison.sentence()) for comparison in comparisons]
     parts = [
         f"<!doctype html><html lang='en'><head><meta charset='utf-8'><title>{html.escape(title)}</title>"
-        f"<style>{_STYLE}</style></head><body><h1>{html.escape(title)}</h1>",
+        f"<style>{STYLE}</style></head><body><h1>{html.escape(title)}</h1>",
         *(
             f"<p class='{'other' if index else 'sentence'}'>{sentence}</p>"
             for index, sentence in enumerate(sentences)
@@ -40,7 +39,7 @@ def page(replay: Replay, comparisons: tuple[Comparison, ...], title: str) -> str
         "<h2>Over time</h2>",
         f"<p class='other'>{_key(SPAN_COLOUR, 'worst stretches')}"
         f"{_key(NOISE_COLOUR, '3 times the noise of the recording')}</p>",
-        _plots(replay, comparisons),
+        plots_html([panels(replay, comparisons)]),
         "<h2>By condition</h2>",
         _conditions(replay, comparisons),
         "</body></html>",
@@ -110,62 +109,3 @@ def _conditions(replay: Replay, comparisons: tuple[Comparison, ...]) -> str:
         head = "".join(f"<th class='wide'>{html.escape(title)}</th>" for title in ["condition", *titles])
         tables.append(f"<table><tr>{head}</tr>{rows}</table>")
     return "".join(tables) or "<p class='other'>No condition could be told.</p>"
-
-
-def _plots(replay: Replay, comparisons: tuple[Comparison, ...]) -> str:
-    from plotly.graph_objects import Figure, Scatter
-    from plotly.subplots import make_subplots
-
-    stack = panels(replay, comparisons)
-    figure: Any = make_subplots(
-        rows=len(stack),
-        cols=1,
-        shared_xaxes=True,
-        vertical_spacing=0.25 / (4 * len(stack)),
-        row_heights=[panel.height for panel in stack],
-        figure=Figure(),
-    )
-    named: set[str] = set()
-    for row, panel in enumerate(stack, start=1):
-        for line in panel.lines:
-            figure.add_trace(
-                Scatter(
-                    x=line.time,
-                    y=line.values,
-                    name=line.name,
-                    legendgroup=line.name,
-                    showlegend=line.name not in named,
-                    line={"color": line.colour, "width": 1.4, "shape": "hv" if line.stepped else "linear"},
-                ),
-                row=row,
-                col=1,
-            )
-            named.add(line.name)
-        for start, end in panel.spans:
-            figure.add_vrect(
-                x0=start,
-                x1=end,
-                fillcolor=SPAN_COLOUR,
-                opacity=0.3,
-                line_width=0,
-                layer="below",
-                row=row,
-                col=1,
-            )
-        if panel.noise_band:
-            figure.add_hrect(
-                y0=-panel.noise_band, y1=panel.noise_band, fillcolor=NOISE_COLOUR, opacity=0.3, line_width=0,
-                layer="below", row=row, col=1,
-            )  # fmt: skip
-        figure.update_yaxes(title_text=panel.title.replace(" [", "<br>["), row=row, col=1)
-    figure.update_xaxes(title_text="time [s]", row=len(stack), col=1)
-    figure.update_yaxes(title_font_size=11, gridcolor="#e4e9ee", zerolinecolor="#c7d0d9")
-    figure.update_xaxes(gridcolor="#e4e9ee")
-    figure.update_layout(
-        height=int(_ROW_PX * sum(panel.height for panel in stack)) + 120,
-        plot_bgcolor="white",
-        margin={"l": 80, "r": 20, "t": 40, "b": 50},
-        legend={"orientation": "h", "y": 1.0, "yanchor": "bottom", "x": 0},
-        hovermode="x unified",
-    )
-    return str(figure.to_html(full_html=False, include_plotlyjs=True, config={"displaylogo": False}))

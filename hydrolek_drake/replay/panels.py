@@ -39,6 +39,7 @@ class Panel:
         spans: start and end of the worst stretches, to be shaded.
         noise_band: half height of the band that noise alone fills, or None.
         height: relative to the others.
+        least_span: what the axis shows at least, so that a signal at rest looks like one.
     """
 
     title: str
@@ -46,6 +47,16 @@ class Panel:
     spans: tuple[tuple[float, float], ...]
     noise_band: float | None
     height: float
+    least_span: float = 0.0
+
+    def limits(self) -> tuple[float, float] | None:
+        """Ends of the axis where the signal alone would not fill `least_span`; None to leave it to the plot."""
+        values = np.concatenate([line.values for line in self.lines])
+        values = values[np.isfinite(values)]
+        if not values.size or np.ptp(values) >= self.least_span:
+            return None
+        middle = 0.5 * float(values.min() + values.max())
+        return middle - 0.6 * self.least_span, middle + 0.6 * self.least_span
 
 
 def panels(replay: Replay, comparisons: tuple[Comparison, ...]) -> list[Panel]:

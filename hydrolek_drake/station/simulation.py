@@ -32,11 +32,13 @@ class Run:
         signals: `reading`, `measured`, `position`, `velocity`, `voltage`, and for hydraulic rigs `pressure_a`,
             `pressure_b`, `spool`, `force` (n, joints) and `supply_pressure` (n, 1).
         final: context after the run.
+        interrupted: whether the user stopped it before its end.
     """
 
     time: np.ndarray
     signals: dict[str, np.ndarray]
     final: Context
+    interrupted: bool = False
 
 
 def command_source(times: np.ndarray, values: np.ndarray) -> TrajectorySource:
@@ -109,6 +111,7 @@ def run(
     supply_lost_at: float | None = None,
     realtime_rate: float = 0.0,
     on_progress: Callable[[float], None] | None = None,
+    keep_interrupted: bool = False,
 ) -> Run:
     """Run a station.
 
@@ -120,6 +123,7 @@ def run(
         supply_lost_at: when a hose bursts, that is the supply falls to tank pressure [s].
         realtime_rate: 1 to run no faster than real time, 0 as fast as possible.
         on_progress: called with the simulated time now and then; may raise to stop.
+        keep_interrupted: on Ctrl-C return the signals so far instead of raising KeyboardInterrupt.
     """
     context = initial_context(station) if context is None else context
     context.SetTime(start)
@@ -142,16 +146,21 @@ def run(
             events.append((payload.time, partial(payload.body.SetMass, plant_context, payload.mass)))
     if supply_lost_at is not None and start <= supply_lost_at < end:
         events.append((supply_lost_at, partial(_fix_supply, station, context, 0.0)))
+    interrupted = False
     collecting = gc.isenabled()
     gc.disable()  # the callbacks leave no cycles behind, and looking for some takes a tenth of the time
     try:
         for time, act in [*sorted(events, key=lambda e: e[0]), (end, lambda: None)]:
             _advance(simulator, time, on_progress)
             act()
+    except KeyboardInterrupt:
+        if not keep_interrupted:
+            raise
+        interrupted = True
     finally:
         if collecting:
             gc.enable()
-    return Run(*_collect(station, context), final=context)
+    return Run(*_collect(station, context), final=context, interrupted=interrupted)
 
 
 def _advance(simulator: Simulator, until: float, on_progress: Callable[[float], None] | None) -> None:
@@ -173,10 +182,11 @@ def _fix_supply(station: Station, context: Context, share: float) -> None:
 def _collect(station: Station, context: Context) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     n = len(station.rig.joints)
     data = {name: log.FindLog(context) for name, log in station.logs.items()}
-    signals = {name: log.data().T.copy() for name, log in data.items()}
+    count = min(log.num_samples() for log in data.values())  # an interrupt may come between two logs
+    signals = {name: log.data()[:, :count].T.copy() for name, log in data.items()}
     motion = signals.pop("motion")
     signals["position"], signals["velocity"] = motion[:, :n], motion[:, n:]
     if "pressure" in signals:
         pressure = signals.pop("pressure")
         signals["pressure_a"], signals["pressure_b"] = pressure[:, :n], pressure[:, n:]
-    return next(iter(data.values())).sample_times().copy(), signals
+    return next(iter(data.values())).sample_times()[:count].copy(), signals

@@ -1,0 +1,59 @@
+"""The signals of a run under the names that recordings have."""
+
+import numpy as np
+
+from hydrolek_drake.physics.command import calibrated_voltages
+from hydrolek_drake.runs.running import ScenarioRun
+
+_ROUNDING = 1e-9  # seconds by which a logged time may miss the command's
+
+
+def held_at(times: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Rows of a command table, each held until the next, at other times; shape (wanted, joints)."""
+    rows = np.searchsorted(times, wanted + _ROUNDING, side="right") - 1
+    return values[np.clip(rows, 0, len(times) - 1)]
+
+
+def commanded_voltages(done: ScenarioRun) -> np.ndarray:
+    """What the computer sends each joint at each time of the run [V], shape (n, joints)."""
+    commands = held_at(*done.scenario.command_table(done.seed), done.run.time)
+    if not done.scenario.operator:
+        return commands
+    volts = np.empty_like(commands)
+    for column, record in enumerate(done.scenario.rig.records()):
+        for percent in np.unique(commands[:, column]):
+            raised, lowered = calibrated_voltages(float(percent), record)
+            volts[commands[:, column] == percent, column] = raised - lowered
+    return volts
+
+
+def named_signals(done: ScenarioRun) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+    """Signals by `<joint>.<quantity>` with the unit of each, angles in degrees; shape (n,) each."""
+    rig, run = done.scenario.rig, done.run
+    signals: dict[str, np.ndarray] = {}
+    units: dict[str, str] = {}
+
+    def keep(key: str, values: np.ndarray, unit: str) -> None:
+        signals[key], units[key] = values, unit
+
+    volts = commanded_voltages(done)
+    table = held_at(*done.scenario.command_table(done.seed), run.time)
+    for i, joint in enumerate(rig.joints):
+        if done.scenario.operator:
+            keep(f"{joint}.signal", table[:, i], "percent")
+        keep(f"{joint}.command", volts[:, i], "V")
+        if rig.variant(joint, "load") == "sliding":
+            keep(f"{joint}.position", run.signals["measured"][:, i], "m")
+            keep(f"{joint}.velocity", run.signals["velocity"][:, i], "m/s")
+        else:
+            keep(f"{joint}.angle", np.degrees(run.signals["measured"][:, i]), "deg")
+            keep(f"{joint}.rate", np.degrees(run.signals["velocity"][:, i]), "deg/s")
+        for quantity, unit in (("pressure_a", "Pa"), ("pressure_b", "Pa"), ("spool", "m")):
+            if quantity in run.signals:
+                keep(f"{joint}.{quantity}", run.signals[quantity][:, i], unit)
+        by_rod = rig.variant(joint, "cylinder") in ("cylinder", "electric_motor")
+        if by_rod:
+            keep(f"{joint}.force", run.signals["force"][:, i], "N")
+    if "supply_pressure" in run.signals:
+        keep("supply.pressure", run.signals["supply_pressure"][:, 0], "Pa")
+    return signals, units

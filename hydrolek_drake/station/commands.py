@@ -1,0 +1,210 @@
+"""What a scenario commands: each kind gives a table of values over time, each held until the next."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.recordings import read_recording, require
+from hydrolek_drake.rigs import Rig
+from hydrolek_drake.station.fields import number, quantity, refuse_unknown, required, signal
+
+KINDS = ("constant", "steps", "random", "recording")
+
+
+class Command(Protocol):
+    """Something that drives the joints of a rig."""
+
+    def table(self, duration: float, period: float, seed: int | None) -> tuple[np.ndarray, np.ndarray]:
+        """Times [s], shape (m,), beginning at 0, and values [V, or % with an operator], shape (m, joints).
+
+        Args:
+            duration: of the run [s].
+            period: at which signals are written [s]; random changes fall on its multiples, so that the
+                written command is exactly the one that acted.
+            seed: of random commands; None for the scenario's own.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class Steps:
+    """Given values from given times on; a constant command is a single one.
+
+    Attributes:
+        rows: per joint of the rig, times [s] and values.
+        rest: what each joint is given before its first time, shape (joints,).
+    """
+
+    rows: tuple[tuple[tuple[float, float], ...], ...]
+    rest: np.ndarray
+
+    def table(self, duration: float, period: float, seed: int | None) -> tuple[np.ndarray, np.ndarray]:
+        """See `Command`."""
+        times = np.unique([0.0, duration, *(time for rows in self.rows for time, _ in rows)])
+        values = np.tile(self.rest, (len(times), 1))
+        for joint, rows in enumerate(self.rows):
+            for time, value in rows:
+                values[times >= time, joint] = value
+        return times, values
+
+
+@dataclass(frozen=True)
+class RandomLevels:
+    """Multi-level random values, as the thesis's identification experiments use (section 6.1.4).
+
+    Attributes:
+        driven: which joints of the rig move, shape (joints,).
+        rest: what the others are given, shape (joints,).
+        amplitude: largest level away from rest.
+        levels: how many equally spaced levels there are from -amplitude to amplitude.
+        hold: shortest and longest time that a level is held [s].
+        seed: of the scenario.
+    """
+
+    driven: np.ndarray
+    rest: np.ndarray
+    amplitude: float
+    levels: int
+    hold: tuple[float, float]
+    seed: int
+
+    def table(self, duration: float, period: float, seed: int | None) -> tuple[np.ndarray, np.ndarray]:
+        """See `Command`; every joint draws from a stream of its own."""
+        streams = np.random.default_rng(self.seed if seed is None else seed).spawn(len(self.rest))
+        choices = np.linspace(-self.amplitude, self.amplitude, self.levels)
+        rows: list[tuple[tuple[float, float], ...]] = []
+        for joint, stream in enumerate(streams):
+            drawn: list[tuple[float, float]] = []
+            count = 0
+            while self.driven[joint] and count * period < duration:
+                drawn.append((count * period, float(self.rest[joint] + stream.choice(choices))))
+                count += max(round(float(stream.uniform(*self.hold)) / period), 1)
+            rows.append(tuple(drawn))
+        return Steps(tuple(rows), self.rest).table(duration, period, None)
+
+
+@dataclass(frozen=True)
+class Playback:
+    """The commands of a recording, from its first sample on.
+
+    Attributes:
+        times: [s], from 0, shape (m,).
+        values: [V], shape (m, joints).
+    """
+
+    times: np.ndarray
+    values: np.ndarray
+
+    def table(self, duration: float, period: float, seed: int | None) -> tuple[np.ndarray, np.ndarray]:
+        """See `Command`."""
+        return self.times, self.values
+
+
+def parse_command(raw: Any, rig: Rig, where: str, folder: Path) -> tuple[Command, bool]:
+    """The command of a scenario, and whether it is signals in percent that pass the operator computer.
+
+    Args:
+        raw: the scenario's `command`.
+        rig: names the joints.
+        where: file and key, for errors.
+        folder: of the scenario, where a recording's path begins.
+
+    Raises:
+        InputError: unknown kind, key or joint, wrong value or unit, or a recording without the commands.
+    """
+    if not isinstance(raw, Mapping):
+        raise InputError(f"{where} must be a mapping with kind: {', '.join(KINDS)}")
+    kind = raw.get("kind")
+    operator = raw.get("operator", False)
+    if not isinstance(operator, bool):
+        raise InputError(f"{where}.operator: '{operator}' is neither true nor false")
+    rest = np.zeros(len(rig.joints)) if operator else rig.records()["command"]["neutral"].astype(float)
+    if kind == "recording":
+        refuse_unknown(raw, ("kind", "path"), where)
+        return _playback(folder / str(required(raw, "path", where)), rig, where), False
+    if kind == "random":
+        return _random(raw, rig, rest, operator, where), operator
+    if kind not in ("constant", "steps"):
+        raise InputError(f"{where}.kind: '{kind}' is unknown; choose {', '.join(KINDS)}")
+    refuse_unknown(raw, ("kind", "operator", "joints"), where)
+    given = _joints(required(raw, "joints", where), rig, f"{where}.joints")
+    rows = []
+    for joint in rig.joints:
+        key = f"{where}.joints.{joint}"
+        if joint not in given:
+            rows.append(())
+        elif kind == "constant":
+            rows.append(((0.0, _value(given[joint], operator, key)),))
+        else:
+            rows.append(_steps(given[joint], operator, key))
+    return Steps(tuple(rows), rest), operator
+
+
+def _steps(raw: Any, operator: bool, where: str) -> tuple[tuple[float, float], ...]:
+    if not isinstance(raw, list) or not raw:
+        raise InputError(f"{where}: '{raw}' must be a list of [time, value], such as [[0.5 s, 2 V], [2 s, 0 V]]")
+    rows = []
+    for index, pair in enumerate(raw):
+        if not isinstance(pair, list) or len(pair) != 2:
+            raise InputError(f"{where}[{index}]: '{pair}' must be [time, value], such as [0.5 s, 2 V]")
+        time = quantity(pair[0], "s", f"{where}[{index}]", lowest=0.0)
+        if rows and time <= rows[-1][0]:
+            raise InputError(f"{where}[{index}]: time {time:g} s does not come after {rows[-1][0]:g} s")
+        rows.append((time, _value(pair[1], operator, f"{where}[{index}]")))
+    return tuple(rows)
+
+
+def _random(raw: Mapping[str, Any], rig: Rig, rest: np.ndarray, operator: bool, where: str) -> RandomLevels:
+    refuse_unknown(raw, ("kind", "operator", "joints", "amplitude", "levels", "hold", "seed"), where)
+    names = raw.get("joints", list(rig.joints))
+    if not isinstance(names, list):
+        raise InputError(f"{where}.joints: '{names}' must be a list of joints from {', '.join(rig.joints)}")
+    _joints(dict.fromkeys(map(str, names)), rig, f"{where}.joints")
+    hold = required(raw, "hold", where)
+    if not isinstance(hold, list) or len(hold) != 2:
+        raise InputError(f"{where}.hold: '{hold}' must be [shortest, longest], such as [0.2 s, 1 s]")
+    shortest, longest = (quantity(value, "s", f"{where}.hold", lowest=0.0) for value in hold)
+    if not 0.0 < shortest <= longest:
+        raise InputError(f"{where}.hold: {hold} must run from a shorter to a longer time above 0 s")
+    amplitude = _value(required(raw, "amplitude", where), operator, f"{where}.amplitude")
+    if amplitude <= 0.0:
+        raise InputError(f"{where}.amplitude: {amplitude:g} must be above 0")
+    return RandomLevels(
+        np.array([joint in names for joint in rig.joints]),
+        rest,
+        amplitude,
+        number(required(raw, "levels", where), f"{where}.levels", lowest=2),
+        (shortest, longest),
+        number(raw.get("seed", 0), f"{where}.seed", lowest=0),
+    )
+
+
+def _playback(path: Path, rig: Rig, where: str) -> Playback:
+    try:
+        recording = read_recording(path, rig.columns)
+        keys = [f"{joint}.command" for joint in rig.joints]
+        require(recording, keys, complete=keys, units=dict.fromkeys(keys, "V"))
+    except InputError as error:
+        raise InputError(f"{where}.path: {error}") from None
+    return Playback(
+        recording.time - recording.time[0], np.column_stack([recording.signal(key) for key in keys])
+    )
+
+
+def _joints(raw: Any, rig: Rig, where: str) -> Mapping[str, Any]:
+    if not isinstance(raw, Mapping):
+        raise InputError(f"{where} must be a mapping from joint to command; joints are {', '.join(rig.joints)}")
+    for joint in raw:
+        if joint not in rig.joints:
+            raise InputError(
+                f"{where}.{joint}: rig {rig.name} has no moving joint of that name; choose {', '.join(rig.joints)}"
+            )
+    return raw
+
+
+def _value(raw: Any, operator: bool, where: str) -> float:
+    return signal(raw, where) if operator else quantity(raw, "V", where)
