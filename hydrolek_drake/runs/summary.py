@@ -109,7 +109,9 @@ def _at_least_seen(joint: JointSummary) -> str:
     return shown(movement, joint.unit) if movement >= _UNSEEN else f"less than {shown(_UNSEEN, joint.unit)}"
 
 
-def _rest_movement(time: np.ndarray, position: np.ndarray, volts: np.ndarray, record: np.void) -> float | None:
+def _rest_movement(
+    time: np.ndarray, position: np.ndarray, volts: np.ndarray, record: np.void
+) -> float | None:
     """Largest movement while the command stands at neutral, after the delay and `SETTLING`."""
     if volts[-1] != record["command"]["neutral"]:
         return None

@@ -154,7 +154,9 @@ def as_svg(diagram: Diagram, title: str) -> str:
     try:
         svg = graph.create_svg().decode()
     except (FileNotFoundError, OSError) as error:
-        raise InputError(f"Graphviz's dot cannot be run ({error}); install Graphviz to refresh pictures") from None
+        raise InputError(
+            f"Graphviz's dot cannot be run ({error}); install Graphviz to refresh pictures"
+        ) from None
     shown = html.escape(as_text(diagram))
     return svg.replace("<g id=", f"<metadata>\n{shown}\n</metadata>\n<g id=", 1)
 
