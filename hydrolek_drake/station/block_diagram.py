@@ -147,12 +147,13 @@ def as_svg(diagram: Diagram, title: str) -> str:
         graph.add_edge(
             pydot.Edge(
                 _end(wire.source, "y", "e"), _end(wire.target, "u", "w"), label=f" {values} ", fontsize="9",
-                fontname="Helvetica", fontcolor="#6b7785", color=_FEEDBACK if _is_feedback(wire) else _FORWARD, arrowsize="0.6", penwidth="0.9",
-                constraint=forward,
+                fontname="Helvetica", fontcolor="#6b7785", color=_FEEDBACK if _is_feedback(wire) else _FORWARD,
+                arrowsize="0.6", penwidth="0.9", constraint=forward,
             )
         )  # fmt: skip
     try:
-        svg = graph.create_svg().decode()
+        drawn = graph.create(format="svg")
+        svg = drawn if isinstance(drawn, str) else drawn.decode()
     except (FileNotFoundError, OSError) as error:
         raise InputError(
             f"Graphviz's dot cannot be run ({error}); install Graphviz to refresh pictures"

@@ -262,7 +262,8 @@ def _sizes(raw: Any, path: Path) -> StepSizes:
         if times.get(key, 1.0) <= 0.0:
             raise InputError(f"{where}.{key}: 0 s is impossible; give a time above 0")
     try:
-        sizes = StepSizes(**times)
-        return replace(sizes, integrator=str(raw["integrator"])) if "integrator" in raw else sizes
+        return replace(
+            StepSizes(), **times, **({"integrator": str(raw["integrator"])} if "integrator" in raw else {})
+        )
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
