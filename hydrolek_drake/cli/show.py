@@ -12,7 +12,9 @@ from hydrolek_drake.errors import InputError
 def show(
     run: Annotated[
         Path,
-        typer.Argument(metavar="DIR|FILE", help="folder of hydrolek simulate --out, or a recording of the arms"),
+        typer.Argument(
+            metavar="DIR|FILE", help="folder of hydrolek simulate --out, or a recording of the arms"
+        ),
     ],
     out: Annotated[
         Path | None,
@@ -35,7 +37,9 @@ def show(
             _write(out, with_open_controls(view.static_html()))
             output.print(f"animation: {out}", markup=False, soft_wrap=True)
             return
-        output.print(f"open {view.url()} in a browser on this machine; Ctrl-C ends it", markup=False, soft_wrap=True)
+        output.print(
+            f"open {view.url()} in a browser on this machine; Ctrl-C ends it", markup=False, soft_wrap=True
+        )
         _stay()
 
 

@@ -85,7 +85,9 @@ def _view(output: "Console", served: bool) -> "StationView":
     logging.getLogger("drake").setLevel(logging.WARNING)  # it would announce the view that only writes a file
     view = StationView(Meshcat(MeshcatParams(host="localhost", show_stats_plot=served)))
     if served:
-        output.print(f"open {view.meshcat.web_url()} in a browser on this machine", markup=False, soft_wrap=True)
+        output.print(
+            f"open {view.meshcat.web_url()} in a browser on this machine", markup=False, soft_wrap=True
+        )
     return view
 
 

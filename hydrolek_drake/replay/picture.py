@@ -44,9 +44,7 @@ def plots_png(columns: Sequence[Sequence[Panel]], title: str, sentence: str) -> 
         for axis in grid[len(stack) :, column]:
             axis.set_visible(False)
         grid[len(stack) - 1, column].set_xlabel("time [s]", fontsize=9)
-    grid[0, -1].legend(
-        loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, framealpha=0.9
-    )
+    grid[0, -1].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, framealpha=0.9)
     figure.suptitle(heading, fontsize=9.5, x=0.01, ha="left")
     figure.align_ylabels(grid)
     data = io.BytesIO()

@@ -9,7 +9,17 @@ from hydrolek_drake.runs.panels import full
 from hydrolek_drake.runs.running import ScenarioRun
 from hydrolek_drake.runs.summary import SETTLING, JointSummary, sentence
 
-_TITLES = ("joint", "start", "end", "lowest", "highest", "range", "highest pressure", "at the stops", "at rest")
+_TITLES = (
+    "joint",
+    "start",
+    "end",
+    "lowest",
+    "highest",
+    "range",
+    "highest pressure",
+    "at the stops",
+    "at rest",
+)
 
 
 def page(done: ScenarioRun, joints: tuple[JointSummary, ...], with_replay: bool) -> str:
@@ -56,4 +66,3 @@ def _table(joints: tuple[JointSummary, ...]) -> str:
         ]
         rows.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>")
     return f"<table>{''.join(rows)}</table>"
-

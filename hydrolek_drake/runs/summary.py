@@ -90,9 +90,7 @@ def sentence(done: ScenarioRun, joints: tuple[JointSummary, ...]) -> str:
     creeping = [joint for joint in joints if joint.rest_movement is not None]
     if creeping:
         most = max(creeping, key=lambda joint: joint.rest_movement or 0.0)
-        parts.append(
-            f"with the valves closed, joints crept at most {shown(most.creep or 0.0, most.unit)} ({most.joint})"
-        )
+        parts.append(f"with their valves closed, joints moved at most {_at_least_seen(most)} ({most.joint})")
     pressed = [joint for joint in joints if joint.pressure is not None]
     if pressed:
         highest = max(pressed, key=lambda joint: joint.pressure or 0.0)
@@ -109,7 +107,9 @@ def _at_least_seen(joint: JointSummary) -> str:
     return shown(movement, joint.unit) if movement >= _UNSEEN else f"less than {shown(_UNSEEN, joint.unit)}"
 
 
-def _rest_movement(time: np.ndarray, position: np.ndarray, volts: np.ndarray, record: np.void) -> float | None:
+def _rest_movement(
+    time: np.ndarray, position: np.ndarray, volts: np.ndarray, record: np.void
+) -> float | None:
     """Largest movement while the command stands at neutral, after the delay and `SETTLING`."""
     if volts[-1] != record["command"]["neutral"]:
         return None

@@ -146,7 +146,9 @@ def parse_command(raw: Any, rig: Rig, where: str, folder: Path) -> tuple[Command
 
 def _steps(raw: Any, operator: bool, where: str) -> tuple[tuple[float, float], ...]:
     if not isinstance(raw, list) or not raw:
-        raise InputError(f"{where}: '{raw}' must be a list of [time, value], such as [[0.5 s, 2 V], [2 s, 0 V]]")
+        raise InputError(
+            f"{where}: '{raw}' must be a list of [time, value], such as [[0.5 s, 2 V], [2 s, 0 V]]"
+        )
     rows = []
     for index, pair in enumerate(raw):
         if not isinstance(pair, list) or len(pair) != 2:
@@ -197,7 +199,9 @@ def _playback(path: Path, rig: Rig, where: str) -> Playback:
 
 def _joints(raw: Any, rig: Rig, where: str) -> Mapping[str, Any]:
     if not isinstance(raw, Mapping):
-        raise InputError(f"{where} must be a mapping from joint to command; joints are {', '.join(rig.joints)}")
+        raise InputError(
+            f"{where} must be a mapping from joint to command; joints are {', '.join(rig.joints)}"
+        )
     for joint in raw:
         if joint not in rig.joints:
             raise InputError(

@@ -39,9 +39,7 @@ def required(raw: Mapping[str, Any], key: str, where: str) -> Any:
     return raw[key]
 
 
-def quantity(
-    raw: Any, unit: str, where: str, *, lowest: float = -np.inf, highest: float = np.inf
-) -> float:
+def quantity(raw: Any, unit: str, where: str, *, lowest: float = -np.inf, highest: float = np.inf) -> float:
     """A number in SI, or text with a unit such as "20 ms".
 
     Raises:

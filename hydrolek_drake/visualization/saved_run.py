@@ -147,7 +147,9 @@ def _draw_cylinders(view: Any, cylinders: tuple[TreeCylinder, ...]) -> dict[str,
             middle = np.eye(4)
             middle[2, 3] = length / 2.0
             _draw_cylinder(view[name]["tube"], radius, length, middle, colour)
-            view[name]["eye"].set_object(meshcat.geometry.Sphere(1.2 * cylinder.rod_radius), _material(colour))
+            view[name]["eye"].set_object(
+                meshcat.geometry.Sphere(1.2 * cylinder.rod_radius), _material(colour)
+            )
             nodes[name] = view[name]
     return nodes
 

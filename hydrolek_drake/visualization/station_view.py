@@ -125,8 +125,6 @@ def drawn_cylinders(body: RigPlant, rig: Rig, joints: np.ndarray) -> list[Cylind
     return drawn
 
 
-
-
 def _add_levers(body: RigPlant, rig: Rig, mounts: list[CylinderMount]) -> None:
     """Struts from a joint's axis to the mounts of its cylinder, where no link is drawn that carries them."""
     plant = body.plant

@@ -52,7 +52,9 @@ def test_units_and_plain_numbers_mean_the_same(scenario_file):
 
 
 def test_steps_hold_until_the_next(scenario_file):
-    text = BENCH.replace("kind: constant, joints: {joint: 2 V}", "kind: steps, joints: {joint: [[0.2 s, 2 V], [0.5 s, -1 V]]}")
+    text = BENCH.replace(
+        "kind: constant, joints: {joint: 2 V}", "kind: steps, joints: {joint: [[0.2 s, 2 V], [0.5 s, -1 V]]}"
+    )
     times, values = load_scenario(scenario_file(text)).command_table()
     assert times.tolist() == [0.0, 0.2, 0.5, 1.0]
     assert values[:, 0].tolist() == [0.0, 2.0, -1.0, -1.0]
@@ -121,7 +123,11 @@ def test_settings_reach_scenario_and_rig():
         ("kind: constant", "kind: sine", ["'sine'", "constant, steps, random, recording"]),
         ("joint: 2 V", "elbow: 2 V", ["command.joints.elbow", "choose joint"]),
         ("joint: 2 V", "joint: 2 MPa", ["command.joints.joint", "'MPa'"]),
-        ("kind: constant, joints: {joint: 2 V}", "kind: steps, joints: {joint: 2 V}", ["list of [time, value]"]),
+        (
+            "kind: constant, joints: {joint: 2 V}",
+            "kind: steps, joints: {joint: 2 V}",
+            ["list of [time, value]"],
+        ),
         (
             "kind: constant, joints: {joint: 2 V}",
             "kind: steps, joints: {joint: [[1 s, 2 V], [1 s, 0 V]]}",
@@ -137,15 +143,40 @@ def test_settings_reach_scenario_and_rig():
             "kind: random, amplitude: 3 V, levels: 5, hold: [1 s, 0.2 s]",
             ["command.hold", "shorter to a longer"],
         ),
-        ("kind: constant, joints: {joint: 2 V}", "kind: recording, path: none.csv", ["none.csv does not exist"]),
-        ("kind: constant,", "kind: constant, operator: true,", ["operator", "not a signal in percent"]),
+        (
+            "kind: constant, joints: {joint: 2 V}",
+            "kind: recording, path: none.csv",
+            ["none.csv does not exist"],
+        ),
+        (
+            "kind: constant,",
+            "kind: constant, operator: true,",
+            ["command.joints.joint", "not a signal in percent"],
+        ),
+        ("rig: joint_bench", "rig: joint_bench\nforces: torques", ["forces: 'torques'", "mounts or moments"]),
         ("rig: joint_bench", "rig: joint_bench\nnoise: 3", ["noise: '3'"]),
         ("rig: joint_bench", "rig: joint_bench\nevents: {hose: 1}", ["events.hose", "supply_lost_at"]),
-        ("rig: joint_bench", "rig: joint_bench\ninitial_position: {joint: 90 deg}", ["outside its stops", "65.6"]),
-        ("rig: joint_bench", "rig: joint_bench\ninitial_position: {elbow: 1}", ["initial_position.elbow", "joint"]),
-        ("rig: joint_bench", "rig: joint_bench\nsettings: {supply.presure: 1}", ["settings", "supply.pressure"]),
+        (
+            "rig: joint_bench",
+            "rig: joint_bench\ninitial_position: {joint: 90 deg}",
+            ["outside its stops", "65.6"],
+        ),
+        (
+            "rig: joint_bench",
+            "rig: joint_bench\ninitial_position: {elbow: 1}",
+            ["initial_position.elbow", "joint"],
+        ),
+        (
+            "rig: joint_bench",
+            "rig: joint_bench\nsettings: {supply.presure: 1}",
+            ["settings", "supply.pressure"],
+        ),
         ("rig: joint_bench", "rig: joint_bench\nintegration: {step: 0}", ["integration.step", "above 0"]),
-        ("rig: joint_bench", "rig: joint_bench\nintegration: {integrator: euler}", ["'euler'", "runge_kutta2"]),
+        (
+            "rig: joint_bench",
+            "rig: joint_bench\nintegration: {integrator: euler}",
+            ["'euler'", "runge_kutta2"],
+        ),
     ],
 )
 def test_wrong_files_are_refused_in_one_line(scenario_file, old, new, expected):
