@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hydrolek_drake.errors import InputError
 from hydrolek_drake.station.scenario import Scenario
 from hydrolek_drake.station.simulation import Run, run
 from hydrolek_drake.station.station import Station, make_station
@@ -60,6 +61,9 @@ def run_scenario(
         view: shows and records the run.
         realtime_rate: 1 to run no faster than real time, 0 as fast as possible.
         on_progress: called with the simulated time now and then.
+
+    Raises:
+        InputError: the simulation diverged, which a smaller step cures.
     """
     station = make_scenario_station(scenario, seed, view)
     outcome: list[Run] = []
@@ -77,8 +81,18 @@ def run_scenario(
             )
         )
 
-    if view is None:
-        go()
-    else:
-        view.record(go)
+    try:
+        if view is None:
+            go()
+        else:
+            view.record(go)
+    except RuntimeError as error:  # what Drake raises when it meets a number that is none
+        if "NaN" not in str(error):
+            raise
+        outcome.clear()
+    if not outcome or not np.isfinite(outcome[0].signals["position"]).all():
+        raise InputError(
+            f"scenario {scenario.name} diverged at a step of {1e3 * scenario.sizes.step:g} ms; take a smaller one, "
+            f"such as --set 'scenario.integration.step={250 * scenario.sizes.step:g} ms'"
+        )
     return ScenarioRun(scenario, seed, outcome[0], clock.perf_counter() - begun)

@@ -90,7 +90,7 @@ def sentence(done: ScenarioRun, joints: tuple[JointSummary, ...]) -> str:
     creeping = [joint for joint in joints if joint.rest_movement is not None]
     if creeping:
         most = max(creeping, key=lambda joint: joint.rest_movement or 0.0)
-        parts.append(f"with the valves closed, joints moved at most {_at_least_seen(most)} ({most.joint})")
+        parts.append(f"with their valves closed, joints moved at most {_at_least_seen(most)} ({most.joint})")
     pressed = [joint for joint in joints if joint.pressure is not None]
     if pressed:
         highest = max(pressed, key=lambda joint: joint.pressure or 0.0)

@@ -142,15 +142,21 @@ def as_svg(diagram: Diagram, title: str) -> str:
                 )
             )  # fmt: skip
     for wire in wires:
-        values = "" if wire.size == 0 else f"{wire.size}"
-        forward = "false" if _is_feedback(wire) else "true"
+        back = _is_feedback(wire)
         graph.add_edge(
             pydot.Edge(
-                _end(wire.source, "y", "e"), _end(wire.target, "u", "w"), label=f" {values} ", fontsize="9",
-                fontname="Helvetica", fontcolor="#6b7785", color=_FEEDBACK if _is_feedback(wire) else _FORWARD,
-                arrowsize="0.6", penwidth="0.9", constraint=forward,
+                _end(wire.source, "y", "e"),
+                _end(wire.target, "u", "w"),
+                label=f" {wire.size or ''} ",
+                fontsize="9",
+                fontname="Helvetica",
+                fontcolor="#6b7785",
+                color=_FEEDBACK if back else _FORWARD,
+                arrowsize="0.6",
+                penwidth="0.9",
+                constraint="false" if back else "true",
             )
-        )  # fmt: skip
+        )
     try:
         drawn = graph.create(format="svg")
         svg = drawn if isinstance(drawn, str) else drawn.decode()

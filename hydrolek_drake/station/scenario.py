@@ -11,6 +11,7 @@ A scenario is a YAML file; the folder `diagrams` holds those that come with the 
     initial_position: {right_j2: 20 deg, right_j3: 0}  # optional; held joints too
     events: {supply_lost_at: 5 s, commands_zero_at: 5 s}   # optional
     integration: {step: 1 ms, plant_step: 0, log_period: 10 ms, integrator: runge_kutta2}  # optional
+    forces: mounts                    # where cylinders push: at their mounts, or as moments on the joints
     noise: false                      # whether the sensors are noisy, optional
 
 Numbers without a unit are in SI.
@@ -41,7 +42,7 @@ PREFIX = "scenario."
 
 _KEYS = (
     "schema", "title", "rig", "settings", "duration", "command", "initial_position", "events",
-    "integration", "noise",
+    "integration", "forces", "noise",
 )  # fmt: skip
 _SCHEMA = 1
 
@@ -133,6 +134,9 @@ def load_scenario(name_or_path: str | Path, settings: Mapping[str, str] | None =
     command, operator = parse_command(tree["command"], rig, f"{path}: command", path.parent)
     events = tree.get("events") or {}
     refuse_unknown(events, ("supply_lost_at", "commands_zero_at"), f"{path}: events")
+    forces = tree.get("forces", "mounts")
+    if forces not in ("mounts", "moments"):
+        raise InputError(f"{path}: forces: '{forces}' is unknown; choose mounts or moments")
     noise = tree.get("noise", False)
     if not isinstance(noise, bool):
         raise InputError(f"{path}: noise: '{noise}' is neither true nor false")
@@ -146,7 +150,7 @@ def load_scenario(name_or_path: str | Path, settings: Mapping[str, str] | None =
         operator=operator,
         supply_lost_at=_event(events, "supply_lost_at", path),
         commands_zero_at=_event(events, "commands_zero_at", path),
-        sizes=_sizes(tree.get("integration") or {}, path),
+        sizes=replace(_sizes(tree.get("integration") or {}, path), mount_forces=forces == "mounts"),
         noise=noise,
         tree=tree,
     )

@@ -148,7 +148,12 @@ def test_settings_reach_scenario_and_rig():
             "kind: recording, path: none.csv",
             ["none.csv does not exist"],
         ),
-        ("kind: constant,", "kind: constant, operator: true,", ["operator", "not a signal in percent"]),
+        (
+            "kind: constant,",
+            "kind: constant, operator: true,",
+            ["command.joints.joint", "not a signal in percent"],
+        ),
+        ("rig: joint_bench", "rig: joint_bench\nforces: torques", ["forces: 'torques'", "mounts or moments"]),
         ("rig: joint_bench", "rig: joint_bench\nnoise: 3", ["noise: '3'"]),
         ("rig: joint_bench", "rig: joint_bench\nevents: {hose: 1}", ["events.hose", "supply_lost_at"]),
         (
