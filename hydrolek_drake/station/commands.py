@@ -149,7 +149,7 @@ def _steps(raw: Any, operator: bool, where: str) -> tuple[tuple[float, float], .
         raise InputError(
             f"{where}: '{raw}' must be a list of [time, value], such as [[0.5 s, 2 V], [2 s, 0 V]]"
         )
-    rows = []
+    rows: list[tuple[float, float]] = []
     for index, pair in enumerate(raw):
         if not isinstance(pair, list) or len(pair) != 2:
             raise InputError(f"{where}[{index}]: '{pair}' must be [time, value], such as [0.5 s, 2 V]")
