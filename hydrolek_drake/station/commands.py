@@ -132,7 +132,7 @@ def parse_command(raw: Any, rig: Rig, where: str, folder: Path) -> tuple[Command
         raise InputError(f"{where}.kind: '{kind}' is unknown; choose {', '.join(KINDS)}")
     refuse_unknown(raw, ("kind", "operator", "joints"), where)
     given = _joints(required(raw, "joints", where), rig, f"{where}.joints")
-    rows = []
+    rows: list[tuple[tuple[float, float], ...]] = []
     for joint in rig.joints:
         key = f"{where}.joints.{joint}"
         if joint not in given:
@@ -149,7 +149,7 @@ def _steps(raw: Any, operator: bool, where: str) -> tuple[tuple[float, float], .
         raise InputError(
             f"{where}: '{raw}' must be a list of [time, value], such as [[0.5 s, 2 V], [2 s, 0 V]]"
         )
-    rows = []
+    rows: list[tuple[float, float]] = []
     for index, pair in enumerate(raw):
         if not isinstance(pair, list) or len(pair) != 2:
             raise InputError(f"{where}[{index}]: '{pair}' must be [time, value], such as [0.5 s, 2 V]")
