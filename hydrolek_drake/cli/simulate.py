@@ -61,12 +61,14 @@ def simulate(
     if len(done.run.time) < 2:
         return _INTERRUPTED
     joints = summarize(done)
+    page = None
+    if out is not None:  # before anything is printed: a reader such as `head` may close the pipe
+        with progress.status("writing the report"):
+            page = write_run(done, joints, out, None if view is None else view.static_html())
     output.print(sentence(done, joints), markup=False, soft_wrap=True)
     output.print()
     output.print(joint_table(joints))
-    if out is not None:
-        with progress.status("writing the report"):
-            page = write_run(done, joints, out, None if view is None else view.static_html())
+    if page is not None:
         output.print(f"\nreport: {page}", markup=False, soft_wrap=True)
     if done.run.interrupted:
         return _INTERRUPTED

@@ -26,7 +26,6 @@ def page(done: ScenarioRun, joints: tuple[JointSummary, ...], with_replay: bool)
     """The sentence first, then numbers per joint, then the plots."""
     scenario = done.scenario
     title = f"{scenario.name}: {scenario.title}"
-    rate = done.run.time[-1] / done.seconds if done.seconds > 0.0 else float("nan")
     links = ["<a href='signals.parquet'>signals.parquet</a>", "<a href='signals.png'>signals.png</a>"]
     if with_replay:
         links.insert(0, "<a href='replay3d.html'>3-D replay</a>")
@@ -35,7 +34,7 @@ def page(done: ScenarioRun, joints: tuple[JointSummary, ...], with_replay: bool)
             f"<!doctype html><html lang='en'><head><meta charset='utf-8'><title>{html.escape(title)}</title>"
             f"<style>{STYLE}</style></head><body><h1>{html.escape(title)}</h1>",
             f"<p class='sentence'>{html.escape(sentence(done, joints))}</p>",
-            f"<p class='other'>{' &middot; '.join(links)} &middot; {_steps(done)}, {rate:.1f} times real time</p>",
+            f"<p class='other'>{' &middot; '.join(links)} &middot; {_steps(done)}</p>",
             "<h2>Joints</h2>",
             _table(joints),
             f"<p class='other'>At rest: largest movement from {SETTLING:g} s after the last command has arrived "
