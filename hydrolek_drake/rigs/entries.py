@@ -9,7 +9,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.units import si_factor
 
-_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
+_NUMBER = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan|inf)", re.IGNORECASE)
 _KEYS = ("value", "unit", "source", "range", "scale", "same_as", "note")
 
 

@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 
+from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import cylinder, hooks, linkage, load
 from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, flat, position_of
 from hydrolek_drake.rollout import kernel
@@ -109,7 +110,11 @@ def roll_out(
         state: where to start; None for rest at the rig's initial position.
         longest_step: upper bound of the integration step [s].
         spool_steps: steps of the spool within one step of the rest.
+
+    Raises:
+        InputError: times that do not rise, or not as many command values as command times.
     """
+    _check_times(command_times, command_values, times)
     out = np.full((len(times), len(kernel.SIGNALS)), np.nan)
     times = np.ascontiguousarray(times, dtype=float)
     start = np.full(STATE_SIZE, np.nan) if state is None else state.copy()
@@ -133,6 +138,16 @@ def roll_out(
             out[:] = np.nan
             diverged = "a parameter by which something is divided is zero"
     return Outcome(Signals(times, *out.T), diverged, start)
+
+
+def _check_times(command_times: np.ndarray, command_values: np.ndarray, times: np.ndarray) -> None:
+    if len(command_times) == 0 or len(command_times) != len(command_values):
+        raise InputError(
+            f"rollout: {len(command_times)} command times but {len(command_values)} command values"
+        )
+    for name, series in (("command times", command_times), ("times", times)):
+        if len(series) == 0 or not np.all(np.diff(series) > 0.0):
+            raise InputError(f"rollout: the {name} must rise from each to the next")
 
 
 _VARIANTS = np.array([position_of(stage, "variant") for stage in STAGES])

@@ -158,12 +158,12 @@ def as_svg(diagram: Diagram, title: str) -> str:
             )
         )
     try:
-        drawn: bytes | str = graph.create(format="svg")
+        drawn = graph.create(format="svg")
+        svg = drawn if isinstance(drawn, str) else drawn.decode()
     except (FileNotFoundError, OSError) as error:
         raise InputError(
             f"Graphviz's dot cannot be run ({error}); install Graphviz to refresh pictures"
         ) from None
-    svg = drawn.decode() if isinstance(drawn, bytes) else drawn
     shown = html.escape(as_text(diagram))
     return svg.replace("<g id=", f"<metadata>\n{shown}\n</metadata>\n<g id=", 1)
 

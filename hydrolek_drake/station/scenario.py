@@ -265,13 +265,9 @@ def _sizes(raw: Any, path: Path) -> StepSizes:
     for key in ("step", "log_period"):
         if times.get(key, 1.0) <= 0.0:
             raise InputError(f"{where}.{key}: 0 s is impossible; give a time above 0")
-    usual = StepSizes()
     try:
-        return StepSizes(
-            step=times.get("step", usual.step),
-            plant_step=times.get("plant_step", usual.plant_step),
-            log_period=times.get("log_period", usual.log_period),
-            integrator=str(raw.get("integrator", usual.integrator)),
+        return replace(
+            StepSizes(), **times, **({"integrator": str(raw["integrator"])} if "integrator" in raw else {})
         )
     except InputError as error:
         raise InputError(f"{where}: {error}") from None

@@ -105,7 +105,7 @@ def test_unknown_rig_names_near_ones(refused):
         ("supply.pressure=12 m", "unit 'm'"),
         ("suply.pressure=12 MPa", "supply.pressure"),
         ("supply.pressure=much", "not a number"),
-        ("valve.discharge=-1e999", "impossible"),
+        ("valve.discharge=-1e999", "not a finite number"),
     ],
 )
 def test_wrong_settings(refused, setting, expected):

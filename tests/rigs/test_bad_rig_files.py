@@ -141,7 +141,7 @@ def test_two_files_based_on_each_other_are_refused(tmp_path):
 def test_a_missing_file_and_an_unknown_name_are_refused(tmp_path):
     with pytest.raises(InputError, match="does not exist"):
         load_rig(tmp_path / "nothing.yaml")
-    with pytest.raises(InputError, match=r"did you mean joint_bench\?.*Built in:.*emps"):
+    with pytest.raises(InputError, match=r"did you mean joint_bench\?.*built in are.*emps"):
         load_rig("joint_bensh")
 
 

@@ -36,7 +36,7 @@ def test_a_rig_written_and_read_again_is_the_same(name, tmp_path):
     rig = load_rig(name)
     changed = rig.with_values({path: entry.value for path, entry in list(rig.free_parameters().items())[:1]})
     file = tmp_path / "again.yaml"
-    file.write_text(yaml.safe_dump(changed.as_tree()))
+    file.write_text(yaml.safe_dump(changed.as_tree(), sort_keys=False))  # the order of joints counts
     again = load_rig(file)
     np.testing.assert_array_equal(flat(again.records()), flat(rig.records()))
     assert again.free_parameters().keys() == rig.free_parameters().keys()

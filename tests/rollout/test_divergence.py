@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import kernel, rest_state, roll_out
 
@@ -103,3 +104,14 @@ def test_the_start_is_not_written_to(bench):
     kept = start.copy()
     roll_out(records, TIMES, VOLTS, TIMES, longest_step=5e-4, state=start)
     np.testing.assert_array_equal(start, kept)
+
+
+def test_times_that_do_not_rise_are_refused():
+    records = load_rig("joint_bench").records()
+    backwards = TIMES[::-1]
+    with pytest.raises(InputError, match="command times must rise"):
+        roll_out(records, backwards, VOLTS, TIMES, longest_step=5e-4)
+    with pytest.raises(InputError, match="the times must rise"):
+        roll_out(records, TIMES, VOLTS, backwards, longest_step=5e-4)
+    with pytest.raises(InputError, match="99 command values"):
+        roll_out(records, TIMES, VOLTS[:-1], TIMES, longest_step=5e-4)
