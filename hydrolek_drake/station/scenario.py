@@ -266,8 +266,12 @@ def _sizes(raw: Any, path: Path) -> StepSizes:
         if times.get(key, 1.0) <= 0.0:
             raise InputError(f"{where}.{key}: 0 s is impossible; give a time above 0")
     try:
-        return replace(
-            StepSizes(), **times, **({"integrator": str(raw["integrator"])} if "integrator" in raw else {})
+        usual = StepSizes()
+        return StepSizes(
+            step=times.get("step", usual.step),
+            plant_step=times.get("plant_step", usual.plant_step),
+            log_period=times.get("log_period", usual.log_period),
+            integrator=str(raw.get("integrator", usual.integrator)),
         )
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
