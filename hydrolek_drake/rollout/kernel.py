@@ -184,7 +184,7 @@ def _out_of_bounds(x: float, s: State) -> bool:
     )
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def integrate(
     joints: np.ndarray,
     state: np.ndarray,

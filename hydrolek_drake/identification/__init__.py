@@ -1,0 +1,1 @@
+"""Identification: from recordings to parameters, with honest uncertainties."""

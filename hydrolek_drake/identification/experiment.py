@@ -1,0 +1,192 @@
+"""One recording of one joint, prepared so that a rollout can be held against it again and again."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.recordings import Recording, require
+from hydrolek_drake.replay.noise import noise_level
+from hydrolek_drake.replay.readings import measured_position, position_key
+from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rollout.rollout import Outcome, Signals, rest_state, roll_out
+
+REST_SAMPLES = 25
+"""At most so many leading samples are averaged for the start, if the joint stands still that long."""
+
+CONSTANT = 1e-12
+"""A command that varies by less than this fraction of its size says nothing about the machine."""
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A measured signal that the model must follow.
+
+    Attributes:
+        key: `<joint>.<quantity>`.
+        unit: SI unit.
+        model: attribute of `Signals` that it is compared with.
+        measured: NaN where the recording has no value. # (n,)
+        noise: standard deviation of its noise.
+    """
+
+    key: str
+    unit: str
+    model: str
+    measured: np.ndarray
+    noise: float
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A joint's command and what was measured under it.
+
+    Attributes:
+        name: of the recording.
+        joint: the joint's name.
+        index: its place among the rig's joints.
+        time: of the samples [s]. # (n,)
+        command_times: of the command [s]. # (m,)
+        command: held from then on [V]. # (m,)
+        channels: measured signals, position first.
+        start: where the joint rests at the beginning [rad or m]; None for where the rig says.
+        longest_step: of the rollout [s].
+        spool_steps: of the rollout.
+        used: samples that count in a fit. # (n,)
+    """
+
+    name: str
+    joint: str
+    index: int
+    time: np.ndarray
+    command_times: np.ndarray
+    command: np.ndarray
+    channels: tuple[Channel, ...]
+    start: float | None
+    longest_step: float
+    spool_steps: int
+    used: np.ndarray
+
+    def simulate(self, records: np.ndarray, longest_step: float | None = None) -> Outcome:
+        """Roll the joint out under the recorded command.
+
+        Args:
+            records: of all joints of the rig. # (joints,)
+            longest_step: [s]; None for the rig's own.
+        """
+        record = records[self.index : self.index + 1]
+        state = None if self.start is None else rest_state(record, self.start)
+        return roll_out(
+            record,
+            self.command_times,
+            self.command,
+            self.time,
+            state=state,
+            longest_step=longest_step or self.longest_step,
+            spool_steps=self.spool_steps,
+        )
+
+    def residuals(self, signals: Signals) -> np.ndarray:
+        """(measured - model) / noise of every channel, channel after channel; 0 where it does not count.
+
+        After a divergence the model has no value: its residual there is NaN. # (channels * n,)
+        """
+        parts = []
+        for channel in self.channels:
+            residual = (channel.measured - getattr(signals, channel.model)) / channel.noise
+            parts.append(np.where(self.used & np.isfinite(channel.measured), residual, 0.0))
+        return np.concatenate(parts)
+
+    @property
+    def counted(self) -> int:
+        """How many measured values count."""
+        return sum(int((self.used & np.isfinite(c.measured)).sum()) for c in self.channels)
+
+    def split(self, used: np.ndarray) -> "Experiment":
+        """The same experiment with other samples that count. # (n,)"""
+        return Experiment(**{**self.__dict__, "used": used})
+
+
+def experiments_of(
+    rig: Rig, recording: Recording, signals: tuple[str, ...] = ("position", "pressure_a", "pressure_b")
+) -> list[Experiment]:
+    """One experiment for each joint of the rig that has a command in the recording.
+
+    Args:
+        rig: the machine.
+        recording: read with the rig's `columns`.
+        signals: which of position, pressure_a, pressure_b are to be followed, where recorded.
+
+    Raises:
+        InputError: no command, no position, a command that never changes, or a signal without noise level.
+    """
+    driven = [joint for joint in rig.joints if f"{joint}.command" in recording.signals]
+    if not driven:
+        require(recording, [f"{rig.joints[0]}.command"])
+    return [_experiment(rig, joint, recording, signals) for joint in driven]
+
+
+def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, ...]) -> Experiment:
+    key = f"{joint}.command"
+    require(recording, [], complete=[key], units={key: "V"})
+    command = np.asarray(recording.signal(key), dtype=float)
+    if np.ptp(command) <= CONSTANT * max(float(np.abs(command).max()), 1.0):
+        raise InputError(
+            f"{recording.source}: {key} is constant at {command[0]:g} V, so nothing can be identified; "
+            "record the joint while its command changes"
+        )
+    channels = []
+    place = position_key(rig, joint)
+    position = np.asarray(measured_position(rig, joint, recording), dtype=float)
+    if not np.isfinite(position).any():
+        raise InputError(f"{recording.source}: {place} has no value at all")
+    if "position" in wanted:
+        unit = "m" if place.endswith(".position") else "rad"
+        noise = _noise(position, rig, joint, "noise")
+        channels.append(Channel(place, unit, "reading", position, noise))
+    if rig.variant(joint, "cylinder") != "electric_motor":
+        for quantity in ("pressure_a", "pressure_b"):
+            name = f"{joint}.{quantity}"
+            if quantity in wanted and name in recording.signals:
+                measured = np.asarray(recording.signal(name), dtype=float)
+                noise = _noise(measured, rig, joint, "pressure_noise")
+                channels.append(Channel(name, "Pa", quantity, measured, noise))
+    start = None
+    if rig.initial_position == "recording":
+        start = _resting_position(position, command)
+    return Experiment(
+        name=recording.name,
+        joint=joint,
+        index=rig.joints.index(joint),
+        time=np.ascontiguousarray(recording.time, dtype=float),
+        command_times=np.ascontiguousarray(recording.time, dtype=float),
+        command=command,
+        channels=tuple(channels),
+        start=start,
+        longest_step=rig.value("integration.longest_step"),
+        spool_steps=int(rig.value("integration.spool_steps")),
+        used=np.ones(recording.time.size, dtype=bool),
+    )
+
+
+def _noise(measured: np.ndarray, rig: Rig, joint: str, name: str) -> float:
+    """Noise of a channel from the recording itself, or from the rig if the recording shows none."""
+    level = noise_level(measured)
+    if level > 0.0:
+        return level
+    stated = rig.value(f"joints.{joint}.sensor.{name}")
+    if stated > 0.0:
+        return stated
+    span = float(np.nanmax(measured) - np.nanmin(measured))
+    return max(1e-6 * span, np.finfo(float).tiny)  # noise-free simulation: weights that are merely equal
+
+
+def _resting_position(position: np.ndarray, command: np.ndarray) -> float:
+    """Mean of the leading samples while the command has not changed yet."""
+    changed = np.flatnonzero(command != command[0])
+    still = int(changed[0]) if changed.size else position.size
+    leading = position[: min(max(still, 1), REST_SAMPLES)]
+    finite = leading[np.isfinite(leading)]
+    if not finite.size:
+        finite = position[np.isfinite(position)][:1]
+    return float(finite.mean())

@@ -1,0 +1,124 @@
+"""Bounded least squares with a robust loss, from one start or from several."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from hydrolek_drake.identification.problem import Problem
+
+EDGE = 1e-6
+"""Starts are pulled so far inside the cube: the trust-region method walks in the interior."""
+
+LOSSES = ("linear", "soft_l1", "huber", "cauchy")
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Where a search ended.
+
+    Attributes:
+        unit: place in the unit cube. # (n,)
+        residuals: there, in units of the noise. # (values,)
+        jacobian: d residuals / d unit there. # (values, n)
+        counted: values that count; where a sample does not count its residual is zero.
+        evaluations: rollouts of all experiments that it took.
+    """
+
+    unit: np.ndarray
+    residuals: np.ndarray
+    jacobian: np.ndarray
+    counted: int
+    evaluations: int
+
+    @property
+    def chi_squared(self) -> float:
+        """Sum of the squared residuals in units of the noise."""
+        return float(self.residuals @ self.residuals)
+
+    @property
+    def over_noise(self) -> float:
+        """Root mean square of the residuals over the noise: 1 for a perfect model."""
+        return math.sqrt(self.chi_squared / max(self.counted, 1))
+
+
+def fit_from(
+    problem: Problem,
+    start: np.ndarray,
+    *,
+    loss: str = "linear",
+    most_steps: int = 50,
+    tolerance: float = 1e-6,
+    stop: Callable[[], bool] | None = None,
+) -> Fit:
+    """Bounded least squares from one start (trust region reflective, scipy).
+
+    Args:
+        problem: residuals and Jacobian.
+        start: place in the unit cube. # (n,)
+        loss: one of `LOSSES`; all but linear give large residuals less weight.
+        most_steps: of the trust-region method, each with one Jacobian.
+        tolerance: relative change of cost and parameters at which it ends.
+        stop: asked before each rollout; True ends the search with `KeyboardInterrupt`.
+    """
+    before = problem.evaluations
+    known: dict[bytes, np.ndarray] = {}
+
+    def residuals(unit: np.ndarray) -> np.ndarray:
+        if stop is not None and stop():
+            raise KeyboardInterrupt
+        value = problem.residuals(unit)
+        known.clear()
+        known[unit.tobytes()] = value
+        return value
+
+    def jacobian(unit: np.ndarray) -> np.ndarray:
+        return problem.jacobian(unit, known.get(unit.tobytes()))
+
+    inside = np.clip(start, EDGE, 1.0 - EDGE)
+    result = least_squares(
+        residuals,
+        inside,
+        jac=jacobian,
+        bounds=(0.0, 1.0),
+        loss=loss,
+        max_nfev=most_steps,
+        xtol=tolerance,
+        ftol=tolerance,
+        gtol=1e-12,
+    )
+    return Fit(result.x, result.fun, result.jac, problem.counted, problem.evaluations - before)
+
+
+def multi_start(
+    problem: Problem,
+    starts: Sequence[np.ndarray],
+    *,
+    loss: str = "linear",
+    most_steps: int = 50,
+    good_enough: float = 1.02,
+    progress: Callable[[int, Fit], None] | None = None,
+) -> Fit:
+    """The best of the fits from several starts; ends early once a fit is at the noise.
+
+    Args:
+        problem: residuals and Jacobian.
+        starts: places in the unit cube, tried in this order. # (n,) each
+        loss: one of `LOSSES`.
+        most_steps: for each start.
+        good_enough: over the noise; further starts cannot gain more than this.
+        progress: called with number and result after each start.
+    """
+    best: Fit | None = None
+    for number, start in enumerate(starts):
+        fit = fit_from(problem, start, loss=loss, most_steps=most_steps)
+        if best is None or fit.chi_squared < best.chi_squared:
+            best = fit
+        if progress is not None:
+            progress(number, best)
+        if best.over_noise <= good_enough:
+            break
+    assert best is not None
+    return best

@@ -1,0 +1,81 @@
+"""The residuals of recordings as a function of the searched parameters."""
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+
+import numpy as np
+
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.parameter_set import ParameterSet
+
+DIFFERENCE = 1e-3
+"""Step of the forward differences, as a fraction of a parameter's range: far above rounding, and far below
+the distance over which a residual bends."""
+
+DIVERGED = 1e3
+"""Residual, in units of noise, where a diverged simulation has no value: worse than any that ends."""
+
+
+class Problem:
+    """Weighted residuals of several experiments, all under the same parameters."""
+
+    def __init__(
+        self,
+        parameters: ParameterSet,
+        experiments: Sequence[Experiment],
+        longest_step: float | None = None,
+        pool: Executor | None = None,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            parameters: what is searched.
+            experiments: what must be followed.
+            longest_step: of the rollouts [s]; None for the rig's own.
+            pool: threads that share the columns of a Jacobian (rollouts run outside Python's lock).
+        """
+        self.parameters = parameters
+        self.experiments = tuple(experiments)
+        self.longest_step = longest_step
+        self.pool = pool
+        self.evaluations = 0
+        self.counted = sum(experiment.counted for experiment in self.experiments)
+
+    def residuals(self, unit: np.ndarray) -> np.ndarray:
+        """(measured - model) / noise of all experiments. # (values,)
+
+        Args:
+            unit: place in the unit cube. # (n,)
+        """
+        self.evaluations += 1
+        records = self.parameters.records(unit)
+        parts = [
+            experiment.residuals(experiment.simulate(records, self.longest_step).signals)
+            for experiment in self.experiments
+        ]
+        residuals = np.concatenate(parts)
+        return np.clip(np.nan_to_num(residuals, nan=DIVERGED), -DIVERGED, DIVERGED)
+
+    def jacobian(self, unit: np.ndarray, at: np.ndarray | None = None) -> np.ndarray:
+        """d residuals / d unit by forward differences (backward at the upper end). # (values, n)
+
+        Args:
+            unit: place in the unit cube. # (n,)
+            at: the residuals there, if known.
+        """
+        base = self.residuals(unit) if at is None else at
+        steps = np.where(unit + DIFFERENCE <= 1.0, DIFFERENCE, -DIFFERENCE)
+
+        def column(i: int) -> np.ndarray:
+            moved = unit.copy()
+            moved[i] += steps[i]
+            return (self.residuals(moved) - base) / steps[i]
+
+        indices = range(len(unit))
+        columns = list(map(column, indices)) if self.pool is None else list(self.pool.map(column, indices))
+        return np.stack(columns, axis=1) if columns else np.zeros((base.size, 0))
+
+    def chi_squared(self, unit: np.ndarray) -> float:
+        """Sum of the squared residuals in units of the noise."""
+        residuals = self.residuals(unit)
+        return float(residuals @ residuals)
