@@ -31,6 +31,9 @@ COMMANDS: dict[str, CommandEntry] = {
     "replay": CommandEntry(
         "hydrolek_drake.cli.replay", "replay", "drive a rig's model with a recorded command and compare"
     ),
+    "diagnose": CommandEntry(
+        "hydrolek_drake.cli.diagnose", "diagnose", "find out what physics the model leaves out, and model it"
+    ),
     "effects": CommandEntry(
         "hydrolek_drake.cli.effects", "effects", "list the known effects, or show one in full"
     ),
