@@ -13,9 +13,11 @@ from hydrolek_drake.diagnosis.conclusion import Conclusion, conclude
 from hydrolek_drake.diagnosis.data_quality import reasons_against
 from hydrolek_drake.diagnosis.evidence import FINER, Judged, judge
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
-from hydrolek_drake.diagnosis.locate import Location, locate
+from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
+from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
 from hydrolek_drake.diagnosis.score import Score
 from hydrolek_drake.diagnosis.search import Search, search
+from hydrolek_drake.diagnosis.unlisted import FoundLaw, find_law
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.experiment import Experiment, experiments_of
@@ -46,6 +48,8 @@ class Diagnosis:
         held_out: data that nothing was fitted to.
         locations: where the mismatch is.
         intervals: full path -> fitted value of the best model.
+        law: for physics in no list, the law found for it.
+        proposal: the experiment that would decide, if one is needed.
         seconds: that it took.
     """
 
@@ -59,6 +63,8 @@ class Diagnosis:
     held_out: tuple[Experiment, ...]
     locations: tuple[Location, ...]
     intervals: dict[str, Interval]
+    law: FoundLaw | None
+    proposal: Proposal | None
     seconds: float
 
     @property
@@ -107,14 +113,14 @@ def diagnose(
     say("looking at the data")
     training, held_out, reasons = _prepared(rig, recordings, holdout)
     if reasons:
-        return Diagnosis(
-            rig, "bad_data", tuple(reasons), None, None, (), None, (), (), {}, clock.perf_counter() - begun
-        )
+        return _refused(rig, reasons, clock.perf_counter() - begun)
     nominal = _nominal(rig, training)
     bench = Workbench(rig, nominal, training, pool, alive)
     candidates: list[Candidate] = []
-    for joint in dict.fromkeys(experiment.joint for experiment in training):
-        candidates += candidates_of(rig, joint, natural_scales(rig, joint, training))
+    joints = tuple(dict.fromkeys(experiment.joint for experiment in training))
+    scales = {joint: natural_scales(rig, joint, training) for joint in joints}
+    for joint in joints:
+        candidates += candidates_of(rig, joint, scales[joint])
     found = search(bench, candidates, say)
     say("holding the models against data that none of them was fitted to")
     bench.training = tuple(bench.weighted_by(found.best, bench.training))
@@ -122,6 +128,15 @@ def diagnose(
     judged = tuple(judge(bench, found, held_out))
     conclusion = conclude(judged)
     best = conclusion.best.hypothesis
+    law = None
+    if conclusion.verdict == "unlisted_physics":
+        say("searching a law for physics that is in no list")
+        law = find_law(bench, found.baseline, held_out, scales[joints[0]])
+    places = (
+        (locate_law(bench, found.baseline, law),)
+        if law
+        else locate(bench, best, found.baseline, bench.training)
+    )
     return Diagnosis(
         rig=rig,
         verdict=conclusion.verdict,
@@ -131,9 +146,30 @@ def diagnose(
         judged=judged,
         bench=bench,
         held_out=held_out,
-        locations=locate(bench, best, found.baseline, bench.training),
+        locations=places,
         intervals=intervals_of(bench.parameters(best.effects), best.fit),
+        law=law,
+        proposal=propose(bench, conclusion, [j.hypothesis for j in judged]),
         seconds=clock.perf_counter() - begun,
+    )
+
+
+def _refused(rig: Rig, reasons: Sequence[str], seconds: float) -> Diagnosis:
+    """What is left to say about data that cannot be diagnosed."""
+    return Diagnosis(
+        rig=rig,
+        verdict="bad_data",
+        reasons=tuple(reasons),
+        conclusion=None,
+        search=None,
+        judged=(),
+        bench=None,
+        held_out=(),
+        locations=(),
+        intervals={},
+        law=None,
+        proposal=None,
+        seconds=seconds,
     )
 
 

@@ -14,21 +14,24 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.search import FIDELITY, POLISH, Search
+from hydrolek_drake.diagnosis.search import FIDELITY, NEARLY, Search
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 
 EFFECT_COST = 4.5
 """Log-odds against each further effect at least: with some twenty to choose from, chance has to be paid for."""
 
-PARAMETER_COST = 1.0
-"""Log-odds against each further parameter: what chance gains on data that it was fitted to (Akaike)."""
+PARAMETER_COST = 2.0
+"""Log-odds against each further parameter, so that a special case is preferred to what contains it."""
 
 NOISE_KNOWN = 0.015
 """Relative uncertainty of the noise level, which is estimated from the recording."""
 
 FINER = 0.5
 """Last fits use this fraction of the rig's own step, so that the step's error cannot decide."""
+
+FINISH = 4
+"""Trust-region steps of the last fits, which begin at the optimum of the rig's own step."""
 
 CONTENDERS = 8
 """At most so many hypotheses are fitted with the finer step."""
@@ -87,11 +90,17 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
     finer = FINER * bench.fine
     chosen = _contenders(first, found)
     refitted = bench.side_by_side(
-        lambda h: bench.refit(h, finer, POLISH) if h.fit.objective < 2.0 * found.best.fit.objective else h,
+        lambda h: bench.refit(h, finer, FINISH) if _decides(h, found) else h,
         chosen,
     )
     judged = bench.side_by_side(lambda h: Judged(h, bench.residuals(h, held_out, finer), counted), refitted)
     return with_probabilities(judged)
+
+
+def _decides(hypothesis: Hypothesis, found: Search) -> bool:
+    """Whether the error of the step could matter: only for those near the best, and if that is near the noise."""
+    best = found.best.fit
+    return best.over_noise < NEARLY and hypothesis.fit.objective < 2.0 * best.objective
 
 
 def _contenders(first: Sequence[Judged], found: Search) -> list[Hypothesis]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.unlisted import FoundLaw
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.replay.conditions import conditions_of, growth, shares
@@ -126,3 +127,24 @@ def locate(
         for place, share in zip(found, shares_, strict=True)
     ]
     return tuple(sorted(located, key=lambda place: -place.share))
+
+
+def locate_law(bench: Workbench, baseline: Hypothesis, law: FoundLaw) -> Location:
+    """Where physics in no list acts: the stage of its law, and when the law makes a difference."""
+    experiment = bench.training[0]
+    signals = experiment.simulate(
+        bench.parameters(()).records(bench.parameters(()).unit(law.parameters))
+    ).signals
+    holds = conditions_for(bench.rig, experiment, signals)
+    total = max(baseline.fit.chi_squared - baseline.fit.counted, np.finfo(float).tiny)
+    share = (baseline.fit.chi_squared - law.fit.chi_squared) / total
+    condition = told_condition(experiment.time, law.difference, holds)
+    if law.law.term is None:
+        condition = f"periodic, {law.values[2]:.3g} Hz; {condition}"
+    return Location(
+        stage=law.law.input.stage,
+        joint=experiment.joint,
+        share=float(np.clip(share, 0.0, 1.0)),
+        when=growing_spans(experiment.time, law.difference, experiment.channels[0].noise),
+        condition=condition,
+    )

@@ -27,7 +27,7 @@ td.left { text-align: left; white-space: normal }
 """
 
 
-def page(diagnosis: Diagnosis, next_experiment: str | None) -> str:
+def page(diagnosis: Diagnosis) -> str:
     """The whole page."""
     title = f"Diagnosis of {diagnosis.rig.name}"
     colour = COLOURS[diagnosis.verdict]
@@ -63,12 +63,18 @@ def page(diagnosis: Diagnosis, next_experiment: str | None) -> str:
         "<h2>What would have been seen</h2>",
         _visible(diagnosis),
         "<h2>Next experiment</h2>",
-        f"<p class='other'>{html.escape(next_experiment or 'None is needed to decide between effects.')}</p>",
+        f"<p class='other'>{html.escape(_proposed(diagnosis))}</p>",
         "<h2>How it was computed</h2>",
         _method(diagnosis),
         "</body></html>",
     ]
     return "\n".join(parts)
+
+
+def _proposed(diagnosis: Diagnosis) -> str:
+    if diagnosis.proposal is None:
+        return "None is needed to decide between effects."
+    return f"{diagnosis.proposal.sentence} Its command is in next_experiment.csv."
 
 
 def _cells(texts: Iterable[str], tag: str = "td") -> str:

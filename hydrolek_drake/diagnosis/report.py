@@ -15,10 +15,10 @@ from hydrolek_drake.files import write_whole
 from hydrolek_drake.recordings import write_signals
 
 
-def write_report(diagnosis: Diagnosis, folder: Path, next_experiment: str | None = None) -> Path:
+def write_report(diagnosis: Diagnosis, folder: Path) -> Path:
     """Write `report.json`, `report.html`, `rig_fitted.yaml` and `residuals_*.parquet`, each when complete.
 
-    Bad data leave only the first two.
+    Bad data leave only the first two. `next_experiment.csv` is the command of a proposed recording.
 
     Returns:
         Path of the page.
@@ -28,12 +28,20 @@ def write_report(diagnosis: Diagnosis, folder: Path, next_experiment: str | None
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        tree = as_json(diagnosis, next_experiment)
+        tree = as_json(diagnosis)
         if diagnosis.bench is not None:
             rig = diagnosis.fitted_rig().as_tree()
             write_whole(folder / "rig_fitted.yaml", yaml.safe_dump(rig, sort_keys=False, allow_unicode=True))
             _write_residuals(diagnosis, folder)
-        write_whole(folder / "report.html", page(diagnosis, next_experiment))
+        if diagnosis.proposal is not None:
+            joint = diagnosis.bench.training[0].joint if diagnosis.bench else "joint"
+            write_signals(
+                folder / "next_experiment.csv",
+                diagnosis.proposal.time,
+                {f"{joint}.command": diagnosis.proposal.command},
+                {f"{joint}.command": "V"},
+            )
+        write_whole(folder / "report.html", page(diagnosis))
         write_whole(folder / "report.json", json.dumps(tree, indent=1, allow_nan=False))
     except OSError as error:
         raise InputError(f"--out {folder}: cannot write there: {error.strerror or error}") from None

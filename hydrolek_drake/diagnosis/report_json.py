@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis, smallest_visible
-from hydrolek_drake.diagnosis.words import effect_sentence, headline, path_of, quantity
+from hydrolek_drake.diagnosis.unlisted import FoundLaw
+from hydrolek_drake.diagnosis.words import effect_sentence, headline, law_sentence, path_of, quantity
 from hydrolek_drake.identification.experiment import Channel, Experiment
 from hydrolek_drake.replay.display import display_factor, display_unit
 
@@ -14,7 +15,7 @@ MOST_LISTED = 12
 """So many hypotheses are listed."""
 
 
-def as_json(diagnosis: Diagnosis, next_experiment: str | None) -> dict[str, Any]:
+def as_json(diagnosis: Diagnosis) -> dict[str, Any]:
     """The report as a tree."""
     report: dict[str, Any] = {
         "schema": 1,
@@ -32,7 +33,7 @@ def as_json(diagnosis: Diagnosis, next_experiment: str | None) -> dict[str, Any]
         ],
         "effects": effects_json(diagnosis),
         "not_distinguishable": [list(g) for g in diagnosis.conclusion.groups] if diagnosis.conclusion else [],
-        "next_experiment": next_experiment,
+        "next_experiment": diagnosis.proposal.sentence if diagnosis.proposal else None,
         "detectable_from": detectable(diagnosis),
         "fit": fit_json(diagnosis),
         "candidates": candidates_json(diagnosis),
@@ -46,6 +47,8 @@ def effects_json(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """What was added to the model, the most probable first."""
     if diagnosis.conclusion is None:
         return []
+    if diagnosis.law is not None:  # known effects that do not explain the data are not named beside it
+        return [_law_json(diagnosis, diagnosis.law)]
     told = []
     for candidate in diagnosis.best.hypothesis.effects:
         parameters = {}
@@ -62,6 +65,30 @@ def effects_json(diagnosis: Diagnosis) -> list[dict[str, Any]]:
             }
         )
     return sorted(told, key=lambda entry: -entry["probability"])
+
+
+def _law_json(diagnosis: Diagnosis, law: FoundLaw) -> dict[str, Any]:
+    known = law.law.input
+    parameters = {"amplitude": {"value": law.amplitude, "unit": known.unit}}
+    if law.law.term is None:
+        parameters["frequency"] = {"value": float(law.values[2]), "unit": "Hz"}
+    return {
+        "id": f"unlisted.{known.stage}",
+        "joint": diagnosis.locations[0].joint,
+        "probability": round(_law_probability(diagnosis, law), 4),
+        "parameters": parameters,
+        "holdout_over_noise": law.held_out_over_noise,
+        "sentence": law_sentence(law),
+    }
+
+
+def _law_probability(diagnosis: Diagnosis, law: FoundLaw) -> float:
+    """Odds of the law against the best of the known effects, by held-out likelihood made as flat as its misfit."""
+    best = diagnosis.best
+    counted = best.held_out_counted
+    excess = max(1.0, law.held_out_over_noise**2 * counted - counted)
+    ahead = 0.5 * counted * (best.over_noise**2 - law.held_out_over_noise**2)
+    return 1.0 / (1.0 + math.exp(-float(np.clip(ahead * len(law.fit.unit) / excess, -50.0, 50.0))))
 
 
 def detectable(diagnosis: Diagnosis) -> dict[str, str]:

@@ -36,10 +36,13 @@ AT_NOISE = 1.03
 MOST_EFFECTS = 3
 """At most so many effects are searched together."""
 
-BEAM = 4
-"""So many hypotheses are extended by a further effect."""
+NEARLY = 1.5
+"""A third effect is looked for only if two leave at most this many times the noise: it would be a small one."""
 
-GLANCE, LOOK, POLISH = 4, 25, 12
+BEAM = 3
+"""So many hypotheses are extended by a further effect, and only the best once it is near the noise."""
+
+GLANCE, LOOK, POLISH = 4, 15, 8
 """Trust-region steps of a first fit, of one that is followed up, and of one with the rig's own step."""
 
 FOLLOWED = 5
@@ -103,7 +106,7 @@ def search(bench: Workbench, candidates: Sequence[Candidate], say: Callable[[str
     say("fitting the nominal model")
     baseline = fit_baseline(bench)
     bench.training = tuple(bench.weighted_by(baseline, bench.training))
-    baseline = bench.refit(baseline, bench.fine, POLISH)
+    baseline = bench.refit(baseline, bench.fine, POLISH if baseline.fit.over_noise < FAR else 1)
     found = Search(baseline)
     found.keep(baseline)
     say("trying what could explain the rest")
@@ -118,8 +121,10 @@ def search(bench: Workbench, candidates: Sequence[Candidate], say: Callable[[str
             break
         for hypothesis in grown:
             found.keep(hypothesis)
-        _prune(bench, found, grown[:2])
+        _prune(bench, found, found.best)
+        near = found.best.fit.over_noise < NEAR
         beam = [h for h in grown if h.fit.objective < HOPELESS * grown[0].fit.objective][:BEAM]
+        beam = [found.best] if near else beam
         found.left = scores_of(bench, found.best, candidates, bench.fine)
     return found
 
@@ -133,6 +138,8 @@ def _worth_going_on(found: Search) -> bool:
     best = found.best
     if found.rounds and len(best.effects) < found.rounds:
         return False  # one effect more did not pay
+    if found.rounds >= 2 and best.fit.over_noise > NEARLY:
+        return False
     return bool(found.left) and found.left[0].gain > gain_needed(best.fit)
 
 
@@ -172,12 +179,20 @@ def _grow(
             effects = (*parent.effects, score.candidate)
             starts = work.setdefault(key_of(effects), (effects, []))[1]
             starts.append((score.left, {**parent.values, **score.start}))
-            if far:  # the parent's values may have gone far astray to make up for what is missing
+            if (
+                far and not parent.effects
+            ):  # the parent's values may have gone far astray to make up for what is missing
                 own = {c.size_path.rpartition(".")[0] for c in effects}
                 kept = {k: v for k, v in parent.values.items() if k.rpartition(".")[0] in own}
                 starts.append((math.inf, {**kept, **score.start}))
     if not work:
         return []
+    if (
+        over < NEAR
+    ):  # the parent is right but for something small: Gauss-Newton steps from it go straight there
+        items = sorted(work.values(), key=lambda item: min(left for left, _ in item[1]))[:FOLLOWED]
+        fits = bench.side_by_side(lambda i: bench.fit(i[0], min(i[1], key=_first)[1], step, POLISH), items)
+        return sorted(fits, key=lambda h: h.fit.objective)
     glances = bench.side_by_side(
         lambda item: _glance(bench, item[0], [start for _, start in item[1]], step), list(work.values())
     )
@@ -191,6 +206,10 @@ def _grow(
     polished = bench.side_by_side(lambda h: bench.refit(h, bench.fine, POLISH), near)
     polished.sort(key=lambda h: h.fit.objective)
     return [*polished, *looks[len(near) :]][: max(len(polished), 3)]
+
+
+def _first(start: tuple[float, dict[str, float]]) -> float:
+    return start[0]
 
 
 def _glance(
@@ -219,13 +238,9 @@ def _redundant(parent: Hypothesis, candidate: Candidate) -> bool:
     return candidate.id in contains or any(c.id in candidate.effect.contains for c in parent.effects)
 
 
-def _prune(bench: Workbench, found: Search, grown: Sequence[Hypothesis]) -> None:
-    """Fit each of the best again without one of its effects, from where it ended."""
-    work = []
-    for hypothesis in grown:
-        for effect in hypothesis.effects:
-            rest = tuple(c for c in hypothesis.effects if c is not effect)
-            work.append((rest, hypothesis.values))
-    fits = bench.side_by_side(lambda item: bench.fit(item[0], item[1], bench.fine, POLISH), work)
-    for hypothesis in fits:
-        found.keep(hypothesis)
+def _prune(bench: Workbench, found: Search, hypothesis: Hypothesis) -> None:
+    """Fit the best hypothesis again without each of its effects, from where it ended."""
+    work = [tuple(c for c in hypothesis.effects if c is not effect) for effect in hypothesis.effects]
+    fits = bench.side_by_side(lambda rest: bench.fit(rest, hypothesis.values, bench.fine, POLISH), work)
+    for fitted in fits:
+        found.keep(fitted)

@@ -3,6 +3,7 @@
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.intervals import Interval
+from hydrolek_drake.diagnosis.unlisted import FoundLaw
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.replay.display import shown
 
@@ -72,10 +73,18 @@ def headline(diagnosis: Diagnosis) -> str:
             f"Something is missing, but these data cannot tell {group} apart: the most probable of them takes "
             f"the error on held-out data from {before} to {after} the noise."
         )
-    return (
+    told = (
         f"Physics is missing that is in no list: the best of the known effects leaves {after} the noise on "
-        f"held-out data (nominal model: {before})."
+        f"held-out data (nominal model: {before})"
     )
+    if diagnosis.law is None:
+        return f"{told}."
+    return f"{told}. At the {diagnosis.law.law.input.stage}, {law_sentence(diagnosis.law)}"
+
+
+def law_sentence(law: FoundLaw) -> str:
+    """The law for physics in no list, and how well it does."""
+    return f"{law.equation()} leaves {_ratio(law.held_out_over_noise)} the noise on held-out data."
 
 
 def _ratio(over_noise: float) -> str:

@@ -64,6 +64,11 @@ class Problem:
             experiment.residuals(experiment.simulate(records, self.longest_step).signals)
             for experiment in self.experiments
         ]
+        return self.bounded(parts)
+
+    @staticmethod
+    def bounded(parts: Sequence[np.ndarray]) -> np.ndarray:
+        """Residuals of all experiments in one vector, with a value where a simulation diverged."""
         residuals = np.concatenate(parts)
         return np.clip(np.nan_to_num(residuals, nan=DIVERGED), -DIVERGED, DIVERGED)
 

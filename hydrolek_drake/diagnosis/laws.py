@@ -1,0 +1,122 @@
+"""Short laws in a stage's own variables, for physics that is in no list.
+
+A law gives one unknown input of the rollout (`kernel.PROBES`) as a function of time or of the joint's movement.
+Every law is one term with an amplitude; a periodic one has a frequency and a phase besides.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrolek_drake.effects.scales import Scales
+from hydrolek_drake.rollout.kernel import PROBES
+from hydrolek_drake.rollout.rollout import Signals
+
+SLOW = 0.02
+"""The sign of a speed is smoothed below this fraction of the largest speed."""
+
+
+@dataclass(frozen=True)
+class Input:
+    """One unknown input.
+
+    Attributes:
+        stage: where it enters; one of `kernel.PROBES`.
+        symbol: how a law names it.
+        unit: SI unit, "1" for a relative change.
+        scale: a large amplitude for this machine.
+    """
+
+    stage: str
+    symbol: str
+    unit: str
+    scale: float
+
+
+def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str) -> tuple[Input, ...]:
+    """The unknown inputs of a joint; those of the hydraulics are left out where there are none (NaN scales).
+
+    Args:
+        scales: natural scales of the joint.
+        pressure: of the supply [Pa].
+        limit: largest command [V].
+        position_unit: rad or m.
+    """
+    moment = "N m" if position_unit == "rad" else "N"
+    inputs = [
+        Input("command", "voltage added to the command", "V", 0.3 * limit),
+        Input("load", "moment added at the joint" if moment == "N m" else "force added at the load", moment,
+              0.3 * scales.load_force),
+        Input("sensor", "added to the reading", position_unit, 0.1 * scales.travel),
+    ]  # fmt: skip
+    if math.isfinite(scales.conductance):
+        inputs += [
+            Input("supply", "added to the supply pressure", "Pa", 0.3 * pressure),
+            Input("amplifier", "relative change of the coil currents", "1", 0.3),
+            Input("valve", "relative change of the valve's opening", "1", 0.6),
+            Input("cylinder", "force added at the rod", "N", 0.3 * scales.force),
+        ]
+    return tuple(sorted(inputs, key=lambda i: PROBES.index(i.stage)))
+
+
+@dataclass(frozen=True)
+class Term:
+    """A function of time and movement, of size about one.
+
+    Attributes:
+        name: as in an equation.
+        values: (time since the start over the duration, signals) -> values. # (n,)
+    """
+
+    name: str
+    values: Callable[[np.ndarray, Mapping[str, np.ndarray]], np.ndarray]
+
+
+TERMS = (
+    Term("1", lambda t, s: np.ones(t.size)),
+    Term("t/T", lambda t, s: t),
+    Term("(t/T)^2", lambda t, s: t * t),
+    Term("sign(v)", lambda t, s: s["sign"]),
+    Term("v", lambda t, s: s["v"]),
+    Term("v |v|", lambda t, s: s["v"] * np.abs(s["v"])),
+    Term("z", lambda t, s: s["z"]),
+    Term("z^2", lambda t, s: s["z"] ** 2),
+    Term("z sign(v)", lambda t, s: s["z"] * s["sign"]),
+    Term("z^2 sign(v)", lambda t, s: s["z"] ** 2 * s["sign"]),
+    Term("z v", lambda t, s: s["z"] * s["v"]),
+    Term("p_A", lambda t, s: s["pa"]),
+    Term("p_B", lambda t, s: s["pb"]),
+    Term("p_A - p_B", lambda t, s: s["pa"] - s["pb"]),
+    Term("x", lambda t, s: s["x"]),
+    Term("|x|", lambda t, s: np.abs(s["x"])),
+)
+"""t: time, T: duration, v: speed over its largest, z: position from -1 to 1 over what was recorded, x: spool over
+its largest, p: pressure over the supply's."""
+
+
+def variables_of(signals: Signals, pressure: float) -> dict[str, np.ndarray]:
+    """The variables of the terms, without units, along a rollout. # (n,) each."""
+    velocity = np.nan_to_num(signals.velocity)
+    fastest = float(np.abs(velocity).max()) or 1.0
+    position = np.nan_to_num(signals.position)
+    low, high = float(position.min()), float(position.max())
+    spool = np.nan_to_num(signals.spool)
+    v = velocity / fastest
+    scale = pressure if pressure > 0.0 else 1.0
+    return {
+        "v": v,
+        "sign": np.tanh(v / SLOW),
+        "z": 2.0 * (position - low) / max(high - low, np.finfo(float).tiny) - 1.0,
+        "x": spool / (float(np.abs(spool).max()) or 1.0),
+        "pa": np.nan_to_num(signals.pressure_a) / scale,
+        "pb": np.nan_to_num(signals.pressure_b) / scale,
+    }
+
+
+def probe_rows(stage: str, values: np.ndarray) -> np.ndarray:
+    """One input over time as rows of `kernel.PROBES`. # (n, 7)."""
+    rows = np.zeros((values.size, len(PROBES)))
+    rows[:, PROBES.index(stage)] = values
+    return rows
