@@ -41,6 +41,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "vision": CommandEntry(
         "hydrolek_drake.cli.vision", "vision", "edges, selected object and targets of one camera frame"
     ),
+    "teleop": CommandEntry("hydrolek_drake.cli.teleop", "teleop", "the operator's console in the browser"),
     "show": CommandEntry("hydrolek_drake.cli.show", "show", "show a saved run of the arms in the browser"),
     "benchmark": CommandEntry(
         "hydrolek_drake.cli.benchmark", "benchmark", "speed and exactness of the executions"

@@ -136,5 +136,5 @@ def test_a_task_does_not_start_twice_or_from_elsewhere(plan):
     with pytest.raises(InputError, match="a task is running"):
         rig.system.start(rig.context, plan, home_posture())
     fresh = TaskSequencer()
-    with pytest.raises(InputError, match="moved by 17.2 deg"):
+    with pytest.raises(InputError, match=r"moved by 17\.2 deg"):
         fresh.start(fresh.CreateDefaultContext(), plan, home_posture() + 0.3)
