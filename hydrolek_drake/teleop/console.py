@@ -92,8 +92,8 @@ class Console:
             session.set_sliders(**{name: _number(message, name) for name in message if name != "do"})
         elif what == "fill":
             session.set_fill(str(message.get("name")))
-        elif what in ("snapshot", "back", "confirm"):
-            {"snapshot": session.snapshot, "back": session.back, "confirm": session.confirm}[what]()
+        elif what in ("snapshot", "back", "confirm", "release"):
+            getattr(session, str(what))()
         elif what in _ORDERS:
             session.order(_ORDERS[what])
         else:
@@ -126,7 +126,7 @@ class _Picture(_Handler):
     def get(self, name: str) -> None:
         picture = self.console.session.picture(name)
         if not picture:
-            self.set_status(404)
+            self.set_status(204)  # there is none yet
             return
         self.set_header("Content-Type", "image/jpeg")
         self.finish(picture)

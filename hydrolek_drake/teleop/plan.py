@@ -18,11 +18,14 @@ from hydrolek_drake.workcell.grasp import ToolPath, cut_path, grasp_path, with_a
 from hydrolek_drake.workcell.pipe import Pipe, make_pipe, workcell_entries
 from hydrolek_drake.workcell.planner import plan_path
 from hydrolek_drake.workcell.scene import home_posture
-from hydrolek_drake.workcell.trajectory import time_parametrised
+from hydrolek_drake.workcell.trajectory import smooth_trajectory, time_parametrised
 
 Array = NDArray[np.float64]
 
 STEPS = ("approach", "grasp", "close", "cut start", "cut", "retreat")
+RELEASE_STEPS = ("cutter home", "open", "back off", "home")
+
+_ON_THE_WAY = math.radians(5.0)  # of a posture that belongs to the way onto the pipe
 
 
 @dataclass(frozen=True)
@@ -30,7 +33,7 @@ class Step:
     """One step of a task.
 
     Attributes:
-        name: One of `STEPS`.
+        name: One of `STEPS`, or of `RELEASE_STEPS`.
         trajectory: Joints `right_j1` ... `left_j7` over time from 0, in rad; a PiecewisePolynomial of 14 rows.
         timed_out_after: Seconds after which the step counts as failed.
         watched: Which joints must be within the tolerance at its end, shape (14,); a gripper that closes on a
@@ -118,21 +121,59 @@ def plan_task(
     retreat = plan_path(held, cut_postures[-1], home, generator)
     paths = {
         "approach": approach,
-        "grasp": np.array([with_arm(opened, grasping, row) for row in grasp.angles]),
+        "grasp": _without_doubles(np.array([with_arm(opened, grasping, row) for row in grasp.angles])),
         "close": np.array([on_pipe, closed]),
         "cut start": to_cut,
-        "cut": np.array(cut_postures),
+        "cut": _without_doubles(np.array(cut_postures)),
         "retreat": retreat,
     }
     jaw = _of(grasping).start + 6
-    steps = []
-    for name in STEPS:
-        trajectory = time_parametrised(_smoothed(paths[name]) if name in ("grasp", "cut") else paths[name])
-        watched = np.ones(14, bool)
-        watched[jaw] = STEPS.index(name) < STEPS.index("close")
-        patience = trajectory.end_time() + teleop_entries("task")["patience"]
-        steps.append(Step(name, trajectory, patience, watched))
+    # a gripper that closes on a pipe cannot reach its set point
+    steps = [
+        _step(name, paths[name], None if STEPS.index(name) < STEPS.index("close") else jaw) for name in STEPS
+    ]
     return TaskPlan(tuple(steps), pipe, grasp, cut)
+
+
+def plan_release(plan: TaskPlan, posture: ArrayLike, generator: np.random.Generator) -> TaskPlan:
+    """After a task, or an aborted one: cutter home, gripper open, straight back off the pipe, both arms home.
+
+    Args:
+        plan: The task that was carried out, wholly or in part.
+        posture: Both arms as they stand, in rad, shape (14,).
+        generator: For the path planner.
+
+    Raises:
+        InputError: The arms stand where no path leads home from.
+    """
+    start, home = np.asarray(posture, dtype=float), home_posture()
+    grasping, cutting = _of(plan.grasp.side), _of(plan.cut.side)
+    clear, held = CollisionWorld(plan.pipe), CollisionWorld(plan.pipe, holding=(plan.grasp.side,))
+    away = np.array(start)
+    away[cutting] = home[cutting]
+    paths = {"cutter home": plan_path(held, start, away, generator)}
+    open_angle = math.radians(workcell_entries()["grasp"]["open_deg"])
+    opened = with_jaw(away, plan.grasp.side, open_angle)
+    paths["open"] = np.array([away, opened])
+    far = np.max(np.abs(plan.grasp.angles - opened[grasping][:6]), axis=1)
+    back = [opened]
+    if far.min() < _ON_THE_WAY:
+        back += [
+            with_arm(opened, plan.grasp.side, row) for row in plan.grasp.angles[: far.argmin() + 1][::-1]
+        ]
+    paths["back off"] = _without_doubles(np.array(back))
+    paths["home"] = plan_path(clear, paths["back off"][-1], home, generator)
+    steps = tuple(_step(name, paths[name], None) for name in RELEASE_STEPS)
+    return TaskPlan(steps, plan.pipe, plan.grasp, plan.cut)
+
+
+def _step(name: str, path: Array, unwatched: int | None) -> Step:
+    along_a_line = name in ("grasp", "cut", "back off")
+    trajectory = smooth_trajectory(path) if along_a_line else time_parametrised(path)
+    watched = np.ones(14, bool)
+    if unwatched is not None:
+        watched[unwatched] = False
+    return Step(name, trajectory, trajectory.end_time() + teleop_entries("task")["patience"], watched)
 
 
 def pipe_in_world(targets: PipeTargets, camera: CameraModel) -> Pipe:
@@ -157,8 +198,8 @@ def _of(side: str) -> slice:
     return slice(0, 7) if side == "right" else slice(7, 14)
 
 
-def _smoothed(path: Array) -> Array:
-    """Ends of a straight path of the tool, and the postures between them; doubles left out."""
+def _without_doubles(path: Array) -> Array:
+    """A path without postures that repeat the one before."""
     kept = [path[0]]
     for posture in path[1:]:
         if np.max(np.abs(posture - kept[-1])) > 1e-6:

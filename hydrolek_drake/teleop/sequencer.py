@@ -124,9 +124,14 @@ class TaskSequencer(LeafSystem):
         order = Order(int(self.order_input.Eval(context)[0]))
         mode = Mode(int(clock[0]))
         changed, clock[5] = order != Order(int(clock[5])), order
-        if mode is Mode.IDLE or mode is Mode.DONE:
-            if mode is Mode.IDLE:
-                state.get_mutable_discrete_state(self._held).SetFromVector(measured)
+        if mode is Mode.IDLE:
+            state.get_mutable_discrete_state(self._held).SetFromVector(measured)
+        elif mode is Mode.DONE:
+            if changed and order in (
+                Order.STOP,
+                Order.ABORT,
+            ):  # it still holds what it grasped, with open valves
+                mode = self._hold(state, measured, Mode.ABORTED)
         elif changed and order is Order.ABORT:
             mode = self._hold(state, measured, Mode.ABORTED)
         elif changed and order is Order.STOP and mode is Mode.RUNNING:

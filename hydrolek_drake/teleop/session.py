@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.machine import Machine, MachineState
-from hydrolek_drake.teleop.plan import STEPS, plan_task
+from hydrolek_drake.teleop.plan import STEPS, TaskPlan, plan_release, plan_task
 from hydrolek_drake.teleop.sequencer import Mode, Order
 from hydrolek_drake.vision.edges import EdgeSettings, default_settings
 from hydrolek_drake.vision.frames import Frame, FrameSource
@@ -72,7 +72,7 @@ class OperatorSession:
         self._machine, self._stand = machine, stand
         self._camera = ThreadPoolExecutor(1, thread_name_prefix="camera")
         self._planner = ThreadPoolExecutor(1, thread_name_prefix="planner")
-        self._source = self._camera.submit(source).result()
+        self._camera.submit(self._begin, source).result()
         self._generator = np.random.default_rng(seed)
         self._lock = threading.RLock()
         self._stage, self._choice = Stage.LIVE, _Choice()
@@ -81,13 +81,23 @@ class OperatorSession:
         self._pictures: dict[str, bytes] = {}
         self._version = 0
         self._planning: Future[None] | None = None
+        self._done: TaskPlan | None = None
+        self._steps: tuple[str, ...] = STEPS
         self._began: float | None = None
         self._took: float | None = None
 
     def close(self) -> None:
         """End the threads; the machine is closed by its owner."""
+        self._camera.submit(self._let_go).result()
         self._camera.shutdown(wait=True, cancel_futures=True)
         self._planner.shutdown(wait=True, cancel_futures=True)
+
+    def _begin(self, source: Callable[[], FrameSource]) -> None:
+        self._source = source()
+
+    def _let_go(self) -> None:
+        """In the camera's thread: a renderer must end in the thread that it lived in."""
+        del self._source
 
     def refresh(self) -> None:
         """Read a live frame for the colour picture. A lost camera is shown, not raised."""
@@ -203,12 +213,30 @@ class OperatorSession:
                 raise InputError("object, grasp and cut must be clicked before you confirm")
             self._stage, self._error, self._began, self._took = Stage.PLANNING, "", time.monotonic(), None
             self._planning = self._planner.submit(self._plan_and_go, self._choice)
+            self._planning.add_done_callback(self._after_planning)
+
+    def release(self) -> None:
+        """After a task: open the gripper, back off, both arms to the posture that a task starts from.
+
+        Raises:
+            InputError: No task has been carried out, or one is going on.
+        """
+        self._not_while_moving()
+        with self._lock:
+            if self._done is None:
+                raise InputError("nothing is held; a task must have been started before")
+            self._choice = _Choice()
+            self._stage, self._error, self._began, self._took = Stage.PLANNING, "", time.monotonic(), None
+            self._planning = self._planner.submit(self._release_and_go, self._choice, self._done)
+            self._planning.add_done_callback(self._after_planning)
+            self._draw()
 
     def order(self, order: Order) -> None:
         """Stop, resume or abort; a stop while a task is planned keeps it from starting."""
         with self._lock:
             if self._stage is Stage.PLANNING and order is not Order.RESUME:
-                self._stage, self._message = Stage.CONFIRM, "Stopped before the arms moved."
+                self._stage = Stage.CONFIRM if self._choice.targets is not None else Stage.LIVE
+                self._message = "Stopped before the arms moved."
         self._machine.order(order)
 
     def state(self) -> dict[str, Any]:
@@ -228,7 +256,10 @@ class OperatorSession:
                 "fill": self._fill.value,
                 "version": self._version,
                 "mode": machine.mode.name.lower(),
-                "steps": list(STEPS),
+                "steps": list(self._steps),
+                "can_release": self._done is not None
+                and self._stage not in (Stage.PLANNING, Stage.MOVING)
+                and machine.mode in (Mode.DONE, Mode.ABORTED),
                 "step": machine.step,
                 "step_number": machine.step_number,
                 "share": min(1.0, machine.time_in_step / machine.planned) if machine.planned > 0 else 0.0,
@@ -242,7 +273,8 @@ class OperatorSession:
         """`colour` or `edges` as JPEG, empty where there is none yet."""
         with self._lock:
             if name == "colour":
-                name = "colour" if self._choice.snapshot is not None else "live"
+                clicking = self._choice.snapshot is not None and self._stage is not Stage.MOVING
+                name = "colour" if clicking else "live"
             return self._pictures.get(name, b"")
 
     def _read(self) -> Frame:
@@ -294,18 +326,38 @@ class OperatorSession:
             with self._lock:
                 self._message = f"Planning: {name}."
 
+        assert choice.targets is not None and choice.frame is not None
+        targets, camera, posture = choice.targets, choice.frame.camera, self._machine.state().position
+        self._go(
+            choice, lambda: plan_task(targets, camera, posture, self._generator, on_step=told), Stage.CONFIRM
+        )
+
+    def _release_and_go(self, choice: _Choice, done: TaskPlan) -> None:
+        posture = self._machine.state().position
+        self._go(choice, lambda: plan_release(done, posture, self._generator), Stage.LIVE)
+
+    def _go(self, choice: _Choice, make: Callable[[], TaskPlan], otherwise: Stage) -> None:
         try:
-            assert choice.targets is not None and choice.frame is not None
-            posture = self._machine.state().position
-            plan = plan_task(choice.targets, choice.frame.camera, posture, self._generator, on_step=told)
+            plan = make()
             with self._lock:
                 if self._stage is not Stage.PLANNING or self._choice is not choice:
                     return  # stopped meanwhile
                 self._machine.start(plan)
+                names = tuple(step.name for step in plan.steps)
+                self._done, self._steps = (plan if names == STEPS else self._done), names
                 self._stage, self._message = Stage.MOVING, f"Planned for {plan.duration():.1f} s."
+                self._version += 1
         except InputError as error:
             with self._lock:
-                self._stage, self._error, self._message = Stage.CONFIRM, str(error), ""
+                self._stage, self._error, self._message = otherwise, str(error), ""
+
+    def _after_planning(self, planning: "Future[None]") -> None:
+        """Show what nobody foresaw, too, and wait for the operator again."""
+        unforeseen = None if planning.cancelled() else planning.exception()
+        if unforeseen is not None:
+            with self._lock:
+                self._stage, self._choice = Stage.LIVE, _Choice()
+                self._error = f"the motion could not be planned: {unforeseen}"
 
     def _after_moving(self, machine: MachineState) -> None:
         if self._stage is not Stage.MOVING or machine.mode not in (Mode.DONE, Mode.ABORTED):
@@ -313,6 +365,8 @@ class OperatorSession:
         self._took = self._seconds()
         self._began = None
         done = machine.mode is Mode.DONE
+        if done and self._steps != STEPS:
+            self._done = None  # nothing is held any more
         self._message = f"{'Done' if done else 'Aborted'} after {self._took:.1f} s."
         self._choice, self._stage = _Choice(), Stage.LIVE
         self._draw()

@@ -12,6 +12,7 @@ from hydrolek_drake.workcell.pipe import workcell_entries
 Array = NDArray[np.float64]
 
 _PEAK_SPEED = 1.5  # of the cubic 3 s^2 - 2 s^3 that starts and ends at rest, over its mean
+_SAMPLED = 1.01  # a peak between two of the samples lies this little higher at most
 _PEAK_ACCELERATION = 6.0  # of the same, over length / duration^2
 
 
@@ -49,6 +50,42 @@ def time_parametrised(path: ArrayLike) -> Any:
         return PiecewisePolynomial(kept[0][:, np.newaxis])
     knots = np.array(kept).T
     return PiecewisePolynomial.CubicHermite(times, knots, np.zeros_like(knots))
+
+
+def smooth_trajectory(path: ArrayLike) -> Any:
+    """Trajectory through all postures of a path without stopping between them, within speed and acceleration.
+
+    A spline with continuous acceleration, at rest at both ends, stretched in time until no joint exceeds either limit.
+    Between the postures it bends away from the straight stretches: for postures that lie close together, as along a
+    straight path of the tool.
+
+    Args:
+        path: Postures of both arms in rad, shape (n, 14).
+
+    Returns:
+        A `pydrake.trajectories.PiecewisePolynomial` with 14 rows, from time 0.
+
+    Raises:
+        InputError: Not 14 joints.
+    """
+    postures = np.asarray(path, dtype=float)
+    if len(postures) < 3:
+        return time_parametrised(postures)
+    if postures.ndim != 2 or postures.shape[1] != 14:
+        raise InputError(f"path has shape {postures.shape}; give postures of 14 joints, (n, 14)")
+    speed, acceleration = joint_speeds()
+    steps = np.max(np.abs(np.diff(postures, axis=0)) / speed, axis=1)
+    share = np.concatenate([[0.0], np.cumsum(np.maximum(steps, 1e-3))])
+    # the times at which 3 s^2 - 2 s^3 has gone this share of the way: slow at both ends
+    breaks = 0.5 - np.sin(np.arcsin(1.0 - 2.0 * share / share[-1]) / 3.0)
+    rest = np.zeros(14)
+    spline = PiecewisePolynomial.CubicWithContinuousSecondDerivatives(breaks, postures.T, rest, rest)
+    first, second = spline.derivative(1), spline.derivative(2)
+    times = np.unique(np.concatenate([breaks, np.linspace(0.0, breaks[-1], 400)]))
+    fastest = max(float(np.max(np.abs(first.value(t)[:, 0]) / speed)) for t in times)
+    hardest = max(float(np.max(np.abs(second.value(t)[:, 0]) / acceleration)) for t in times)
+    stretch = max(fastest, float(np.sqrt(hardest))) * _SAMPLED
+    return PiecewisePolynomial.CubicWithContinuousSecondDerivatives(breaks * stretch, postures.T, rest, rest)
 
 
 def joint_speeds() -> tuple[Array, Array]:

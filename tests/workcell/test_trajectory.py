@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.workcell.trajectory import joint_speeds, time_parametrised
+from hydrolek_drake.workcell.trajectory import joint_speeds, smooth_trajectory, time_parametrised
 
 
 @pytest.fixture
@@ -52,3 +52,19 @@ def test_standing_still_takes_no_time_and_wrong_shapes_are_refused():
     assert time_parametrised(np.zeros((3, 14))).end_time() == time_parametrised(np.zeros((1, 14))).end_time()
     with pytest.raises(InputError, match="14 joints"):
         time_parametrised(np.zeros((3, 7)))
+
+
+def test_smooth_trajectory_passes_every_posture_without_stopping_and_keeps_the_limits():
+    share = np.linspace(0, 1, 12)[:, np.newaxis]
+    path = 0.4 * share + 0.1 * np.sin(2 * share + np.arange(14))
+    trajectory = smooth_trajectory(path)
+    corners = [trajectory.value(t)[:, 0] for t in trajectory.get_segment_times()]
+    np.testing.assert_allclose(corners, path, atol=1e-12)
+    speed, acceleration = joint_speeds()
+    times = np.linspace(0, trajectory.end_time(), 3001)
+    speeds = np.array([trajectory.EvalDerivative(t, 1)[:, 0] for t in times])
+    accelerations = np.array([trajectory.EvalDerivative(t, 2)[:, 0] for t in times])
+    assert np.all(np.abs(speeds) <= speed) and np.all(np.abs(accelerations) <= acceleration)
+    np.testing.assert_allclose(speeds[[0, -1]], 0.0, atol=1e-9)
+    assert np.abs(speeds[300:-300]).max(axis=1).min() > 0.02  # moving all along
+    assert trajectory.end_time() < time_parametrised(path).end_time() / 1.5
