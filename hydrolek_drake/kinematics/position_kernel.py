@@ -19,6 +19,7 @@ _ROUNDING = 1e-12  # of a sine or cosine of 1
 _COARSE = (7, 6)  # grid over joints 4 and 5 at first
 _FINE = (61, 41)  # and where the coarse one finds nothing
 _STARTS = 6  # of the pattern search where even the fine grid has no posture within the limits
+_MOST_STEPS = 1000  # of the pattern search; some 20 to 60 as a rule
 _SMALLEST_STEP = 5e-3  # rad, of the pattern search for the nearest posture
 _SMALLEST_STEP_OUTSIDE = 1e-12  # rad, of the search for the limits' inside
 
@@ -114,7 +115,9 @@ def _improve(
     q: Any,
 ) -> tuple[float, float, float]:
     """Pattern search over joints 4 and 5 from a start; returns both and the cost."""
-    while step > (_SMALLEST_STEP if cost < _OUTSIDE else _SMALLEST_STEP_OUTSIDE):
+    for _ in range(_MOST_STEPS):  # along a ridge, ever smaller improvements would never end
+        if step <= (_SMALLEST_STEP if cost < _OUTSIDE else _SMALLEST_STEP_OUTSIDE):
+            break
         improved = False
         for way in range(8):
             angle = way * math.pi / 4.0

@@ -128,6 +128,19 @@ def test_a_posture_beyond_one_stroke_is_refused_for_the_stroke(joint, excess_deg
     assert "stroke ends at" in result.reason
 
 
+def test_every_point_of_a_cube_is_reached_or_refused_with_a_reason_that_holds():
+    """In and out of reach, and along its border, where a search might creep for ever."""
+    seen = set()
+    for point in np.random.default_rng(12).uniform([-0.2, -1.2, -1.2], [1.6, 1.2, 1.2], (300, 3)):
+        result = inverse_position(point)
+        seen.add(result.obstacle)
+        if result.reached:
+            np.testing.assert_allclose(tool_pose(result.nearest())[:3, 3], point, rtol=0, atol=1e-5)
+        else:
+            assert result.reason
+    assert seen == {None, Obstacle.POSITION, Obstacle.STROKE_LIMITS}
+
+
 def test_a_direction_back_at_the_operator_is_refused_for_the_direction():
     result = inverse_pose([0.9, 0.3, 0.1], [-1.0, 0.0, 0.0])
     assert result.obstacle is Obstacle.ORIENTATION
