@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numba
 
-_COMPILED_PARTS = ("physics", "effects", "rollout", "systems")
+_COMPILED_PARTS = ("physics", "effects", "rollout", "systems", "kinematics", "vision")
 
 
 def use_cache_for_this_source() -> None:

@@ -40,6 +40,11 @@ COMMANDS: dict[str, CommandEntry] = {
     "rigs": CommandEntry(
         "hydrolek_drake.cli.rigs", "rigs", "list the built-in rigs, or one rig's parameters"
     ),
+    "ik": CommandEntry("hydrolek_drake.cli.ik", "ik", "joint angles for a target, or what prevents it"),
+    "vision": CommandEntry(
+        "hydrolek_drake.cli.vision", "vision", "edges, selected object and targets of one camera frame"
+    ),
+    "teleop": CommandEntry("hydrolek_drake.cli.teleop", "teleop", "the operator's console in the browser"),
     "show": CommandEntry("hydrolek_drake.cli.show", "show", "show a saved run of the arms in the browser"),
     "benchmark": CommandEntry(
         "hydrolek_drake.cli.benchmark", "benchmark", "speed and exactness of the executions"

@@ -1,0 +1,207 @@
+"""The task as a sequence of timed paths: approach, grasp, close, cut start, cut, retreat (thesis 5.2.5, 5.2.6)."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.kinematics.frames import in_frame
+from hydrolek_drake.teleop.configuration import teleop_entries
+from hydrolek_drake.vision.camera import CameraModel, camera_pose, direction_to_frame, to_frame
+from hydrolek_drake.vision.configuration import kinect_entries
+from hydrolek_drake.vision.targets import PipeTargets
+from hydrolek_drake.workcell.collision import CollisionWorld
+from hydrolek_drake.workcell.grasp import ToolPath, cut_path, grasp_path, with_arm, with_jaw
+from hydrolek_drake.workcell.pipe import Pipe, make_pipe, workcell_entries
+from hydrolek_drake.workcell.planner import plan_path
+from hydrolek_drake.workcell.scene import home_posture
+from hydrolek_drake.workcell.trajectory import smooth_trajectory, time_parametrised
+
+Array = NDArray[np.float64]
+
+STEPS = ("approach", "grasp", "close", "cut start", "cut", "retreat")
+RELEASE_STEPS = ("cutter home", "open", "back off", "home")
+
+_ON_THE_WAY = math.radians(5.0)  # of a posture that belongs to the way onto the pipe
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of a task.
+
+    Attributes:
+        name: One of `STEPS`, or of `RELEASE_STEPS`.
+        trajectory: Joints `right_j1` ... `left_j7` over time from 0, in rad; a PiecewisePolynomial of 14 rows.
+        timed_out_after: Seconds after which the step counts as failed.
+        watched: Which joints must be within the tolerance at its end, shape (14,); a gripper that closes on a
+            pipe cannot reach its set point.
+    """
+
+    name: str
+    trajectory: Any
+    timed_out_after: float
+    watched: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class TaskPlan:
+    """A planned task.
+
+    Attributes:
+        steps: In order.
+        pipe: The pipe that was planned with, world frame.
+        grasp: The grasping arm's way onto the pipe.
+        cut: The cutting arm's way across it.
+    """
+
+    steps: tuple[Step, ...]
+    pipe: Pipe
+    grasp: ToolPath
+    cut: ToolPath
+
+    def duration(self) -> float:
+        """Planned time of all steps in s."""
+        return float(sum(step.trajectory.end_time() for step in self.steps))
+
+
+def plan_task(
+    targets: PipeTargets,
+    camera: CameraModel,
+    posture: ArrayLike,
+    generator: np.random.Generator,
+    *,
+    grasping: str = "right",
+    on_step: Any = lambda name: None,
+) -> TaskPlan:
+    """Plan grasp and cut from what the camera saw.
+
+    Args:
+        targets: In the camera frame.
+        camera: The camera that saw them.
+        posture: Both arms as they stand, in rad, shape (14,).
+        generator: For the path planner.
+        grasping: Arm that grasps, `right` or `left`; the other one cuts.
+        on_step: Called with each step's name before it is planned.
+
+    Raises:
+        InputError: A point out of reach, nothing but collisions, no path; says which step and why.
+    """
+    if grasping not in ("right", "left"):
+        raise InputError(f"arm '{grasping}' is unknown; choose from right, left")
+    cutting = "left" if grasping == "right" else "right"
+    start = np.asarray(posture, dtype=float)
+    pipe, sight = pipe_in_world(targets, camera), direction_to_frame(targets.grasp, "world")
+    grasp_point, cut_point = to_frame(targets.grasp, "world"), to_frame(targets.cut, "world")
+    values, sizes = workcell_entries()["grasp"], kinect_entries("targets")
+    clear = CollisionWorld(pipe)
+    touching = CollisionWorld(pipe, padding=0.0, holding=(grasping,))
+    held = CollisionWorld(pipe, holding=(grasping,))
+
+    on_step("grasp")
+    distance = pipe.radius + sizes["approach"]
+    grasp = grasp_path(grasp_point, pipe.axis, sight, distance, start, grasping, clear, touching)
+    opened = with_jaw(start, grasping, math.radians(values["open_deg"]))
+    before, on_pipe = (with_arm(opened, grasping, grasp.angles[i]) for i in (0, -1))
+    closed = with_jaw(on_pipe, grasping, math.radians(values["closed_deg"]))
+    on_step("cut")
+    reach = pipe.radius + sizes["clearance"]
+    cut = cut_path(cut_point, pipe.axis, sight, reach, sizes["blade_reach"], closed, cutting, held)
+    shut = with_jaw(closed, cutting, math.radians(values["closed_deg"]))
+    cut_postures = [with_arm(shut, cutting, row) for row in cut.angles]
+    on_step("approach")
+    approach = plan_path(clear, start, before, generator)
+    on_step("cut start")
+    to_cut = plan_path(held, closed, cut_postures[0], generator)
+    on_step("retreat")
+    home = np.array(closed)
+    home[_of(cutting)] = home_posture()[_of(cutting)]
+    retreat = plan_path(held, cut_postures[-1], home, generator)
+    paths = {
+        "approach": approach,
+        "grasp": _without_doubles(np.array([with_arm(opened, grasping, row) for row in grasp.angles])),
+        "close": np.array([on_pipe, closed]),
+        "cut start": to_cut,
+        "cut": _without_doubles(np.array(cut_postures)),
+        "retreat": retreat,
+    }
+    jaw = _of(grasping).start + 6
+    # a gripper that closes on a pipe cannot reach its set point
+    steps = [
+        _step(name, paths[name], None if STEPS.index(name) < STEPS.index("close") else jaw) for name in STEPS
+    ]
+    return TaskPlan(tuple(steps), pipe, grasp, cut)
+
+
+def plan_release(plan: TaskPlan, posture: ArrayLike, generator: np.random.Generator) -> TaskPlan:
+    """After a task, or an aborted one: cutter home, gripper open, straight back off the pipe, both arms home.
+
+    Args:
+        plan: The task that was carried out, wholly or in part.
+        posture: Both arms as they stand, in rad, shape (14,).
+        generator: For the path planner.
+
+    Raises:
+        InputError: The arms stand where no path leads home from.
+    """
+    start, home = np.asarray(posture, dtype=float), home_posture()
+    grasping, cutting = _of(plan.grasp.side), _of(plan.cut.side)
+    clear, held = CollisionWorld(plan.pipe), CollisionWorld(plan.pipe, holding=(plan.grasp.side,))
+    away = np.array(start)
+    away[cutting] = home[cutting]
+    paths = {"cutter home": plan_path(held, start, away, generator)}
+    open_angle = math.radians(workcell_entries()["grasp"]["open_deg"])
+    opened = with_jaw(away, plan.grasp.side, open_angle)
+    paths["open"] = np.array([away, opened])
+    far = np.max(np.abs(plan.grasp.angles - opened[grasping][:6]), axis=1)
+    back = [opened]
+    if far.min() < _ON_THE_WAY:
+        back += [
+            with_arm(opened, plan.grasp.side, row) for row in plan.grasp.angles[: far.argmin() + 1][::-1]
+        ]
+    paths["back off"] = _without_doubles(np.array(back))
+    paths["home"] = plan_path(clear, paths["back off"][-1], home, generator)
+    steps = tuple(_step(name, paths[name], None) for name in RELEASE_STEPS)
+    return TaskPlan(steps, plan.pipe, plan.grasp, plan.cut)
+
+
+def _step(name: str, path: Array, unwatched: int | None) -> Step:
+    along_a_line = name in ("grasp", "cut", "back off")
+    trajectory = smooth_trajectory(path) if along_a_line else time_parametrised(path)
+    watched = np.ones(14, bool)
+    if unwatched is not None:
+        watched[unwatched] = False
+    return Step(name, trajectory, trajectory.end_time() + teleop_entries("task")["patience"], watched)
+
+
+def pipe_in_world(targets: PipeTargets, camera: CameraModel) -> Pipe:
+    """The fitted cylinder in the world frame, as long as it was seen, and longer where it leaves the picture."""
+    cylinder, values = targets.cylinder, teleop_entries("task")
+    reach = []
+    for sign in (-1.0, 1.0):
+        u, v = camera.pixel(cylinder.point + sign * cylinder.half_length * cylinder.axis)
+        inside = min(u, v, camera.width - 1 - u, camera.height - 1 - v)
+        reach.append(cylinder.half_length + (values["unseen"] if inside < values["border"] else 0.0))
+    middle = cylinder.point + 0.5 * (reach[1] - reach[0]) * cylinder.axis
+    axis = direction_to_frame(cylinder.axis, "world")
+    return make_pipe(to_frame(middle, "world"), axis, cylinder.radius, sum(reach))
+
+
+def camera_in_world() -> Array:
+    """Where the camera is, world frame, in m, shape (3,)."""
+    return in_frame(camera_pose()[:3, 3], given_in="plate", wanted_in="world")
+
+
+def _of(side: str) -> slice:
+    return slice(0, 7) if side == "right" else slice(7, 14)
+
+
+def _without_doubles(path: Array) -> Array:
+    """A path without postures that repeat the one before."""
+    kept = [path[0]]
+    for posture in path[1:]:
+        if np.max(np.abs(posture - kept[-1])) > 1e-6:
+            kept.append(posture)
+    return np.array(kept)

@@ -1,0 +1,396 @@
+"""What the operator does, without any browser: four clicks, confirmation, stop (thesis 5.2, stages 2 to 6)."""
+
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.teleop.machine import Machine, MachineState
+from hydrolek_drake.teleop.plan import STEPS, TaskPlan, plan_release, plan_task
+from hydrolek_drake.teleop.sequencer import Mode, Order
+from hydrolek_drake.vision.edges import EdgeSettings, default_settings
+from hydrolek_drake.vision.frames import Frame, FrameSource
+from hydrolek_drake.vision.selection import Fill, Mask, Snapshot, overlay, select_object
+from hydrolek_drake.vision.snapshot import take_snapshot
+from hydrolek_drake.vision.targets import PipeTargets, PixelTargets, pipe_targets, pixel_targets
+
+_GREEN, _MAGENTA, _YELLOW = (80, 220, 80), (255, 0, 255), (0, 220, 255)  # blue, green, red
+_QUALITY = [cv2.IMWRITE_JPEG_QUALITY, 85]
+
+
+class Stage(Enum):
+    """Where the operator is; each but the last two waits for one click."""
+
+    LIVE = "Take a snapshot when the pipe is in view."
+    OBJECT = "Click the pipe, in either picture."
+    GRASP = "Click where to grasp it."
+    CUT = "Click where to cut it."
+    CONFIRM = "Check the marks, then confirm."
+    PLANNING = "Planning the motion."
+    MOVING = "The arms are moving."
+
+
+@dataclass
+class _Choice:
+    """What has been clicked so far."""
+
+    frame: Frame | None = None
+    snapshot: Snapshot | None = None
+    selected: Mask | None = None
+    grasp: tuple[float, float] | None = None
+    pixels: PixelTargets | None = None
+    targets: PipeTargets | None = None
+
+
+class OperatorSession:
+    """One operator's work at one machine. Calls may come from any thread.
+
+    Args:
+        source: Makes the frame source; it is called, and the source read, in one thread of its own, as the
+            renderer needs it.
+        machine: What moves.
+        seed: Of the path planner.
+        stand: Tells a simulated camera where the joints are before each frame, if given.
+    """
+
+    def __init__(
+        self,
+        source: Callable[[], FrameSource],
+        machine: Machine,
+        *,
+        seed: int,
+        stand: Callable[[FrameSource, Any], None] | None = None,
+    ) -> None:
+        self._machine, self._stand = machine, stand
+        self._camera = ThreadPoolExecutor(1, thread_name_prefix="camera")
+        self._planner = ThreadPoolExecutor(1, thread_name_prefix="planner")
+        self._camera.submit(self._begin, source).result()
+        self._generator = np.random.default_rng(seed)
+        self._lock = threading.RLock()
+        self._stage, self._choice = Stage.LIVE, _Choice()
+        self._settings, self._fill = default_settings(), Fill.SURFACES
+        self._message, self._error = "", ""
+        self._pictures: dict[str, bytes] = {}
+        self._version = 0
+        self._planning: Future[None] | None = None
+        self._done: TaskPlan | None = None
+        self._steps: tuple[str, ...] = STEPS
+        self._began: float | None = None
+        self._took: float | None = None
+
+    def close(self) -> None:
+        """End the threads; the machine is closed by its owner."""
+        self._camera.submit(self._let_go).result()
+        self._camera.shutdown(wait=True, cancel_futures=True)
+        self._planner.shutdown(wait=True, cancel_futures=True)
+
+    def _begin(self, source: Callable[[], FrameSource]) -> None:
+        self._source = source()
+
+    def _let_go(self) -> None:
+        """In the camera's thread: a renderer must end in the thread that it lived in."""
+        del self._source
+
+    def refresh(self) -> None:
+        """Read a live frame for the colour picture. A lost camera is shown, not raised."""
+        try:
+            frame = self._read()
+        except InputError as error:
+            with self._lock:
+                self._error = str(error)
+            return
+        with self._lock:
+            self._show("live", frame.colour)
+
+    def snapshot(self) -> None:
+        """Stage 2: take a frame and process it. Discards what was clicked before.
+
+        Raises:
+            InputError: The camera gives none, or the arms are moving.
+        """
+        self._not_while_moving()
+        frame = self._read()
+        with self._lock:
+            self._choice = _Choice(frame=frame)
+            self._process()
+            self._stage, self._message = Stage.OBJECT, ""
+
+    def set_sliders(self, **values: float) -> None:
+        """Stage 3: low_contrast, high_contrast, sensitivity between 0 and 1; the edge picture follows.
+
+        Raises:
+            InputError: Unknown name or a value out of range; nothing changes then.
+        """
+        names = {"low_contrast", "high_contrast", "sensitivity"}
+        if not set(values) <= names:
+            raise InputError(
+                f"slider '{min(set(values) - names)}' is unknown; choose from {', '.join(sorted(names))}"
+            )
+        with self._lock:
+            self._settings = replace(self._settings, **values)
+            if self._choice.frame is not None and self._stage not in (Stage.PLANNING, Stage.MOVING):
+                self._process()
+
+    def set_fill(self, name: str) -> None:
+        """What a click on the object is filled up to: surfaces or edges.
+
+        Raises:
+            InputError: Unknown name.
+        """
+        if name not in [fill.value for fill in Fill]:
+            raise InputError(f"fill '{name}' is unknown; choose from surfaces, edges")
+        with self._lock:
+            self._fill = Fill(name)
+
+    def click(self, u: float, v: float) -> None:
+        """Stages 4 and 5: the object, then the grasp, then the cut.
+
+        Raises:
+            InputError: What is wrong with the click; the stage stays, the arms stand still.
+        """
+        with self._lock:
+            choice = self._choice
+            if not (np.isfinite(u) and np.isfinite(v)):
+                raise InputError("a click needs two finite numbers")
+            if choice.snapshot is None or choice.frame is None:
+                raise InputError("take a snapshot before you click")
+            if self._stage is Stage.OBJECT:
+                choice.selected = select_object(choice.snapshot, (u, v), self._fill)
+                self._stage = Stage.GRASP
+            elif self._stage is Stage.GRASP:
+                assert choice.selected is not None
+                pixel_targets(choice.snapshot, choice.selected, (u, v), (u, v), choice.frame.camera)
+                choice.grasp, self._stage = (u, v), Stage.CUT
+            elif self._stage is Stage.CUT:
+                assert choice.selected is not None and choice.grasp is not None
+                pixels = pixel_targets(
+                    choice.snapshot, choice.selected, choice.grasp, (u, v), choice.frame.camera
+                )
+                choice.targets = pipe_targets(choice.snapshot, choice.selected, pixels, choice.frame.camera)
+                choice.pixels, self._stage = pixels, Stage.CONFIRM
+                self._message = f"Pipe of {2e3 * choice.targets.cylinder.radius:.0f} mm."
+            else:
+                raise InputError("no click is needed now; confirm, or go back")
+            self._draw()
+
+    def back(self) -> None:
+        """Take the last click back; before the first, go back to the live picture.
+
+        Raises:
+            InputError: The arms are moving.
+        """
+        self._not_while_moving()
+        with self._lock:
+            choice = self._choice
+            if self._stage is Stage.CONFIRM:
+                choice.pixels = choice.targets = None
+                self._stage = Stage.CUT
+            elif self._stage is Stage.CUT:
+                choice.grasp, self._stage = None, Stage.GRASP
+            elif self._stage is Stage.GRASP:
+                choice.selected, self._stage = None, Stage.OBJECT
+            else:
+                self._choice, self._stage = _Choice(), Stage.LIVE
+            self._message = ""
+            self._draw()
+
+    def confirm(self) -> None:
+        """Stage 6: plan, and move if a plan is found.
+
+        Raises:
+            InputError: Not everything has been clicked.
+        """
+        with self._lock:
+            if self._stage is not Stage.CONFIRM:
+                raise InputError("object, grasp and cut must be clicked before you confirm")
+            self._stage, self._error, self._began, self._took = Stage.PLANNING, "", time.monotonic(), None
+            self._planning = self._planner.submit(self._plan_and_go, self._choice)
+            self._planning.add_done_callback(self._after_planning)
+
+    def release(self) -> None:
+        """After a task: open the gripper, back off, both arms to the posture that a task starts from.
+
+        Raises:
+            InputError: No task has been carried out, or one is going on.
+        """
+        self._not_while_moving()
+        with self._lock:
+            if self._done is None:
+                raise InputError("nothing is held; a task must have been started before")
+            self._choice = _Choice()
+            self._stage, self._error, self._began, self._took = Stage.PLANNING, "", time.monotonic(), None
+            self._planning = self._planner.submit(self._release_and_go, self._choice, self._done)
+            self._planning.add_done_callback(self._after_planning)
+            self._draw()
+
+    def order(self, order: Order) -> None:
+        """Stop, resume or abort; a stop while a task is planned keeps it from starting."""
+        with self._lock:
+            if self._stage is Stage.PLANNING and order is not Order.RESUME:
+                self._stage = Stage.CONFIRM if self._choice.targets is not None else Stage.LIVE
+                self._message = "Stopped before the arms moved."
+        self._machine.order(order)
+
+    def state(self) -> dict[str, Any]:
+        """All that the console shows, as plain values."""
+        machine = self._machine.state()
+        with self._lock:
+            self._after_moving(machine)
+            return {
+                "stage": self._stage.name.lower(),
+                "instruction": self._stage.value,
+                "message": self._message,
+                "error": self._error or machine.reason,
+                "sliders": {
+                    name: getattr(self._settings, name)
+                    for name in ("low_contrast", "high_contrast", "sensitivity")
+                },
+                "fill": self._fill.value,
+                "version": self._version,
+                "mode": machine.mode.name.lower(),
+                "steps": list(self._steps),
+                "can_release": self._done is not None
+                and self._stage not in (Stage.PLANNING, Stage.MOVING)
+                and machine.mode in (Mode.DONE, Mode.ABORTED),
+                "step": machine.step,
+                "step_number": machine.step_number,
+                "share": min(1.0, machine.time_in_step / machine.planned) if machine.planned > 0 else 0.0,
+                "valves_open": machine.valves_open,
+                "angles_deg": np.degrees(machine.position).round(2).tolist(),
+                "desired_deg": np.degrees(machine.desired).round(2).tolist(),
+                "seconds": self._seconds(),
+            }
+
+    def picture(self, name: str) -> bytes:
+        """`colour` or `edges` as JPEG, empty where there is none yet."""
+        with self._lock:
+            if name == "colour":
+                clicking = self._choice.snapshot is not None and self._stage is not Stage.MOVING
+                name = "colour" if clicking else "live"
+            return self._pictures.get(name, b"")
+
+    def _read(self) -> Frame:
+        def read() -> Frame:
+            if self._stand is not None:
+                self._stand(self._source, self._machine.state().position)
+            return self._source.read()
+
+        return self._camera.submit(read).result()
+
+    def _process(self) -> None:
+        choice = self._choice
+        assert choice.frame is not None
+        choice.snapshot = take_snapshot(
+            choice.frame.colour, choice.frame.depth, choice.frame.camera, self._settings
+        )
+        self._draw()
+
+    def _draw(self) -> None:
+        choice = self._choice
+        if choice.snapshot is None:
+            self._pictures.pop("edges", None)
+            self._version += 1
+            return
+        edges, colour = choice.snapshot.edges, choice.snapshot.colour
+        shown = cv2.cvtColor(edges, cv2.COLOR_GRAY2BGR)
+        if choice.selected is not None:
+            shown = np.zeros_like(shown)
+            shown[choice.selected] = 255
+            colour = overlay(colour, choice.selected)
+        colour = colour.copy()
+        if choice.grasp is not None and choice.selected is not None and choice.frame is not None:
+            pixels = choice.pixels or pixel_targets(
+                choice.snapshot, choice.selected, choice.grasp, choice.grasp, choice.frame.camera
+            )
+            for picture in (colour, shown):
+                _mark(picture, pixels, with_cut=choice.pixels is not None)
+        self._show("colour", colour)
+        self._show("edges", shown)
+
+    def _show(self, name: str, picture: NDArray[np.uint8]) -> None:
+        done, data = cv2.imencode(".jpg", picture, _QUALITY)
+        if done:
+            self._pictures[name] = data.tobytes()
+            self._version += 1
+
+    def _plan_and_go(self, choice: _Choice) -> None:
+        def told(name: str) -> None:
+            with self._lock:
+                self._message = f"Planning: {name}."
+
+        assert choice.targets is not None and choice.frame is not None
+        targets, camera, posture = choice.targets, choice.frame.camera, self._machine.state().position
+        self._go(
+            choice, lambda: plan_task(targets, camera, posture, self._generator, on_step=told), Stage.CONFIRM
+        )
+
+    def _release_and_go(self, choice: _Choice, done: TaskPlan) -> None:
+        posture = self._machine.state().position
+        self._go(choice, lambda: plan_release(done, posture, self._generator), Stage.LIVE)
+
+    def _go(self, choice: _Choice, make: Callable[[], TaskPlan], otherwise: Stage) -> None:
+        try:
+            plan = make()
+            with self._lock:
+                if self._stage is not Stage.PLANNING or self._choice is not choice:
+                    return  # stopped meanwhile
+                self._machine.start(plan)
+                names = tuple(step.name for step in plan.steps)
+                self._done, self._steps = (plan if names == STEPS else self._done), names
+                self._stage, self._message = Stage.MOVING, f"Planned for {plan.duration():.1f} s."
+                self._version += 1
+        except InputError as error:
+            with self._lock:
+                self._stage, self._error, self._message = otherwise, str(error), ""
+
+    def _after_planning(self, planning: "Future[None]") -> None:
+        """Show what nobody foresaw, too, and wait for the operator again."""
+        unforeseen = None if planning.cancelled() else planning.exception()
+        if unforeseen is not None:
+            with self._lock:
+                self._stage, self._choice = Stage.LIVE, _Choice()
+                self._error = f"the motion could not be planned: {unforeseen}"
+
+    def _after_moving(self, machine: MachineState) -> None:
+        if self._stage is not Stage.MOVING or machine.mode not in (Mode.DONE, Mode.ABORTED):
+            return
+        self._took = self._seconds()
+        self._began = None
+        done = machine.mode is Mode.DONE
+        if done and self._steps != STEPS:
+            self._done = None  # nothing is held any more
+        self._message = f"{'Done' if done else 'Aborted'} after {self._took:.1f} s."
+        self._choice, self._stage = _Choice(), Stage.LIVE
+        self._draw()
+
+    def _seconds(self) -> float | None:
+        return self._took if self._began is None else round(time.monotonic() - self._began, 1)
+
+    def _not_while_moving(self) -> None:
+        with self._lock:
+            if self._stage in (Stage.PLANNING, Stage.MOVING):
+                raise InputError("the arms are moving; abort the task before you begin another")
+
+    def settings(self) -> EdgeSettings:
+        """The sliders as they stand."""
+        return self._settings
+
+
+def _mark(picture: NDArray[np.uint8], pixels: PixelTargets, *, with_cut: bool) -> None:
+    """Grasp as a green ring, centre line yellow, cut magenta, drawn into the picture."""
+
+    def whole(point: Any) -> tuple[int, int]:
+        return round(point[0]), round(point[1])
+
+    cv2.line(picture, whole(pixels.line.ends[0]), whole(pixels.line.ends[1]), _YELLOW, 1, cv2.LINE_AA)
+    cv2.circle(picture, whole(pixels.grasp), 9, _GREEN, 3, cv2.LINE_AA)
+    if with_cut:
+        cv2.line(picture, whole(pixels.cut_ends[0]), whole(pixels.cut_ends[1]), _MAGENTA, 3, cv2.LINE_AA)

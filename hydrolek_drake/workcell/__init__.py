@@ -1,0 +1,1 @@
+"""The arms with a pipe before them: rendering, collisions, paths."""

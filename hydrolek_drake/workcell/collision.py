@@ -1,0 +1,93 @@
+"""Whether the arms touch each other, their base or the pipe: Drake's collision checker on the arms' shapes."""
+
+from typing import Any
+
+import numpy as np
+from pydrake.geometry import Cylinder
+from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.multibody.plant import CoulombFriction
+from pydrake.planning import RobotDiagramBuilder, SceneGraphCollisionChecker
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.kinematics.arms import arm_joint_names, arms_urdf_path, position_indices
+from hydrolek_drake.kinematics.chain import SIDES
+from hydrolek_drake.workcell.pipe import Pipe, workcell_entries
+
+
+class CollisionWorld:
+    """Arms, base and pipe; postures are joints `right_j1` ... `left_j7` in rad, shape (14,).
+
+    Args:
+        pipe: The pipe, or None for none.
+        padding: Distance in m within which two shapes count as touching.
+        holding: Sides (`right`, `left`) whose gripper may touch the pipe.
+    """
+
+    def __init__(
+        self, pipe: Pipe | None, *, padding: float | None = None, holding: tuple[str, ...] = ()
+    ) -> None:
+        values = workcell_entries()["motion"]
+        self.padding = float(values["padding"] if padding is None else padding)
+        builder = RobotDiagramBuilder(time_step=0.0)
+        parser = builder.parser()
+        parser.package_map().AddPackageXml(str(arms_urdf_path().parent / "package.xml"))
+        instances = parser.AddModels(str(arms_urdf_path()))
+        plant = builder.plant()
+        if pipe is not None:
+            pose = RigidTransform(RotationMatrix(pipe.rotation()), pipe.point)
+            plant.RegisterCollisionGeometry(
+                plant.world_body(), pose, Cylinder(pipe.radius, pipe.length), "pipe", CoulombFriction()
+            )
+        plant.Finalize()
+        self._order = position_indices(plant, list(arm_joint_names()))
+        model = builder.Build()
+        self._checker = SceneGraphCollisionChecker(
+            model=model,
+            robot_model_instances=instances,
+            edge_step_size=float(values["edge_step"]),
+            env_collision_padding=self.padding,
+            self_collision_padding=self.padding,
+            configuration_distance_function=lambda a, b: float(np.linalg.norm(a - b)),
+        )
+        for side in holding:
+            for link in ("link6", "jaw"):
+                self._checker.SetCollisionFilteredBetween(
+                    plant.GetBodyByName(f"{side}_{link}"), plant.world_body(), True
+                )
+        # Base and link 2, link 3 and link 5 of one arm: the drawn boxes overlap within the joint's travel, whose end
+        # stops keep the real ones apart.
+        for side in SIDES:
+            for pair in (("base", "link2"), ("link3", "link5")):
+                self._checker.SetCollisionFilteredBetween(
+                    *(plant.GetBodyByName(f"{side}_{link}") for link in pair), True
+                )
+
+    def free(self, posture: Any) -> bool:
+        """Whether nothing touches."""
+        return bool(self._checker.CheckConfigCollisionFree(self._positions(posture)))
+
+    def free_between(self, first: Any, second: Any) -> bool:
+        """Whether nothing touches on the straight way in joint space; checked every `edge_step` rad."""
+        first, second = self._positions(first), self._positions(second)
+        return bool(self._checker.CheckEdgeCollisionFree(first, second))
+
+    def touching(self, posture: Any) -> list[tuple[str, str]]:
+        """Names of the bodies that touch, in pairs."""
+        positions = self._positions(posture)
+        clearance = self._checker.CalcRobotClearance(positions, self.padding)
+        plant, pairs = self._checker.plant(), set()
+        for row in range(clearance.size()):
+            if clearance.distances()[row] < self.padding:
+                indices = (clearance.robot_indices()[row], clearance.other_indices()[row])
+                pairs.add(tuple(sorted(plant.get_body(index).name() for index in indices)))
+        return sorted(pairs)
+
+    def _positions(self, posture: Any) -> Any:
+        posture = np.asarray(posture, dtype=float)
+        if posture.shape != (len(self._order),) or not np.isfinite(posture).all():
+            raise InputError(
+                f"posture has shape {posture.shape}; give {len(self._order)} finite angles in rad"
+            )
+        positions = np.zeros(len(self._order))
+        positions[self._order] = posture
+        return positions

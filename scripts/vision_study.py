@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""Vision measured: intersection over union on labelled frames, and the targets' error on rendered pipes.
+
+Writes the figures as JSON (`--out`) and prints a summary; docs/vision.md has the tables.
+"""
+
+import argparse
+import datetime
+import json
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.kinematics.frames import in_frame
+from hydrolek_drake.vision.camera import (
+    camera_pose,
+    direction_to_frame,
+    thesis_camera,
+    thesis_target,
+    to_frame,
+)
+from hydrolek_drake.vision.edges import default_settings
+from hydrolek_drake.vision.frames import FolderSource
+from hydrolek_drake.vision.scoring import score_frame
+from hydrolek_drake.vision.selection import Fill, select_object
+from hydrolek_drake.vision.snapshot import take_snapshot
+from hydrolek_drake.vision.targets import pipe_targets, pixel_targets
+from hydrolek_drake.workcell.pipe import make_pipe
+from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
+
+AXES = {"vertical": (0, 0, 1), "horizontal": (0, 1, 0), "tilted": (0.2, 0.5, 1), "tilted away": (0.6, 0.1, 1)}
+DISTANCES = (1.0, 1.2, 1.4)  # m from the camera
+
+
+def score_recorded(folder: Path, seed: int) -> dict:
+    source, result = FolderSource(folder), {}
+    for fill in Fill:
+        generator, scores, times = np.random.default_rng(seed), [], []
+        for name in source.names:
+            labels = cv2.imread(str(folder / f"{name}_label.png"), cv2.IMREAD_UNCHANGED)
+            found, _ = score_frame(source.named(name), labels, default_settings(), generator, fill=fill)
+            _, seconds = score_frame(source.named(name), labels, default_settings(), generator, clicks=1)
+            scores += found
+            times.append(seconds)
+        result[fill.value] = {
+            "objects": len(scores),
+            "middle_mean": float(np.mean([score.middle for score in scores])),
+            "middle_lowest": float(np.min([score.middle for score in scores])),
+            "anywhere_mean": float(np.mean([score.anywhere for score in scores])),
+            "frame_processor_ms_mean": 1e3 * float(np.mean(times)),
+            "frame_processor_ms_median": 1e3 * float(np.median(times)),
+            "each": [vars(score) for score in scores],
+        }
+    return result
+
+
+def in_camera(point: np.ndarray) -> np.ndarray:
+    pose = camera_pose()
+    return (in_frame(point, given_in="world", wanted_in="plate") - pose[:3, 3]) @ pose[:3, :3]
+
+
+def score_rendered(seed: int) -> list[dict]:
+    rows = []
+    for brightness in (1.0, 0.1):
+        for name, axis in AXES.items():
+            for distance in DISTANCES:
+                middle = in_frame([0.15 + distance, 0.0, 0.24], given_in="plate", wanted_in="world")
+                pipe = make_pipe(middle, axis)
+                kinect = SimulatedKinect(pipe, np.random.default_rng(seed), brightness=brightness)
+                row = {"pipe": name, "distance_m": distance, "brightness": brightness}
+                rows.append(row | targets_of(kinect, pipe))
+    return rows
+
+
+def targets_of(kinect: SimulatedKinect, pipe) -> dict:
+    frame, camera = kinect.read(), thesis_camera()
+    snapshot = take_snapshot(frame.colour, frame.depth, camera, default_settings())
+    wanted = pipe.point + 0.1 * pipe.axis
+    clicks = [camera.pixel(in_camera(point)) for point in (wanted, pipe.point - 0.1 * pipe.axis)]
+    try:
+        selected = select_object(snapshot, tuple(clicks[0]))
+        pixels = pixel_targets(snapshot, selected, *clicks, camera)
+        targets = pipe_targets(snapshot, selected, pixels, camera)
+    except InputError as error:
+        return {"refused": str(error)}
+    bare = SimulatedKinect(None, np.random.default_rng(0))
+    true = np.abs(kinect.exact()[1] - bare.exact()[1]) > 0.01
+    error = to_frame(targets.grasp, "world") - wanted
+    axis = direction_to_frame(targets.cylinder.axis, "world")
+    printed = thesis_target(pixels.grasp, pixels.grasp_depth) - [0.275, 0.0, 0.0]
+    return {
+        "overlap": float((selected & true).sum() / (selected | true).sum()),
+        "grasp_error_mm": 1e3 * float(np.linalg.norm(error)),
+        "off_axis_mm": 1e3 * float(np.linalg.norm(error - (error @ pipe.axis) * pipe.axis)),
+        "axis_error_deg": float(np.degrees(np.arccos(min(1.0, abs(axis @ pipe.axis))))),
+        "radius_error_mm": 1e3 * (targets.cylinder.radius - pipe.radius),
+        "printed_5_2_error_mm": 1e3 * float(np.linalg.norm(printed - in_camera(wanted))),
+    }
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path, help="frames NAME_color.png, NAME_depth.png, NAME_label.png")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--out", type=Path, default=Path("docs/vision.json"))
+    arguments = parser.parse_args()
+    figures = {"date": datetime.date.today().isoformat(), "seed": arguments.seed}
+    figures["recorded"] = score_recorded(arguments.folder, arguments.seed)
+    for fill, row in figures["recorded"].items():
+        print(fill, {name: value for name, value in row.items() if name != "each"})
+    figures["rendered"] = score_rendered(arguments.seed)
+    for row in figures["rendered"]:
+        print(row)
+    draft = arguments.out.with_suffix(".json.part")
+    draft.write_text(json.dumps(figures, indent=1) + "\n")
+    print(f"figures: {draft.rename(arguments.out)}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,142 @@
+"""The console over HTTP and the web socket: two browsers, malformed and oversized messages, the whole task."""
+
+import asyncio
+import json
+import urllib.request
+
+import numpy as np
+import pytest
+from tornado.websocket import websocket_connect
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.teleop.console import Console
+from hydrolek_drake.teleop.machine import Machine
+from hydrolek_drake.teleop.session import OperatorSession
+from hydrolek_drake.workcell.pipe import make_pipe
+from hydrolek_drake.workcell.scene import home_posture
+from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
+
+
+def _served(work):
+    """Run `work(console)` against a console with a fast machine."""
+
+    async def main():
+        machine = Machine(home_posture(), realtime_rate=25.0)
+        session = OperatorSession(
+            lambda: SimulatedKinect(make_pipe(), np.random.default_rng(1)),
+            machine,
+            seed=1,
+            stand=lambda source, angles: source.stand(angles),
+        )
+        console = Console(session, port=0)
+        running = asyncio.ensure_future(console.run())
+        try:
+            await asyncio.wait_for(work(console), 60.0)
+        finally:
+            running.cancel()
+            console.close()
+            machine.close()
+            session.close()
+
+    asyncio.run(main())
+
+
+async def _ask(socket, message):
+    """Send and return the error that is answered, empty for none."""
+    await socket.write_message(message if isinstance(message, (str, bytes)) else json.dumps(message))
+    while True:
+        answer = await socket.read_message()
+        if answer is None:
+            return None
+        found = json.loads(answer)
+        if "error" in found:
+            return found["error"]
+
+
+async def _state(socket):
+    while True:
+        found = json.loads(await socket.read_message())
+        if "state" in found:
+            return found
+
+
+def _open(console):
+    return websocket_connect(f"ws://127.0.0.1:{console.port}/socket")
+
+
+def test_the_page_and_the_whole_task():
+    async def work(console):
+        loop = asyncio.get_running_loop()
+        address = f"http://127.0.0.1:{console.port}/"
+        page = await loop.run_in_executor(None, lambda: urllib.request.urlopen(address).read().decode())
+        assert 'id="stop"' in page and "/socket" in page
+        socket = await _open(console)
+        assert await _ask(socket, {"do": "snapshot"}) == ""
+        for v in (150, 180, 110):
+            assert await _ask(socket, {"do": "click", "u": 319.5, "v": v}) == ""
+        picture = await loop.run_in_executor(
+            None, lambda: urllib.request.urlopen(address + "edges.jpg").read()
+        )
+        assert picture[:2] == b"\xff\xd8"  # JPEG
+        assert await _ask(socket, {"do": "confirm"}) == ""
+        seen = set()
+        while True:
+            state = (await _state(socket))["state"]
+            seen.add(state["step"])
+            if state["stage"] == "live":
+                break
+        assert state["mode"] == "done" and {"approach", "cut"} <= seen
+
+    _served(work)
+
+
+def test_of_two_browsers_the_second_watches_and_may_stop():
+    async def work(console):
+        first, second = await _open(console), await _open(console)
+        assert (await _state(first))["in_control"] and not (await _state(second))["in_control"]
+        assert "in control" in await _ask(second, {"do": "snapshot"})
+        assert await _ask(second, {"do": "stop"}) == ""
+        first.close()
+        while not (await _state(second))["in_control"]:
+            pass
+        assert await _ask(second, {"do": "snapshot"}) == ""
+
+    _served(work)
+
+
+@pytest.mark.parametrize(
+    ("message", "answer"),
+    [
+        ("not json", "must be JSON"),
+        ("[" * 3000, "must be JSON"),
+        ("[1, 2]", "an object"),
+        ({"do": "explode"}, "does not know 'explode'"),
+        ({"do": "click", "u": "a", "v": 3}, "finite number"),
+        ({"do": "click", "u": True, "v": 3}, "finite number"),
+        ('{"do": "click", "u": NaN, "v": 1}', "finite number"),
+        ({"do": "sliders", "sensitivity": 9}, "between 0 and 1"),
+        ({"do": "fill", "name": "x"}, "choose from"),
+        ({"do": "confirm"}, "must be clicked"),
+        ("x" * 5000, None),
+        (b"\xff\xfe", None),  # no text: the connection is closed
+    ],
+)
+def test_a_malformed_message_is_answered_and_the_arms_stand_still(message, answer):
+    async def work(console):
+        socket = await _open(console)
+        error = await _ask(socket, message)
+        assert error is None if answer is None else answer in error
+        again = await _open(console)
+        state = (await _state(again))["state"]
+        assert state["mode"] == "idle" and not state["valves_open"]
+        np.testing.assert_allclose(np.radians(state["angles_deg"]), home_posture(), atol=1e-3)
+
+    _served(work)
+
+
+def test_a_taken_port_is_refused():
+    async def work(console):
+        with pytest.raises(InputError, match="choose another --port"):
+            Console(console.session, port=console.port)
+
+    _served(work)

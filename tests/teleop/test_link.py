@@ -1,0 +1,131 @@
+"""The link: set points through, and every way to lose it closes the valves."""
+
+import socket
+import time
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.teleop.configuration import teleop_entries
+from hydrolek_drake.teleop.link import SetpointClient, SetpointServer, decode, encode
+from hydrolek_drake.workcell.scene import home_posture
+
+
+@pytest.fixture
+def server():
+    server = SetpointServer(home_posture(), port=0)
+    yield server
+    server.close()
+
+
+def _until(condition):
+    limit = time.monotonic() + 3.0
+    while not condition():
+        assert time.monotonic() < limit, "did not happen within 3 s"
+        time.sleep(0.005)
+
+
+def test_valves_are_closed_until_set_points_come(server):
+    assert server.command()[1] is False
+    client = SetpointClient(server.port)
+    wanted = home_posture() + 0.01
+    client.send(wanted)
+    desired, open_, reason = server.command()
+    np.testing.assert_allclose(desired, wanted, atol=1e-6)
+    assert open_ and reason == ""
+    client.close()
+
+
+def test_the_answer_is_the_measured_position(server):
+    client = SetpointClient(server.port)
+    server.report(home_posture() + 0.02)
+    np.testing.assert_allclose(client.send(home_posture()), home_posture() + 0.02, atol=1e-6)
+    client.close()
+
+
+def test_stop_closes_the_valves_and_set_points_open_them_again(server):
+    client = SetpointClient(server.port)
+    client.send(home_posture())
+    client.stop()
+    assert server.command()[1:] == (False, "stopped by the operator")
+    client.send(home_posture())
+    assert server.command()[1]
+    client.close()
+
+
+def test_a_client_that_leaves_closes_the_valves(server):
+    client = SetpointClient(server.port)
+    client.send(home_posture())
+    client.close()
+    _until(lambda: not server.command()[1])
+    assert "gone" in server.command()[2]
+
+
+def test_silence_closes_the_valves(server):
+    client = SetpointClient(server.port)
+    client.send(home_posture())
+    assert server.command()[1]
+    time.sleep(teleop_entries("link")["silence"] + 0.1)
+    assert server.command()[1:] == (False, "no message for 0.5 s")
+    client.close()
+
+
+@pytest.mark.parametrize(
+    ("message", "reason"),
+    [
+        (b"hello\n", "is not 14 angles"),
+        (b"1,2,3\n", "3 angles"),
+        (encode(home_posture()).rsplit(b",", 1)[0] + b",nan\n", "left_j7 = nan deg"),
+        (b",".join([b"0"] * 2 + [b"80"] + [b"0"] * 11) + b"\n", "right_j3 = 80 deg is outside"),
+        (b"\xff\xfe\n", "is not 14 angles"),
+        (b"0," * 5000, "longer than 512 bytes"),
+        (b"9" * 2000 + b"\n", "longer than 512 bytes"),
+    ],
+)
+def test_a_bad_message_closes_the_valves_and_leaves_the_set_point(server, message, reason):
+    with socket.create_connection(("127.0.0.1", server.port)) as raw:
+        raw.sendall(encode(home_posture()))
+        raw.recv(4096)
+        assert server.command()[1]
+        raw.sendall(message)
+        _until(lambda: not server.command()[1])
+    assert reason in server.command()[2]
+    np.testing.assert_allclose(server.command()[0], home_posture(), atol=1e-6)
+
+
+def test_a_message_in_pieces_is_one_message(server):
+    line = encode(home_posture() + 0.01)
+    with socket.create_connection(("127.0.0.1", server.port)) as raw:
+        for part in (line[:10], line[10:50], line[50:]):
+            raw.sendall(part)
+            time.sleep(0.02)
+        raw.recv(4096)
+        np.testing.assert_allclose(server.command()[0], home_posture() + 0.01, atol=1e-6)
+
+
+def test_a_second_client_is_refused_and_the_first_goes_on(server):
+    first = SetpointClient(server.port)
+    first.send(home_posture())
+    second = SetpointClient(server.port)
+    with pytest.raises(InputError, match=r"BUSY|closed|lost"):
+        second.send(home_posture() + 0.1)
+    first.send(home_posture())
+    np.testing.assert_allclose(server.command()[0], home_posture(), atol=1e-6)
+    first.close()
+
+
+def test_without_controllers_and_with_a_taken_port_the_reason_is_given(server):
+    with pytest.raises(InputError, match="choose another port"):
+        SetpointServer(home_posture(), port=server.port)
+    free = socket.create_server(("127.0.0.1", 0))
+    port = free.getsockname()[1]
+    free.close()
+    with pytest.raises(InputError, match="no controllers answer"):
+        SetpointClient(port)
+
+
+def test_encoding_is_in_degrees_and_exact_to_a_ten_thousandth():
+    np.testing.assert_allclose(decode(encode(home_posture())), home_posture(), atol=1e-6)
+    assert encode(home_posture()).startswith(b"-20.0000,20.0000,")
+    assert decode(b"STOP") is None

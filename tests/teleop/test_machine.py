@@ -1,0 +1,62 @@
+"""Sequencer, link and arms together, faster than real time."""
+
+import time
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.teleop.machine import ArmsEnd, Machine
+from hydrolek_drake.teleop.sequencer import Mode, Order
+from hydrolek_drake.workcell.scene import home_posture
+
+
+@pytest.fixture
+def machine():
+    machine = Machine(home_posture(), realtime_rate=25.0)
+    yield machine
+    machine.close()
+
+
+def _until(condition, seconds=20.0):
+    limit = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < limit, f"did not happen within {seconds} s"
+        time.sleep(0.01)
+
+
+def test_the_arms_do_the_whole_task(machine, plan):
+    machine.start(plan)
+    _until(lambda: machine.state().mode is not Mode.RUNNING)
+    state = machine.state()
+    assert state.mode is Mode.DONE
+    trajectory = plan.steps[-1].trajectory
+    np.testing.assert_allclose(
+        state.position, trajectory.value(trajectory.end_time())[:, 0], atol=np.radians(1.0)
+    )
+
+
+def test_stop_stands_still_at_any_moment_and_the_task_is_finished_after_a_resume(machine, plan):
+    machine.start(plan)
+    time.sleep(0.1)
+    machine.order(Order.STOP)
+    where = machine.state().position
+    time.sleep(0.3)
+    state = machine.state()
+    assert state.mode is Mode.STOPPED and not state.valves_open
+    np.testing.assert_allclose(state.position, where, atol=np.radians(0.1))
+    machine.order(Order.RESUME)
+    _until(lambda: machine.state().mode is not Mode.RUNNING)
+    assert machine.state().mode is Mode.DONE
+
+
+def test_a_lost_link_stops_the_task(plan):
+    arms = ArmsEnd(home_posture(), port=0)
+    machine = Machine(home_posture(), controllers=("127.0.0.1", arms.server.port), realtime_rate=5.0)
+    machine.start(plan)
+    time.sleep(0.2)
+    arms.server.close()
+    _until(lambda: machine.state().reason != "")
+    _until(lambda: machine.state().mode is Mode.STOPPED)
+    assert not machine.state().valves_open and "link:" in machine.state().reason
+    assert not arms.server.command()[1]
+    machine.close()

@@ -1,0 +1,140 @@
+"""The sequencer on a bare Context: order of steps, tolerances, stop, resume, abort, time-out."""
+
+import numpy as np
+import pytest
+from pydrake.systems.analysis import Simulator
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.teleop.configuration import teleop_entries
+from hydrolek_drake.teleop.plan import STEPS
+from hydrolek_drake.teleop.sequencer import Mode, Order, TaskSequencer
+from hydrolek_drake.workcell.scene import home_posture
+
+PERIOD = teleop_entries("task")["period"]
+
+
+class Rig:
+    """Sequencer with arms that are where they should be, less `lag` in rad, unless they are jammed."""
+
+    def __init__(self, plan):
+        self.system = TaskSequencer()
+        self.simulator = Simulator(self.system)
+        self.context = self.simulator.get_mutable_context()
+        self.position, self.jammed, self.lag = home_posture(), False, 0.0
+        self.order = Order.NONE
+        self.advance()
+        self.system.start(self.context, plan, self.position)
+
+    def advance(self, count=1):
+        for _ in range(count):
+            self.system.position_measured_input.FixValue(self.context, self.position)
+            self.system.order_input.FixValue(self.context, [float(self.order)])
+            self.simulator.AdvanceTo(self.context.get_time() + PERIOD)
+            if not self.jammed and self.open():
+                self.position = self.desired() - self.lag
+
+    def desired(self):
+        return np.array(self.system.position_desired_output.Eval(self.context))
+
+    def open(self):
+        return self.system.valves_open_output.Eval(self.context)[0] == 1.0
+
+    def mode(self):
+        return self.system.mode(self.context)
+
+
+def test_ports_and_feedthrough():
+    system = TaskSequencer()
+    assert not system.HasAnyDirectFeedthrough()
+    assert [system.get_input_port(i).get_name() for i in range(2)] == ["position_measured", "order"]
+    assert system.position_desired_output.size() == 14 and system.progress_output.size() == 4
+
+
+def test_idle_holds_the_measured_position_with_closed_valves():
+    system = TaskSequencer()
+    simulator = Simulator(system)
+    context = simulator.get_mutable_context()
+    system.position_measured_input.FixValue(context, home_posture() + 0.1)
+    system.order_input.FixValue(context, [0.0])
+    simulator.AdvanceTo(2 * PERIOD)
+    np.testing.assert_allclose(system.position_desired_output.Eval(context), home_posture() + 0.1)
+    assert system.valves_open_output.Eval(context)[0] == 0.0
+
+
+def test_all_steps_run_in_order_in_the_planned_time_and_the_settling(plan):
+    rig, seen, seconds = Rig(plan), [], 0.0
+    while rig.mode() is Mode.RUNNING:
+        name = rig.system.step_name(rig.context)
+        if not seen or seen[-1] != name:
+            seen.append(name)
+        rig.advance()
+        seconds += PERIOD
+        assert seconds < 200
+    assert rig.mode() is Mode.DONE and tuple(seen) == STEPS
+    settling = len(STEPS) * teleop_entries("task")["settled"]
+    assert seconds == pytest.approx(plan.duration() + settling, abs=len(STEPS) * 3 * PERIOD)
+    last = plan.steps[-1].trajectory
+    np.testing.assert_allclose(rig.desired(), last.value(last.end_time())[:, 0], atol=1e-9)
+
+
+def test_a_step_waits_until_the_joints_are_within_the_tolerance(plan):
+    rig = Rig(plan)
+    rig.lag = np.radians(teleop_entries("task")["tolerance_deg"]) * 1.2
+    rig.advance(int((plan.steps[0].trajectory.end_time() + 3.0) / PERIOD))
+    assert rig.system.step_name(rig.context) == STEPS[0]
+    rig.lag = np.radians(teleop_entries("task")["tolerance_deg"]) * 0.8
+    rig.advance(int(1.0 / PERIOD))
+    assert rig.system.step_name(rig.context) == STEPS[1]
+
+
+def test_stop_holds_at_once_with_closed_valves_and_resume_goes_on_from_there(plan):
+    rig = Rig(plan)
+    rig.advance(20)
+    rig.order = Order.STOP
+    rig.advance()
+    where = rig.position.copy()
+    assert rig.mode() is Mode.STOPPED and not rig.open()
+    rig.advance(200)
+    np.testing.assert_allclose(rig.desired(), where, atol=1e-12)
+    assert rig.mode() is Mode.STOPPED
+    rig.order = Order.RESUME
+    rig.advance()
+    assert rig.mode() is Mode.RUNNING and rig.open()
+    limit = np.radians(30) * PERIOD * 3
+    assert np.max(np.abs(rig.desired() - where)) < limit  # no jump
+    while rig.mode() is Mode.RUNNING:
+        rig.advance()
+    assert rig.mode() is Mode.DONE
+
+
+def test_abort_holds_and_cannot_be_resumed_but_another_task_may_start(plan):
+    rig = Rig(plan)
+    rig.advance(5)
+    rig.order = Order.ABORT
+    rig.advance()
+    assert rig.mode() is Mode.ABORTED and not rig.open()
+    rig.order = Order.RESUME
+    rig.advance(3)
+    assert rig.mode() is Mode.ABORTED
+    rig.position = home_posture()
+    rig.system.start(rig.context, plan, rig.position)
+    assert rig.mode() is Mode.RUNNING
+
+
+def test_jammed_arms_time_out_and_may_be_resumed(plan):
+    rig = Rig(plan)
+    rig.jammed = True
+    rig.advance(int(plan.steps[0].timed_out_after / PERIOD) + 2)
+    assert rig.mode() is Mode.TIMED_OUT and not rig.open()
+    rig.jammed, rig.order = False, Order.RESUME
+    rig.advance(int(2.0 / PERIOD))
+    assert rig.mode() is Mode.RUNNING
+
+
+def test_a_task_does_not_start_twice_or_from_elsewhere(plan):
+    rig = Rig(plan)
+    with pytest.raises(InputError, match="a task is running"):
+        rig.system.start(rig.context, plan, home_posture())
+    fresh = TaskSequencer()
+    with pytest.raises(InputError, match=r"moved by 17\.2 deg"):
+        fresh.start(fresh.CreateDefaultContext(), plan, home_posture() + 0.3)
