@@ -1,0 +1,79 @@
+"""Fits: planted values come back, with intervals that hold them, from any start."""
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.diagnosis.intervals import intervals_of
+from hydrolek_drake.identification.least_squares import fit_from, multi_start
+from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
+from hydrolek_drake.identification.problem import Problem
+
+PATHS = ["supply.pressure", "valve.max_area_a", "load.gravity_cos", "command.delay"]
+
+
+@pytest.fixture(scope="module")
+def planted(bench, recorded):
+    truth = {"supply.pressure": 17.2e6, "valve.max_area_a": 0.61e-6, "load.gravity_cos": 247.0, "command.delay": 0.0212}
+    return truth, recorded(bench.with_values(truth), bench)
+
+
+def test_planted_values_are_recovered_within_their_intervals(bench, planted) -> None:
+    truth, experiments = planted
+    parameters = ParameterSet(bench, free_parameters(bench, PATHS))
+    fit = fit_from(Problem(parameters, experiments), parameters.unit())
+    assert fit.over_noise == pytest.approx(1.0, abs=0.05)
+    known = intervals_of(parameters, fit)
+    for path, value in truth.items():
+        interval = known[bench.full_path(path)]
+        width = interval.high - interval.low
+        # twice the half width of a 95 % interval: four standard deviations
+        assert abs(interval.value - value) < width
+        assert interval.low < interval.value < interval.high
+
+
+def test_the_same_optimum_from_several_starts(bench, planted) -> None:
+    _, experiments = planted
+    parameters = ParameterSet(bench, free_parameters(bench, PATHS))
+    problem = Problem(parameters, experiments, 1e-3)
+    rng = np.random.default_rng(3)
+    ends = [fit_from(problem, rng.uniform(0.1, 0.9, len(parameters))).chi_squared for _ in range(3)]
+    assert max(ends) - min(ends) < 1.0
+
+
+def test_several_starts_end_early_at_the_noise(bench, planted) -> None:
+    _, experiments = planted
+    parameters = ParameterSet(bench, free_parameters(bench, PATHS))
+    tried = []
+    problem = Problem(parameters, experiments, 1e-3)
+    starts = [parameters.unit(), np.full(4, 0.2), np.full(4, 0.8)]
+    multi_start(problem, starts, good_enough=1.2, progress=lambda number, fit: tried.append(number))
+    assert tried == [0]
+
+
+def test_the_jacobian_is_that_of_central_differences(bench, planted) -> None:
+    _, experiments = planted
+    parameters = ParameterSet(bench, free_parameters(bench, PATHS))
+    problem = Problem(parameters, experiments)
+    unit = np.full(4, 0.5)
+    jacobian = problem.jacobian(unit)
+    for i in range(4):
+        h = np.zeros(4)
+        h[i] = 1e-5
+        central = (problem.residuals(unit + h) - problem.residuals(unit - h)) / 2e-5
+        assert np.linalg.norm(jacobian[:, i] - central) < 1e-2 * np.linalg.norm(central)
+
+
+def test_a_prior_keeps_what_the_data_do_not_tell(bench, planted) -> None:
+    _, experiments = planted
+    parameters = ParameterSet(bench, free_parameters(bench, PATHS))
+    tight = Problem(parameters, experiments, 1e-3, prior=np.full(4, 1e-6))
+    fit = fit_from(tight, parameters.unit())
+    assert fit.unit == pytest.approx(parameters.unit(), abs=1e-3)
+
+
+def test_a_diverged_simulation_is_scored_not_raised(bench, planted) -> None:
+    _, experiments = planted
+    parameters = ParameterSet(bench, free_parameters(bench, PATHS))
+    residuals = Problem.bounded([np.array([1.0, np.nan, -1e9])])
+    assert np.isfinite(residuals).all() and abs(residuals).max() == 1e3
+    assert np.isfinite(Problem(parameters, experiments, 0.5).residuals(np.full(4, 0.5))).all()

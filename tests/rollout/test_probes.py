@@ -1,0 +1,70 @@
+"""Unknown inputs of the rollout: nothing changes without them, and each is what it says it is."""
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.rollout.kernel import PROBES
+from hydrolek_drake.rollout.rollout import roll_out
+
+TIMES = np.arange(0.0, 4.0, 0.01)
+COMMAND = np.where(TIMES < 0.5, 0.0, np.where(TIMES < 2.0, 6.0, -6.0))
+STEP = 5e-4
+
+
+def _run(values=None, probe=None, size=0.0, command=COMMAND):
+    rig = load_rig("joint_bench", {}).with_values(values or {})
+    probes = None
+    if probe is not None:
+        rows = np.zeros((401, len(PROBES)))
+        rows[:, PROBES.index(probe)] = size
+        probes = (0.01, rows)
+    return roll_out(rig.records(), TIMES, command, TIMES, longest_step=STEP, probes=probes).signals
+
+
+@pytest.mark.parametrize("probe", PROBES)
+def test_a_probe_of_zero_changes_nothing(probe: str) -> None:
+    assert _run(probe=probe, size=0.0).reading.tobytes() == _run().reading.tobytes()
+
+
+def test_supply_probe_is_a_higher_supply_pressure() -> None:
+    probed = _run(probe="supply", size=1e6)
+    assert probed.pressure_a == pytest.approx(_run({"supply.pressure": 17e6}).pressure_a, rel=1e-9)
+
+
+def test_valve_probe_is_a_larger_area() -> None:
+    larger = _run({"valve.max_area_a": 0.737e-6, "valve.max_area_b": 0.737e-6})
+    assert _run(probe="valve", size=0.1).position == pytest.approx(larger.position, rel=1e-9)
+
+
+def test_amplifier_probe_is_a_larger_current() -> None:
+    larger = _run({"amplifier.max_current_a": 1.1, "amplifier.max_current_b": 1.1})
+    assert _run(probe="amplifier", size=0.1).spool == pytest.approx(larger.spool, rel=1e-9)
+
+
+def test_command_probe_is_a_higher_command() -> None:
+    # the transport delay shifts a step of the command, not a constant addition to it
+    always = _run(command=np.full(TIMES.size, 5.0))
+    assert _run(probe="command", size=1.0, command=np.full(TIMES.size, 4.0)).position == pytest.approx(
+        always.position, rel=1e-9
+    )
+
+
+def test_sensor_probe_is_added_to_the_reading_alone() -> None:
+    probed, plain = _run(probe="sensor", size=0.01), _run()
+    assert probed.reading - plain.reading == pytest.approx(0.01, abs=1e-12)
+    assert probed.position.tobytes() == plain.position.tobytes()
+
+
+def test_load_probe_is_an_offset_force() -> None:
+    rig = {"effects.load.offset_force.force_N": -40.0}
+    probed, offset = _run(probe="load", size=40.0), _run(rig)
+    # the rig with the offset starts in balance with it, the probed one does not: equal after the transient
+    assert probed.force[-1] == pytest.approx(offset.force[-1], rel=0.02)
+
+
+def test_cylinder_probe_is_the_load_probe_over_the_lever() -> None:
+    force = _run(probe="cylinder", size=500.0).force - _run().force
+    assert np.median(force) == pytest.approx(0.0, abs=60.0)  # the chambers give way: the rod's force balances the load
+    start = _run(probe="cylinder", size=500.0).force[0] - _run().force[0]
+    assert start == pytest.approx(500.0, rel=1e-9)
