@@ -34,6 +34,7 @@ def diagnose(
     from rich.console import Console
 
     from hydrolek_drake.cli.output import console
+    from hydrolek_drake.diagnosis.diagnosis import INTERRUPTED
     from hydrolek_drake.diagnosis.diagnosis import diagnose as run_diagnosis
     from hydrolek_drake.diagnosis.report import write_report
     from hydrolek_drake.diagnosis.table import summary
@@ -63,3 +64,5 @@ def diagnose(
         output.print(line, soft_wrap=True)
     if out is not None:
         output.print(f"\nreport: {page}", markup=False, soft_wrap=True)
+    if INTERRUPTED in done.reasons:
+        raise KeyboardInterrupt

@@ -11,7 +11,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.candidates import Candidate, candidates_of
 from hydrolek_drake.diagnosis.conclusion import Conclusion, conclude
 from hydrolek_drake.diagnosis.data_quality import reasons_against
-from hydrolek_drake.diagnosis.evidence import FINER, Judged, judge
+from hydrolek_drake.diagnosis.evidence import FINER, Judged, judge, judge_given_up
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
 from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
@@ -33,6 +33,9 @@ HELD_BLOCKS = (2, 5)
 """... of which these are held out: one in the middle and the last."""
 
 
+INTERRUPTED = "interrupted: this is what was known by then; run it again for the whole answer"
+
+
 @dataclass(frozen=True)
 class Diagnosis:
     """The outcome.
@@ -40,10 +43,11 @@ class Diagnosis:
     Attributes:
         rig: as given.
         verdict: as in `report.json`.
-        reasons: why the data are bad, if they are.
+        reasons: why the data are bad, if they are; or that the search was interrupted.
         conclusion: what the data say; None for bad data.
         search: all that was tried; None for bad data.
         judged: hypotheses held against held-out data, the most probable first.
+        also_tried: hypotheses that were not fitted to the end, the best first.
         bench: data and fits; None for bad data.
         held_out: data that nothing was fitted to.
         locations: where the mismatch is.
@@ -59,6 +63,7 @@ class Diagnosis:
     conclusion: Conclusion | None
     search: Search | None
     judged: tuple[Judged, ...]
+    also_tried: tuple[Judged, ...]
     bench: Workbench | None
     held_out: tuple[Experiment, ...]
     locations: tuple[Location, ...]
@@ -94,7 +99,6 @@ def diagnose(
     holdout: Sequence[Recording],
     pool: Executor,
     say: Callable[[str], None] = lambda text: None,
-    alive: Callable[[], None] = lambda: None,
 ) -> Diagnosis:
     """Find out what physics a rig's model leaves out.
 
@@ -104,10 +108,12 @@ def diagnose(
         holdout: what decides; blocks of the recordings are held out if there is none.
         pool: threads for fits side by side.
         say: told what is being done.
-        alive: called often; may raise `KeyboardInterrupt`.
+
+    An interrupt during the search ends it; what is known by then is judged and returned with a reason.
 
     Raises:
         InputError: the recordings lack what the rig needs, or the rig has nothing to fit.
+        KeyboardInterrupt: before the nominal model was fitted.
     """
     begun = clock.perf_counter()
     say("looking at the data")
@@ -115,13 +121,21 @@ def diagnose(
     if reasons:
         return _refused(rig, reasons, clock.perf_counter() - begun)
     nominal = _nominal(rig, training)
-    bench = Workbench(rig, nominal, training, pool, alive)
+    bench = Workbench(rig, nominal, training, pool)
     candidates: list[Candidate] = []
     joints = tuple(dict.fromkeys(experiment.joint for experiment in training))
     scales = {joint: natural_scales(rig, joint, training) for joint in joints}
     for joint in joints:
         candidates += candidates_of(rig, joint, scales[joint])
-    found = search(bench, candidates, say)
+    interrupted = False
+    found = Search()
+    try:
+        search(bench, candidates, found, say)
+    except KeyboardInterrupt:
+        if not found.hypotheses:
+            raise
+        interrupted = True
+        bench.resume()
     say("holding the models against data that none of them was fitted to")
     bench.training = tuple(bench.weighted_by(found.best, bench.training))
     held_out = tuple(bench.weighted_by(found.best, held_out))
@@ -129,6 +143,8 @@ def diagnose(
     conclusion = conclude(judged)
     best = conclusion.best.hypothesis
     law = None
+    if interrupted and conclusion.verdict == "unlisted_physics":  # not every known effect has been tried
+        conclusion = replace(conclusion, verdict="ambiguous")
     if conclusion.verdict == "unlisted_physics":
         say("searching a law for physics that is in no list")
         law = find_law(bench, found.baseline, held_out, scales[joints[0]])
@@ -140,10 +156,11 @@ def diagnose(
     return Diagnosis(
         rig=rig,
         verdict=conclusion.verdict,
-        reasons=(),
+        reasons=(INTERRUPTED,) if interrupted else (),
         conclusion=conclusion,
         search=found,
         judged=judged,
+        also_tried=tuple(judge_given_up(bench, found, held_out)),
         bench=bench,
         held_out=held_out,
         locations=places,
@@ -163,6 +180,7 @@ def _refused(rig: Rig, reasons: Sequence[str], seconds: float) -> Diagnosis:
         conclusion=None,
         search=None,
         judged=(),
+        also_tried=(),
         bench=None,
         held_out=(),
         locations=(),

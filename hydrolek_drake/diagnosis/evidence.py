@@ -97,6 +97,14 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
     return with_probabilities(judged)
 
 
+def judge_given_up(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> list[Judged]:
+    """What the held-out data say of hypotheses that were not fitted to the end, the best first."""
+    counted = sum(experiment.counted for experiment in held_out)
+    left = [h for key, h in found.given_up.items() if key not in found.hypotheses]
+    judged = bench.side_by_side(lambda h: Judged(h, bench.residuals(h, held_out, bench.fine), counted), left)
+    return sorted(judged, key=lambda j: j.half_chi_squared)
+
+
 def _decides(hypothesis: Hypothesis, found: Search) -> bool:
     """Whether the error of the step could matter: only for those near the best, and if that is near the noise."""
     best = found.best.fit

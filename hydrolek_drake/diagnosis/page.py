@@ -1,13 +1,14 @@
 """The diagnosis as one HTML file that needs no network: the verdict first, how it was computed last."""
 
 import html
+import math
 from collections.abc import Iterable
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.evidence import FINER
 from hydrolek_drake.diagnosis.panels import columns
-from hydrolek_drake.diagnosis.report_json import detectable, effects_json, fit_json
-from hydrolek_drake.diagnosis.words import headline, quantity
+from hydrolek_drake.diagnosis.report_json import MOST_LISTED, detectable, effects_json, fit_json
+from hydrolek_drake.diagnosis.words import headline, number, quantity
 from hydrolek_drake.replay.page import STYLE
 from hydrolek_drake.replay.plots_html import plots_html
 from hydrolek_drake.rigs.rig import declaration
@@ -23,7 +24,7 @@ _STYLE = """
 .verdict { border-left: 6px solid; padding: .6rem 1rem; background: #f7f9fb; margin: 1rem 0 }
 .verdict b { font-size: .85rem; letter-spacing: .04em; text-transform: uppercase }
 .bar { display: inline-block; height: .75em; background: #1b6ca8; vertical-align: middle }
-td.left { text-align: left; white-space: normal }
+.wrapped { display: inline-block; max-width: 24em; white-space: normal; text-align: left }
 """
 
 
@@ -131,7 +132,7 @@ def _locations(diagnosis: Diagnosis) -> str:
             place.joint,
             place.stage,
             f"{100 * place.share:.0f} %",
-            html.escape(place.condition),
+            f"<span class='wrapped'>{html.escape(place.condition)}</span>",
             "<br>".join(f"{a:.2f} to {b:.2f} s" for a, b in place.when[:5]) or "all the time",
         )
         for place in diagnosis.locations
@@ -140,21 +141,27 @@ def _locations(diagnosis: Diagnosis) -> str:
 
 
 def _candidates(diagnosis: Diagnosis) -> str:
-    worst = max(j.over_noise for j in diagnosis.judged)
+    listed = [*diagnosis.judged[:MOST_LISTED], *diagnosis.also_tried[:MOST_LISTED]]
+    worst = max(j.over_noise for j in listed)
     rows = []
-    for judged in diagnosis.judged[:12]:
+    for judged in listed:
         name = " + ".join(c.id for c in judged.hypothesis.effects) or "nominal model"
         width = 220.0 * judged.over_noise / worst
         rows.append(
             (
                 html.escape(name),
-                f"{judged.probability:.3f}",
+                "given up" if math.isnan(judged.probability) else f"{judged.probability:.3f}",
                 f"{judged.hypothesis.fit.over_noise:.3g}",
                 f"{judged.over_noise:.3g}",
                 f"<span class='bar' style='width:{max(width, 2):.0f}px'></span>",
             )
         )
-    return _table(("model", "probability", "fitted / noise", "held out / noise", ""), rows)
+    told = (
+        "<p class='other'>'Given up': so far behind after a few steps that it was not fitted to the end.</p>"
+        if diagnosis.also_tried
+        else ""
+    )
+    return _table(("model", "probability", "fitted / noise", "held out / noise", ""), rows) + told
 
 
 def _parameters(diagnosis: Diagnosis) -> str:
@@ -168,7 +175,7 @@ def _parameters(diagnosis: Diagnosis) -> str:
                 html.escape(short),
                 quantity(nominal, unit),
                 quantity(known.value, unit),
-                f"{quantity(known.low, unit)} to {quantity(known.high, unit)}",
+                f"{number(known.low, unit)} to {quantity(known.high, unit)}",
             )
         )
     return _table(("parameter", "in the rig", "fitted", "95 % interval"), rows)

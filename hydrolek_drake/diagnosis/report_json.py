@@ -160,4 +160,13 @@ def candidates_json(diagnosis: Diagnosis) -> list[dict[str, Any]]:
             "holdout_over_noise": judged.over_noise,
         }
         for judged in diagnosis.judged[:MOST_LISTED]
+    ] + [
+        {
+            "effects": [c.id for c in judged.hypothesis.effects],
+            "probability": 0.0,
+            "given_up": True,
+            "train_over_noise": judged.hypothesis.fit.over_noise,
+            "holdout_over_noise": judged.over_noise,
+        }
+        for judged in diagnosis.also_tried[:MOST_LISTED]
     ]

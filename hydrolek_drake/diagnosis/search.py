@@ -57,26 +57,29 @@ class Search:
     """What was tried.
 
     Attributes:
-        baseline: the nominal model, fitted.
         hypotheses: every set of effects that was fitted with the rig's own step, by its key.
         scores: of the effects against the fitted nominal model.
         left: gains of the effects that the best model has not.
         rounds: how many effects at once were searched.
+        given_up: sets of effects that were too far behind after a few steps.
     """
 
-    baseline: Hypothesis
     hypotheses: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
     scores: list[Score] = field(default_factory=list)
     left: list[Score] = field(default_factory=list)
     rounds: int = 0
+    given_up: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
 
     def keep(self, hypothesis: Hypothesis) -> None:
         """Remember it if it is the best fit of these effects."""
         known = self.hypotheses.get(hypothesis.ids)
         if known is None or hypothesis.fit.objective < known.fit.objective:
             self.hypotheses[hypothesis.ids] = hypothesis
-            if not hypothesis.effects:
-                self.baseline = hypothesis
+
+    @property
+    def baseline(self) -> Hypothesis:
+        """The nominal model, fitted."""
+        return self.hypotheses[frozenset()]
 
     @property
     def best(self) -> Hypothesis:
@@ -95,19 +98,21 @@ def gain_needed(fit: Fit) -> float:
     return max(GAIN_NEEDED, FIDELITY * fit.counted)
 
 
-def search(bench: Workbench, candidates: Sequence[Candidate], say: Callable[[str], None]) -> Search:
+def search(
+    bench: Workbench, candidates: Sequence[Candidate], found: Search, say: Callable[[str], None]
+) -> None:
     """Search the effects that explain the training data.
 
     Args:
         bench: data, rig and fits.
         candidates: every effect that may be added.
+        found: empty; filled as the search goes on, so that an interrupt loses nothing.
         say: told what is being done.
     """
     say("fitting the nominal model")
     baseline = fit_baseline(bench)
     bench.training = tuple(bench.weighted_by(baseline, bench.training))
     baseline = bench.refit(baseline, bench.fine, POLISH if baseline.fit.over_noise < FAR else 1)
-    found = Search(baseline)
     found.keep(baseline)
     say("trying what could explain the rest")
     found.scores = scores_of(bench, baseline, candidates, bench.fine)
@@ -126,7 +131,6 @@ def search(bench: Workbench, candidates: Sequence[Candidate], say: Callable[[str
         beam = [h for h in grown if h.fit.objective < HOPELESS * grown[0].fit.objective][:BEAM]
         beam = [found.best] if near else beam
         found.left = scores_of(bench, found.best, candidates, bench.fine)
-    return found
 
 
 def _words(count: int) -> str:
@@ -197,10 +201,12 @@ def _grow(
         lambda item: _glance(bench, item[0], [start for _, start in item[1]], step), list(work.values())
     )
     glances.sort(key=lambda h: h.fit.objective)
+    found.given_up.update((h.ids, h) for h in glances)
     bound = HOPELESS * glances[0].fit.objective
     followed = [h for h in glances if h.fit.objective < bound][:FOLLOWED]
     looks = bench.side_by_side(lambda h: bench.refit(h, step, LOOK, tolerance=1e-4), followed)
     looks.sort(key=lambda h: h.fit.objective)
+    found.given_up.update((h.ids, h) for h in looks)
     nearest = looks[0].fit.over_noise
     near = [h for h in looks if h.fit.over_noise < max(1.5 * nearest, AT_NOISE)][:BEAM]
     polished = bench.side_by_side(lambda h: bench.refit(h, bench.fine, POLISH), near)

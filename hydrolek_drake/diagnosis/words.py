@@ -14,6 +14,11 @@ def quantity(value: float, unit: str) -> str:
     return f"{value:.3g}" if main == "1" else shown(value, main)
 
 
+def number(value: float, unit: str) -> str:
+    """The same without the unit."""
+    return quantity(value, unit).partition(" ")[0]
+
+
 def sizes(candidate: Candidate, intervals: dict[str, Interval]) -> str:
     """Every parameter of an effect with its interval."""
     told = []
@@ -23,7 +28,7 @@ def sizes(candidate: Candidate, intervals: dict[str, Interval]) -> str:
             continue
         told.append(
             f"{parameter.meaning} {quantity(known.value, parameter.unit)} "
-            f"({quantity(known.low, parameter.unit)} to {quantity(known.high, parameter.unit)})"
+            f"(95 %: {number(known.low, parameter.unit)} to {number(known.high, parameter.unit)})"
         )
     return ", ".join(told)
 
@@ -61,11 +66,16 @@ def headline(diagnosis: Diagnosis) -> str:
     stages = " and ".join(dict.fromkeys(c.effect.stage for c in best.hypothesis.effects))
     if diagnosis.verdict == "missing_physics":
         return (
-            f"The model leaves out {names} ({stages}): with it the error on held-out data falls from "
+            f"Missing from the model: {names} ({stages}). With it the error on held-out data falls from "
             f"{before} to {after} the noise."
         )
     if diagnosis.verdict == "ambiguous":
         groups = diagnosis.conclusion.groups if diagnosis.conclusion else ()
+        if not groups and diagnosis.reasons:
+            return (
+                f"Interrupted before a cause was found: the best model so far leaves {after} the noise on "
+                f"held-out data (nominal model: {before})."
+            )
         if not groups:
             return "Something small may be missing, but these data do not decide whether it is."
         group = " or ".join(groups[0])

@@ -1,8 +1,9 @@
 """Fits of the nominal model and of models with effects, all to the same recordings."""
 
 import math
+import threading
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import Executor
+from concurrent.futures import Executor, wait
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -64,7 +65,6 @@ class Workbench:
         nominal: Sequence[Free],
         training: Sequence[Experiment],
         pool: Executor,
-        alive: Callable[[], None] = lambda: None,
     ) -> None:
         """Prepare.
 
@@ -73,15 +73,23 @@ class Workbench:
             nominal: its free parameters.
             training: the recordings that are fitted.
             pool: threads for fits side by side.
-            alive: called before each fit; may raise `KeyboardInterrupt`.
         """
         self.rig = rig
         self.nominal = tuple(nominal)
         self.training = tuple(training)
         self.pool = pool
-        self.alive = alive
+        self._stopped = threading.Event()
         self.evaluations = 0
         self._sets: dict[frozenset[str], ParameterSet] = {}
+
+    def alive(self) -> None:
+        """End this thread's work if the user has interrupted."""
+        if self._stopped.is_set():
+            raise KeyboardInterrupt
+
+    def resume(self) -> None:
+        """Work again after an interrupt."""
+        self._stopped.clear()
 
     @property
     def fine(self) -> float:
@@ -128,7 +136,13 @@ class Workbench:
         effects = tuple(effects)
         problem = self.problem(effects, step, experiments)
         parameters = problem.parameters
-        fit = fit_from(problem, parameters.unit(values), most_steps=most_steps, tolerance=tolerance)
+        fit = fit_from(
+            problem,
+            parameters.unit(values),
+            most_steps=most_steps,
+            tolerance=tolerance,
+            stop=self._stopped.is_set,
+        )
         self.evaluations += fit.evaluations
         return Hypothesis(effects, parameters.values(fit.unit), fit, step)
 
@@ -149,8 +163,10 @@ class Workbench:
         try:
             return [future.result() for future in futures]
         except BaseException:
+            self._stopped.set()
             for future in futures:
                 future.cancel()
+            wait(futures)
             raise
 
     def weighted_by(self, hypothesis: Hypothesis, experiments: Sequence[Experiment]) -> list[Experiment]:

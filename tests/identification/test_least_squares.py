@@ -13,7 +13,12 @@ PATHS = ["supply.pressure", "valve.max_area_a", "load.gravity_cos", "command.del
 
 @pytest.fixture(scope="module")
 def planted(bench, recorded):
-    truth = {"supply.pressure": 17.2e6, "valve.max_area_a": 0.61e-6, "load.gravity_cos": 247.0, "command.delay": 0.0212}
+    truth = {
+        "supply.pressure": 17.2e6,
+        "valve.max_area_a": 0.61e-6,
+        "load.gravity_cos": 247.0,
+        "command.delay": 0.0212,
+    }
     return truth, recorded(bench.with_values(truth), bench)
 
 

@@ -65,6 +65,8 @@ def test_load_probe_is_an_offset_force() -> None:
 
 def test_cylinder_probe_is_the_load_probe_over_the_lever() -> None:
     force = _run(probe="cylinder", size=500.0).force - _run().force
-    assert np.median(force) == pytest.approx(0.0, abs=60.0)  # the chambers give way: the rod's force balances the load
+    assert np.median(force) == pytest.approx(
+        0.0, abs=60.0
+    )  # the chambers give way: the rod's force balances the load
     start = _run(probe="cylinder", size=500.0).force[0] - _run().force[0]
     assert start == pytest.approx(500.0, rel=1e-9)

@@ -1,0 +1,70 @@
+"""Which effects are candidates on which machine, and how far each is searched."""
+
+import math
+
+import pytest
+
+from hydrolek_drake.diagnosis.candidates import candidates_of
+from hydrolek_drake.effects import EFFECTS
+from hydrolek_drake.effects.scales import Scales
+from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.parameter_set import ParameterSet
+
+ON_THE_BENCH = {
+    "command.delay", "amplifier.gain_fade", "valve.asymmetric_overlap", "valve.spool_stiction", "valve.null_leakage",
+    "supply.pressure_droop", "fluid.entrained_air", "fluid.warm_up", "cylinder.cross_port_leakage",
+    "cylinder.coulomb_friction", "cylinder.stribeck_friction", "cylinder.end_cushion", "linkage.backlash",
+    "base.compliance", "sensor.nonlinearity", "sensor.hysteresis", "sensor.drift",
+}  # fmt: skip
+
+
+def test_every_effect_of_the_bench_is_a_candidate_there(bench, recorded) -> None:
+    ids = {
+        c.id for c in candidates_of(bench, "joint", natural_scales(bench, "joint", recorded(bench, bench)))
+    }
+    assert ids >= ON_THE_BENCH
+    # where there is a cylinder, its own friction is searched and not the load's
+    assert not ids & {"load.coulomb_friction", "load.viscous_friction", "load.offset_force"}
+
+
+def test_an_effect_that_is_on_is_part_of_the_model_and_no_candidate(bench, recorded) -> None:
+    on = bench.with_values({"effects.sensor.drift.rate_rad_per_min": 0.01})
+    ids = {c.id for c in candidates_of(on, "joint", natural_scales(on, "joint", recorded(bench, bench)))}
+    assert "sensor.drift" not in ids
+
+
+def test_a_rig_states_its_own_range(bench, recorded) -> None:
+    from dataclasses import replace
+
+    path = bench.full_path("effects.command.delay.delay_s")
+    entries = {**bench.entries, path: replace(bench.entries[path], range=(0.0, 0.5))}
+    rig = replace(bench, entries=entries)
+    found = candidates_of(rig, "joint", natural_scales(bench, "joint", recorded(bench, bench)))
+    delay = next(c for c in found if c.id == "command.delay")
+    assert (delay.free[0].lower, delay.free[0].upper) == (0.0, 0.5)
+
+
+def test_starts_lie_in_the_ranges_and_reach_the_records(bench, recorded) -> None:
+    for candidate in candidates_of(bench, "joint", natural_scales(bench, "joint", recorded(bench, bench))):
+        parameters = ParameterSet(bench, candidate.free)
+        for start in candidate.starts:
+            unit = parameters.unit(start)
+            assert parameters.values(unit) == pytest.approx(start)
+
+
+def test_every_effect_says_how_far_it_is_searched() -> None:
+    fields = {*Scales.__dataclass_fields__, "damping", "load_damping", "load_stiffness", "drift_per_min"}
+    for effect in EFFECTS.values():
+        assert set(effect.search) == {p.name for p in effect.parameters}, effect.id
+        for search in effect.search.values():
+            assert search.of in fields
+            assert all(search.lowest <= start <= search.largest for start in search.starts)
+
+
+def test_scales_follow_closed_forms(bench, recorded) -> None:
+    scales = natural_scales(bench, "joint", recorded(bench, bench))
+    # 0.7 * 0.67 mm^2 * sqrt(2 * 8 MPa / 870) through the fully opened valve at half of the supply
+    flow = 0.7 * 0.67e-6 * math.sqrt(2.0 * 8e6 / 870.0)
+    assert scales.conductance * 15.8e6 == pytest.approx(flow, rel=1e-3)
+    assert scales.force == pytest.approx(800e-6 * 15.8e6, rel=1e-9)
+    assert scales.resistance * scales.conductance == pytest.approx(1.0)

@@ -1,0 +1,81 @@
+"""Verdicts and probabilities from judged hypotheses."""
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.diagnosis.candidates import candidates_of
+from hydrolek_drake.diagnosis.conclusion import conclude
+from hydrolek_drake.diagnosis.evidence import Judged, dispersion, probability_of, with_probabilities
+from hydrolek_drake.diagnosis.workbench import Hypothesis
+from hydrolek_drake.identification.least_squares import Fit
+
+COUNTED = 4000
+
+
+def _judged(effects, over_noise: float, ahead: float | None = None) -> Judged:
+    unit = np.full(10 + sum(len(c.free) for c in effects), 0.5)
+    nothing = np.zeros((1, unit.size))
+    fit = Fit(unit, np.full(COUNTED, over_noise), 0.0 * unit, nothing, nothing, COUNTED, 1)
+    held = np.full(COUNTED, over_noise if ahead is None else ahead)
+    return Judged(Hypothesis(tuple(effects), {}, fit, 1e-3), held, COUNTED)
+
+
+@pytest.fixture(scope="module")
+def effect(bench, recorded):
+    from hydrolek_drake.identification.natural_scales import natural_scales
+
+    scales = natural_scales(bench, "joint", recorded(bench, bench))
+    return {c.id: c for c in candidates_of(bench, "joint", scales)}
+
+
+def test_a_model_at_the_noise_is_none(effect) -> None:
+    leak = effect["cylinder.cross_port_leakage"]
+    done = conclude(with_probabilities([_judged((), 1.0), _judged((leak,), 0.9999)]))
+    assert done.verdict == "none"
+
+
+def test_a_clear_effect_is_named_with_certainty(effect) -> None:
+    leak, droop = effect["cylinder.cross_port_leakage"], effect["supply.pressure_droop"]
+    judged = with_probabilities([_judged((), 5.0), _judged((droop,), 3.0), _judged((leak,), 1.0)])
+    done = conclude(judged)
+    assert done.verdict == "missing_physics"
+    assert [c.id for c in done.best.hypothesis.effects] == ["cylinder.cross_port_leakage"]
+    assert done.probability[leak.size_path] > 0.999
+    assert done.groups == ()
+
+
+def test_two_effects_that_do_equally_well_are_a_group(effect) -> None:
+    gap, play = effect["linkage.backlash"], effect["sensor.hysteresis"]
+    done = conclude(with_probabilities([_judged((), 4.0), _judged((gap,), 1.0), _judged((play,), 1.0)]))
+    assert done.verdict == "ambiguous"
+    assert done.groups == (("linkage.backlash", "sensor.hysteresis"),)
+    assert done.probability[gap.size_path] == pytest.approx(0.5, abs=0.01)
+
+
+def test_what_no_effect_explains_is_unlisted(effect) -> None:
+    leak = effect["cylinder.cross_port_leakage"]
+    assert (
+        conclude(with_probabilities([_judged((), 9.0), _judged((leak,), 4.0)])).verdict == "unlisted_physics"
+    )
+
+
+def test_probabilities_sum_to_one_and_follow_the_likelihood(effect) -> None:
+    leak = effect["cylinder.cross_port_leakage"]
+    judged = with_probabilities([_judged((), 1.002), _judged((leak,), 1.0)])
+    assert sum(j.probability for j in judged) == pytest.approx(1.0)
+    by = {len(j.hypothesis.effects): j for j in judged}
+    odds = by[1].probability / by[0].probability
+    assert odds == pytest.approx(np.exp(by[1].support - by[0].support), rel=1e-9)
+    assert probability_of(leak.size_path, judged) == by[1].probability
+
+
+def test_a_systematic_rest_flattens_the_likelihood(effect) -> None:
+    assert dispersion(_judged((), 1.0)) == 1.0
+    tau = dispersion(_judged((), 1.1))
+    assert tau == pytest.approx((1.1**2 - 1.015**2) * COUNTED / 10, rel=1e-9)
+
+
+def test_one_more_effect_must_pay_for_itself(effect) -> None:
+    leak, drift = effect["cylinder.cross_port_leakage"], effect["sensor.drift"]
+    judged = with_probabilities([_judged((leak,), 1.0), _judged((leak, drift), 0.9995)])
+    assert len(judged[0].hypothesis.effects) == 1
