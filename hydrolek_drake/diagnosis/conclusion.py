@@ -22,6 +22,10 @@ EXPLAINED_AHEAD = 1.5
 """The same on held-out data, where the fitted parameters' own uncertainty adds to the noise."""
 
 
+MATERIAL = 0.5
+"""Known effects are named beside physics in no list if they take this share of the squared error at least."""
+
+
 @dataclass(frozen=True)
 class Conclusion:
     """What the data say.
@@ -44,7 +48,7 @@ def conclude(judged: Sequence[Judged]) -> Conclusion:
     best = judged[0]
     paths = {path for j in judged for path in j.hypothesis.ids}
     probability = {path: probability_of(path, judged) for path in paths}
-    explained = best.hypothesis.fit.over_noise <= EXPLAINED and best.over_noise <= EXPLAINED_AHEAD
+    explained = _explains(best)
     if not explained:
         return Conclusion("unlisted_physics", best, probability, ())
     groups = _groups(best, judged)
@@ -52,6 +56,10 @@ def conclude(judged: Sequence[Judged]) -> Conclusion:
         return Conclusion("none" if best.probability >= SURE else "ambiguous", best, probability, groups)
     verdict = "missing_physics" if best.probability >= SURE or not groups else "ambiguous"
     return Conclusion(verdict, best, probability, groups)
+
+
+def _explains(judged: Judged) -> bool:
+    return judged.hypothesis.fit.over_noise <= EXPLAINED and judged.over_noise <= EXPLAINED_AHEAD
 
 
 def _groups(best: Judged, judged: Sequence[Judged]) -> tuple[tuple[str, ...], ...]:

@@ -52,7 +52,7 @@ class Diagnosis:
         held_out: data that nothing was fitted to.
         locations: where the mismatch is.
         intervals: full path -> fitted value of the best model.
-        law: for physics in no list, the law found for it.
+        law: for physics in no list, the law found for it, if one was.
         proposal: the experiment that would decide, if one is needed.
         seconds: that it took.
     """
@@ -74,8 +74,8 @@ class Diagnosis:
 
     @property
     def best(self) -> Judged:
-        """The most probable hypothesis."""
-        return self.judged[0]
+        """The hypothesis that is named."""
+        return self.conclusion.best if self.conclusion else self.judged[0]
 
     @property
     def baseline(self) -> Judged:
@@ -147,12 +147,10 @@ def diagnose(
         conclusion = replace(conclusion, verdict="ambiguous")
     if conclusion.verdict == "unlisted_physics":
         say("searching a law for physics that is in no list")
-        law = find_law(bench, found.baseline, held_out, scales[joints[0]])
-    places = (
-        (locate_law(bench, found.baseline, law),)
-        if law
-        else locate(bench, best, found.baseline, bench.training)
-    )
+        law = find_law(bench, conclusion.best, held_out, scales[joints[0]])
+    places = locate(bench, best, found.baseline, bench.training)
+    if law is not None:
+        places = (*places, locate_law(bench, best, found.baseline, law))
     return Diagnosis(
         rig=rig,
         verdict=conclusion.verdict,

@@ -129,7 +129,7 @@ def locate(
     return tuple(sorted(located, key=lambda place: -place.share))
 
 
-def locate_law(bench: Workbench, baseline: Hypothesis, law: FoundLaw) -> Location:
+def locate_law(bench: Workbench, best: Hypothesis, baseline: Hypothesis, law: FoundLaw) -> Location:
     """Where physics in no list acts: the stage of its law, and when the law makes a difference."""
     experiment = bench.training[0]
     signals = experiment.simulate(
@@ -137,7 +137,7 @@ def locate_law(bench: Workbench, baseline: Hypothesis, law: FoundLaw) -> Locatio
     ).signals
     holds = conditions_for(bench.rig, experiment, signals)
     total = max(baseline.fit.chi_squared - baseline.fit.counted, np.finfo(float).tiny)
-    share = (baseline.fit.chi_squared - law.fit.chi_squared) / total
+    share = (best.fit.chi_squared - law.fit.chi_squared) / total
     condition = told_condition(experiment.time, law.difference, holds)
     if law.law.term is None:
         condition = f"periodic, {law.values[2]:.3g} Hz; {condition}"

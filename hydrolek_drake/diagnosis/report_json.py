@@ -47,9 +47,7 @@ def effects_json(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """What was added to the model, the most probable first."""
     if diagnosis.conclusion is None:
         return []
-    if diagnosis.law is not None:  # known effects that do not explain the data are not named beside it
-        return [_law_json(diagnosis, diagnosis.law)]
-    told = []
+    told: list[dict[str, Any]] = []
     for candidate in diagnosis.best.hypothesis.effects:
         parameters = {}
         for parameter in candidate.effect.parameters:
@@ -64,6 +62,8 @@ def effects_json(diagnosis: Diagnosis) -> list[dict[str, Any]]:
                 "sentence": effect_sentence(candidate, diagnosis),
             }
         )
+    if diagnosis.law is not None:
+        told.append(_law_json(diagnosis, diagnosis.law))
     return sorted(told, key=lambda entry: -entry["probability"])
 
 
@@ -74,7 +74,7 @@ def _law_json(diagnosis: Diagnosis, law: FoundLaw) -> dict[str, Any]:
         parameters["frequency"] = {"value": float(law.values[2]), "unit": "Hz"}
     return {
         "id": f"unlisted.{known.stage}",
-        "joint": diagnosis.locations[0].joint,
+        "joint": diagnosis.locations[-1].joint,
         "probability": round(_law_probability(diagnosis, law), 4),
         "parameters": parameters,
         "holdout_over_noise": law.held_out_over_noise,

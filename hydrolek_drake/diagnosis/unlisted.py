@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.evidence import Judged
 from hydrolek_drake.diagnosis.laws import TERMS, Input, Term, inputs_of, probe_rows, variables_of
 from hydrolek_drake.diagnosis.score import Across
 from hydrolek_drake.diagnosis.workbench import SPREAD, Hypothesis, Workbench
@@ -36,6 +37,9 @@ TRIED = 1e-3
 
 FITTED = 8
 """So many laws are fitted."""
+
+BETTER = 0.8
+"""A law must take the held-out error below this share of what it was, or it is no law of this machine."""
 
 STEPS = 15
 PHASES = 12
@@ -115,7 +119,7 @@ class LawProblem(Problem):
         pressure: float,
     ) -> None:
         """Prepare; the terms are taken along given trajectories."""
-        prior = np.full(len(parameters), SPREAD)
+        prior = np.where([".effects." in path for path in parameters.paths], np.inf, SPREAD)
         super().__init__(parameters, experiments, step, prior=prior)
         self.law = law
         self._nominal = len(parameters)
@@ -179,16 +183,17 @@ def _term_on_grid(
 
 
 def find_law(
-    bench: Workbench, left: Hypothesis, held_out: Sequence[Experiment], scales: Scales
+    bench: Workbench, named: Judged, held_out: Sequence[Experiment], scales: Scales
 ) -> FoundLaw | None:
-    """The law that explains best what a fitted model leaves, or None if none gains anything.
+    """The law that explains best what a fitted model leaves, or None if none predicts held-out data better.
 
     Args:
         bench: data and fits.
-        left: the nominal model, fitted.
+        named: the model that leaves it.
         held_out: what decides.
         scales: natural scales of the joint.
     """
+    left = named.hypothesis
     joint = bench.training[0].joint
     pressure = bench.rig.value("supply.pressure")
     limit = bench.rig.value(f"joints.{joint}.command.limit")
@@ -198,7 +203,8 @@ def find_law(
         return None
     chosen = _one_of_each(laws)
     fitted = bench.side_by_side(lambda law: _fitted(bench, left, law, held_out, pressure), chosen)
-    return min(fitted, key=lambda found: found.held_out_over_noise)
+    best = min(fitted, key=lambda found: found.held_out_over_noise)
+    return best if best.held_out_over_noise < BETTER * named.over_noise else None
 
 
 def _one_of_each(laws: Sequence[Law]) -> list[Law]:

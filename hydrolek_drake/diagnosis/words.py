@@ -83,10 +83,16 @@ def headline(diagnosis: Diagnosis) -> str:
             f"Something is missing, but these data cannot tell {group} apart: the most probable of them takes "
             f"the error on held-out data from {before} to {after} the noise."
         )
-    told = (
-        f"Physics is missing that is in no list: the best of the known effects leaves {after} the noise on "
-        f"held-out data (nominal model: {before})"
-    )
+    if best.hypothesis.effects:
+        told = (
+            f"Missing from the model: {names} ({stages}), and physics that is in no list: with the former the error on "
+            f"held-out data falls from {before} to {after} the noise"
+        )
+    else:
+        told = (
+            f"Physics is missing that is in no list: no known effect takes a material part of the error on held-out "
+            f"data, {before} the noise"
+        )
     if diagnosis.law is None:
         return f"{told}."
     return f"{told}. At the {diagnosis.law.law.input.stage}, {law_sentence(diagnosis.law)}"

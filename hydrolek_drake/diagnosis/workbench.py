@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiment import Experiment, faithful
 from hydrolek_drake.identification.least_squares import Fit, fit_from
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.identification.problem import Problem
@@ -190,7 +190,7 @@ class Workbench:
                 channels.append(
                     replace(
                         channel,
-                        noise=level if 0.0 < level < channel.noise else channel.noise,
+                        noise=min(channel.noise, max(level, faithful(channel.measured))),
                         model_error=np.nan_to_num(error),
                     )
                 )

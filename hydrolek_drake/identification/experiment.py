@@ -14,6 +14,10 @@ from hydrolek_drake.rollout.rollout import Outcome, Signals, rest_state, roll_ou
 REST_SAMPLES = 25
 """At most so many leading samples are averaged for the start, if the joint stands still that long."""
 
+FAITHFUL = 3e-4
+"""A model follows a machine to this share of a signal's range at best, however fine the sensor: a noise below it
+would only give weight to what no model holds (a tenth of the best published fits of real machines)."""
+
 CONSTANT = 1e-12
 """A command that varies by less than this fraction of its size says nothing about the machine."""
 
@@ -201,14 +205,13 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
 
 def _noise(measured: np.ndarray, rig: Rig, joint: str, name: str) -> float:
     """Noise of a channel from the recording itself, or from the rig if the recording shows none."""
-    level = noise_level(measured)
-    if level > 0.0:
-        return level
-    stated = rig.value(f"joints.{joint}.sensor.{name}")
-    if stated > 0.0:
-        return stated
-    span = float(np.nanmax(measured) - np.nanmin(measured))
-    return max(1e-6 * span, np.finfo(float).tiny)  # noise-free simulation: weights that are merely equal
+    level = noise_level(measured) or rig.value(f"joints.{joint}.sensor.{name}")
+    return max(level, faithful(measured), np.finfo(float).tiny)
+
+
+def faithful(measured: np.ndarray) -> float:
+    """Smallest deviation that counts for a signal, see `FAITHFUL`."""
+    return FAITHFUL * float(np.nanmax(measured) - np.nanmin(measured))
 
 
 def _resting_position(position: np.ndarray, command: np.ndarray) -> float:

@@ -15,7 +15,7 @@ Far above rounding (rollouts repeat to 1e-12), and below the 1e-4 over which the
 sticks and slips already bend; a step of 1e-4 left fits 10 % above the noise.
 """
 
-DIVERGED = 1e3
+DIVERGED = 1e7
 """Residual, in units of noise, where a diverged simulation has no value: worse than any that ends."""
 
 
