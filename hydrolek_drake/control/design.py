@@ -185,14 +185,14 @@ def forward_path(gains: PipGains, model: TransferFunction) -> tuple[tuple[float,
         model: in the inner loop.
     """
     a = np.array([1.0, *model.a])
-    den: Array = np.polynomial.polynomial.polyadd(
+    den = np.polynomial.polynomial.polyadd(
         np.polynomial.polynomial.polymul([1.0, *gains.g], a),
         np.polynomial.polynomial.polymul(gains.f, [0.0, *model.b]),
     )
     return tuple(map(float, gains.k_i * a)), _trimmed(den)
 
 
-def _trimmed(coefficients: Sequence[float] | Array) -> tuple[float, ...]:
+def _trimmed(coefficients: Sequence[float] | NDArray[np.floating]) -> tuple[float, ...]:
     values = list(map(float, coefficients))
     while len(values) > 1 and values[-1] == 0.0:
         values.pop()
