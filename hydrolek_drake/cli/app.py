@@ -38,6 +38,9 @@ COMMANDS: dict[str, CommandEntry] = {
         "hydrolek_drake.cli.rigs", "rigs", "list the built-in rigs, or one rig's parameters"
     ),
     "show": CommandEntry("hydrolek_drake.cli.show", "show", "show a saved run of the arms in the browser"),
+    "control": CommandEntry(
+        "hydrolek_drake.cli.control", "control", "compare controllers (bench), or design one (design)"
+    ),
     "benchmark": CommandEntry(
         "hydrolek_drake.cli.benchmark", "benchmark", "speed and exactness of the executions"
     ),

@@ -22,6 +22,11 @@ def _data() -> dict[str, Any]:
     return {key: item["value"] for key, item in raw.items()}
 
 
+def ends_left_out() -> float:
+    """Share of the range at either end where run-up and stop spoil a measured rate."""
+    return float(_data()["ends_left_out"])
+
+
 @dataclass(frozen=True)
 class StepTests:
     """Result of open-loop step tests.
@@ -60,29 +65,37 @@ def one_joint(rig: Rig, joint: str) -> np.ndarray:
     return record
 
 
+def run_step(record: np.ndarray, voltage_V: float, longest_step: float) -> tuple[Array, Array]:
+    """Times [s] and angles [deg] of one step from rest, near the end of the range that it leads away from."""
+    data = _data()
+    low, high = joint_range_deg(record)
+    joint = record.copy()
+    joint["load"]["initial_position"] = np.radians(
+        low + data["from_end"] if voltage_V > 0.0 else high - data["from_end"]
+    )
+    neutral = float(record["command"]["neutral"][0])
+    times = np.arange(0.0, data["duration"], data["row"])
+    outcome = roll_out(
+        joint,
+        np.array([-1.0, 0.0]),
+        np.array([neutral, neutral + voltage_V]),
+        times,
+        longest_step=longest_step,
+    )
+    return times, np.degrees(outcome.signals.reading)
+
+
 def step_tests(record: np.ndarray, longest_step: float) -> StepTests:
     """Steps of both signs from rest, each from the end of the range that it leads away from."""
     data = _data()
     low, high = joint_range_deg(record)
     middle, half = 0.5 * (low + high), 0.5 * data["middle_share"] * (high - low)
-    times = np.arange(0.0, data["duration"], data["row"])
-    neutral = float(record["command"]["neutral"][0])
     voltages = np.array([*(-v for v in reversed(data["voltages"])), *data["voltages"]])
     rates, dead = np.zeros(len(voltages)), np.full(len(voltages), np.nan)
     for i, voltage in enumerate(voltages):
-        joint = record.copy()
-        start = low + data["from_end"] if voltage > 0.0 else high - data["from_end"]
-        joint["load"]["initial_position"] = np.radians(start)
-        outcome = roll_out(
-            joint,
-            np.array([-1.0, 0.0]),
-            np.array([neutral, neutral + voltage]),
-            times,
-            longest_step=longest_step,
-        )
-        angle = np.degrees(outcome.signals.reading)
+        times, angle = run_step(record, float(voltage), longest_step)
         moved = (angle - angle[0]) * np.sign(voltage)
-        if outcome.diverged is not None or not moved[-1] > data["moving"]:
+        if not moved[-1] > data["moving"]:
             continue
         dead[i] = times[int(np.argmax(moved > data["moving"]))]
         inside = (np.abs(angle - middle) <= half) & (times > data["settle"])
