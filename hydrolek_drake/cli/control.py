@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hydrolek_drake.cli.control_study import judge, tune
 from hydrolek_drake.cli.settings import SetOption, parse_settings
 from hydrolek_drake.errors import InputError
 
@@ -18,6 +19,10 @@ control = typer.Typer(
     no_args_is_help=True,
     help="Compare controllers, or design one.",
 )
+
+
+control.command()(judge)
+control.command()(tune)
 
 
 class Plant(str, Enum):
@@ -63,10 +68,6 @@ def bench(
             raise InputError(f"--sequence {name}: choose {', '.join(NAMES)}")
     if plant is Plant.sdp and (set_ or rig != "hydrolek"):
         raise InputError("--plant sdp: the SDP models read no rig; --set and --rig belong to --plant full")
-    if plant is Plant.sdp and all(CONTROLLERS[name][2] == "map" for name in names):
-        raise InputError(
-            f"--plant sdp: {', '.join(names)} needs a rate map measured on a rig; use --plant full"
-        )
     machine = load_rig(rig, parse_settings(set_)) if plant is Plant.full else None
     if out is not None:
         prepare_folder(out)
@@ -82,11 +83,13 @@ def bench(
             done = bench_on_models(names, sequences, progress=tell)
         else:
             done = bench_on_machine(machine, names, sequences, seed=seed, progress=tell)
+    for said in done.failed:
+        output.print(f"failed: {said}", markup=False, soft_wrap=True)
     if not done.trials:
         raise KeyboardInterrupt
     output.print(sentence(done), markup=False, soft_wrap=True)
     output.print()
-    output.print(_table(*ranking_rows(done)))
+    output.print(text_table(*ranking_rows(done)))
     if out is not None:
         from hydrolek_drake.control.bench_report import write_bench
 
@@ -158,7 +161,8 @@ def _complex(text: str) -> complex:
         raise InputError(f"--pole {text}: write a number such as 0.7 or 0.7+0.05j") from None
 
 
-def _table(head: list[str], body: list[list[str]]) -> "Table":
+def text_table(head: list[str], body: list[list[str]]) -> "Table":
+    """Rows of text as a table of the terminal."""
     from rich.markup import escape
     from rich.table import Table
 

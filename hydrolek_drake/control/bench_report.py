@@ -90,6 +90,7 @@ def page(bench: Bench) -> str:
         f"<p class='sentence'>{html.escape(sentence(bench))}</p>",
         f"<p class='other'>Variances are those of control samples, 0.05 s apart.{brackets}"
         f"{' The comparison was interrupted: what is missing was not run.' if bench.interrupted else ''}</p>",
+        *(f"<p class='other'>failed: {html.escape(said)}</p>" for said in bench.failed),
         "<h2>Objectives of chapter 6, step</h2>",
         _table(*ranking_rows(bench)),
     ]
@@ -123,6 +124,7 @@ def as_json(bench: Bench) -> dict[str, Any]:
         "version": __version__,
         "plant": bench.plant,
         "interrupted": bench.interrupted,
+        "failed": bench.failed,
         "sentence": sentence(bench),
         "trials": [
             {

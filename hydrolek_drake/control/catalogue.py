@@ -19,7 +19,7 @@ from hydrolek_drake.control.pi import PiLaw
 from hydrolek_drake.control.pid import PidLaw
 from hydrolek_drake.control.pip import PipLaw
 from hydrolek_drake.control.rate_control import RateLaw
-from hydrolek_drake.control.rate_map import RateMap, rig_rate_map
+from hydrolek_drake.control.rate_map import RateMap, map_from_model, rig_rate_map
 from hydrolek_drake.control.rig_model import one_joint, rig_model
 from hydrolek_drake.control.scaled_input import DirectInput, ScaledInput
 from hydrolek_drake.control.sdp_model import SdpModel, thesis_model
@@ -46,7 +46,7 @@ class JointSetting:
         own_model: whether the thesis has no gains for this joint, so that they are designed from the model.
         thesis_form: as the thesis simulated: no anti-windup in PI and PIP with scaled input, no limit but
             10 V behind the inverse dead-zone.
-        rates: measured rate map; None where only the model is known.
+        rates: measured rate map; None to take the model's law for it.
     """
 
     model: SdpModel
@@ -159,11 +159,7 @@ def _forward(tuning: str) -> Callable[[JointSetting], ControlLaw]:
 
 
 def _feedforward(s: JointSetting) -> ControlLaw:
-    if s.rates is None:
-        raise InputError(
-            f"feedforward control of {s.model.name} needs a measured rate map, not an SDP model alone"
-        )
-    return FeedforwardLaw(s.rates, sample_s(), voltage_limit_V(), tuning())
+    return FeedforwardLaw(s.rates or map_from_model(s.model), sample_s(), voltage_limit_V(), tuning())
 
 
 def _fuzzy_single(s: JointSetting) -> ControlLaw:
@@ -174,22 +170,22 @@ def _fuzzy_double(s: JointSetting) -> ControlLaw:
     return TwoInputFuzzyLaw(_inverse(s))
 
 
-CONTROLLERS: dict[str, tuple[str, Callable[[JointSetting], ControlLaw], str]] = {
-    "pi": ("PI, scaled input", _pi, "model"),
-    "pid": ("PID, scaled input", _pid, "model"),
-    "pip_no_scaling": ("PIP, no scaling", _pip("pip_no_scaling"), "model"),
-    "pip_scaled": ("PIP, scaled input", _pip("pip_scaled"), "model"),
-    "pip_idz_a": ("PIP IDZ a", _pip("pip_idz.a"), "model"),
-    "pip_idz_b": ("PIP IDZ b", _pip("pip_idz.b"), "model"),
-    "pip_idz_c": ("PIP IDZ c", _pip("pip_idz.c"), "model"),
-    "pip_forward_a": ("PIP IDZ FP a", _forward("a"), "model"),
-    "pip_forward_b": ("PIP IDZ FP b", _forward("b"), "model"),
-    "pip_forward_c": ("PIP IDZ FP c", _forward("c"), "model"),
-    "fuzzy_single": ("fuzzy, error", _fuzzy_single, "model"),
-    "fuzzy_double": ("fuzzy, error and change", _fuzzy_double, "model"),
-    "feedforward": ("feedforward, learning", _feedforward, "map"),
+CONTROLLERS: dict[str, tuple[str, Callable[[JointSetting], ControlLaw]]] = {
+    "pi": ("PI, scaled input", _pi),
+    "pid": ("PID, scaled input", _pid),
+    "pip_no_scaling": ("PIP, no scaling", _pip("pip_no_scaling")),
+    "pip_scaled": ("PIP, scaled input", _pip("pip_scaled")),
+    "pip_idz_a": ("PIP IDZ a", _pip("pip_idz.a")),
+    "pip_idz_b": ("PIP IDZ b", _pip("pip_idz.b")),
+    "pip_idz_c": ("PIP IDZ c", _pip("pip_idz.c")),
+    "pip_forward_a": ("PIP IDZ FP a", _forward("a")),
+    "pip_forward_b": ("PIP IDZ FP b", _forward("b")),
+    "pip_forward_c": ("PIP IDZ FP c", _forward("c")),
+    "fuzzy_single": ("fuzzy, error", _fuzzy_single),
+    "fuzzy_double": ("fuzzy, error and change", _fuzzy_double),
+    "feedforward": ("feedforward, learning", _feedforward),
 }
-"""Name -> how tables call it, what builds it, and whether an SDP model or a measured rate map is needed."""
+"""Name -> how tables call it, and what builds it."""
 
 
 def build_law(name: str, setting: JointSetting, *, noisy: bool) -> GuardedLaw:

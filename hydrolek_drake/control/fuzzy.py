@@ -12,7 +12,7 @@ import yaml
 from hydrolek_drake.control.law import Array, InputElement
 
 SETS = ("NB", "N", "Z", "P", "PB")
-_POINTS = 2001  # of the output's universe in the centroid
+_POINTS = 1041  # of the output's universe in the centroid
 
 
 @cache

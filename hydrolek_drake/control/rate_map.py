@@ -6,8 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.control.rig_model import StepTests, ends_left_out, joint_range_deg, run_step, step_tests
-from hydrolek_drake.control.sdp_model import SdpModel
+from hydrolek_drake.control.sdp_model import SdpModel, thesis_data
 from hydrolek_drake.errors import InputError
+
+MODEL_POINTS = 40
+"""Points of an SDP model's law in its rate map."""
 
 
 @dataclass(frozen=True)
@@ -100,6 +103,19 @@ def map_from_tests(
                 volts.append(float(voltage))
                 rates.append(float(rate))
         sides.append(Direction(tuple(volts), tuple(rates), tuple(map(float, shape))))
+    delay = model.delay_samples * model.sample_s
+    return RateMap(sides[0], sides[1], delay, model.lower_deg, model.upper_deg)
+
+
+def map_from_model(model: SdpModel) -> RateMap:
+    """Rate map of an SDP model: its law from the dead-zone's edges to nearly saturation, alike at all angles."""
+    nearly = float(thesis_data()["inverse"]["nearly_saturated"]["value"])
+    sides = []
+    for sign, edge, fastest in zip((-1.0, 1.0), model.dead_zone_V, model.saturation_deg_per_s, strict=True):
+        end = abs(model.voltage_at(nearly * fastest))
+        volts = np.linspace(abs(edge), end, MODEL_POINTS)[1:]
+        rates = np.abs(model.rate(sign * volts))
+        sides.append(Direction((abs(edge), *map(float, volts)), (0.0, *map(float, rates)), (1.0,)))
     delay = model.delay_samples * model.sample_s
     return RateMap(sides[0], sides[1], delay, model.lower_deg, model.upper_deg)
 

@@ -120,15 +120,15 @@ def _inferred(fired, outputs):
     xs = np.linspace(-1.3, 1.3, 5201)
     shape = np.zeros(len(xs))
     for name, strength in fired:
-        shape = np.maximum(shape, [min(strength, _trapezoid(x, outputs[name])) for x in xs])
+        shape = np.maximum(shape, np.minimum(strength, np.interp(xs, outputs[name], [0.0, 1.0, 1.0, 0.0])))
     return float(np.sum(xs * shape) / np.sum(shape))
 
 
 def _fuzzy(d, y, joint, double):
     data, u = fuzzy_data(), []
     for i in range(len(d)):
-        e = float(np.clip(d[i] - y[i], -8.0, 8.0))
-        de = float(np.clip((d[i] - y[i]) - (d[i - 1] - y[i - 1]), -0.8, 0.8)) if i else 0.0
+        e = float(np.clip(d[i] - y[i], -12.0, 12.0))
+        de = float(np.clip((d[i] - y[i]) - (d[i - 1] - y[i - 1]), -1.2, 1.2)) if i else 0.0
         fired = []
         for row in ("NB", "N", "Z", "P", "PB"):
             grade = _trapezoid(e, data["error"][row])
@@ -173,7 +173,9 @@ def _run(laws, d, y):
     return [log.FindLog(simulator.get_context()).data()[:, 1:].T for log in logs]
 
 
-@pytest.mark.parametrize("name", CONTROLLERS)
+@pytest.mark.parametrize(
+    "name", [name for name in CONTROLLERS if name != "feedforward"]
+)  # test_feedforward.py
 def test_system_and_difference_equation_agree_at_every_sample(name):
     rng = np.random.default_rng(5)
     joints = ("j2", "j4")
@@ -204,12 +206,13 @@ def test_no_voltage_jumps_when_control_begins_at_the_set_point():
                 assert output == pytest.approx(0.0, abs=1e-9)
 
 
-def test_controller_and_plant_as_one_diagram_follow_the_plain_loop():
+@pytest.mark.parametrize("name", ("pip_idz_c", "fuzzy_double", "feedforward"))
+def test_controller_and_plant_as_one_diagram_follow_the_plain_loop(name):
     from hydrolek_drake.control.closed_loop import loop_on_model
 
     joints = ("j1", "j2", "j3", "j4")
     settings = [thesis_setting(joint) for joint in joints]
-    laws = [build_law("pip_idz_c", setting, noisy=False) for setting in settings]
+    laws = [build_law(name, setting, noisy=False) for setting in settings]
     builder = DiagramBuilder()
     controller = builder.AddSystem(Controller(laws, SAMPLE))
     plant = builder.AddSystem(SdpJoints([setting.model for setting in settings]))
