@@ -31,6 +31,7 @@ class FeedforwardTuning:
         start_beyond_deg: error at which it opens again.
         overdrive: factor on the saturation voltage while the saturation rate is wanted, so that a joint whose
             dead-zone has grown still reaches it.
+        opening_V: how much further the valve may open in a sample once beyond its dead-zone; closing is free.
     """
 
     gain: float
@@ -43,6 +44,7 @@ class FeedforwardTuning:
     stop_within_deg: float
     start_beyond_deg: float
     overdrive: float
+    opening_V: float
 
 
 @cache
@@ -157,7 +159,8 @@ class FeedforwardLaw:
             size = voltage_for(side, abs(wanted) / scale) + float(new[_EDGE[sign]])
             if abs(wanted) / scale >= side.fastest:
                 size = max(size, self.tuning.overdrive * side.voltages[-1])
-            voltage = sign * min(size, self.limit_V)
+            before = max(sign * float(voltages[0]), side.edge_V + float(new[_EDGE[sign]]))
+            voltage = sign * min(size, before + self.tuning.opening_V, self.limit_V)
         new[_RUNNING] = 1.0
         new[_ANGLE], new[_SET_POINT], new[_SLOPE] = angle, set_point_deg, slope
         new[_VOLTAGES : self.size - window] = np.concatenate([[voltage], voltages[:-1]])

@@ -98,8 +98,9 @@ def map_from_tests(
         edge = v[first] - r[first] / slope if slope > 0.0 else v[first]
         edge = min(max(edge, v[first - 1] if first else 0.0), v[first])
         volts, rates = [float(edge)], [0.0]
+        enough = float(thesis_data()["inverse"]["nearly_saturated"]["value"]) * float(r.max())
         for voltage, rate in zip(v[first:], np.maximum.accumulate(r[first:]), strict=True):
-            if voltage > volts[-1] and rate > rates[-1]:
+            if voltage > volts[-1] and rate > rates[-1] and rates[-1] < enough:
                 volts.append(float(voltage))
                 rates.append(float(rate))
         sides.append(Direction(tuple(volts), tuple(rates), tuple(map(float, shape))))

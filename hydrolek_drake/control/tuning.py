@@ -12,7 +12,7 @@ from hydrolek_drake.control.judging import (
     RISE_SHARE,
     Case,
     Verdict,
-    judge_all,
+    judge,
 )
 from hydrolek_drake.control.rate_map import RateMap
 from hydrolek_drake.control.thesis_gains import sample_s, voltage_limit_V
@@ -60,7 +60,14 @@ def tune(
         def law_for(joint: str) -> FeedforwardLaw:
             return FeedforwardLaw(maps[joint], sample_s(), voltage_limit_V(), candidate)
 
-        return cost(judge_all(law_for, cases, int(search["seed"])))
+        seed = int(search["seed"])
+        return cost(
+            [
+                # what can only be learned is judged after learning
+                judge(law_for(case.joint), case, seed + i, learned=case.condition.dead_zone != 1.0)
+                for i, case in enumerate(cases)
+            ]
+        )
 
     best, least = start, evaluate(start)
     width = search["first_width"]

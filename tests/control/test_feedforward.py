@@ -109,7 +109,8 @@ def test_the_difference_equation_written_out_plainly():
             size = float(np.interp(want, side[s].rates, side[s].voltages)) + edge[s]
             if want >= side[s].fastest:
                 size = max(size, tune.overdrive * side[s].voltages[-1])
-            v = s * min(size, 10.0)
+            opened = max(s * sent[-1], side[s].voltages[0] + edge[s])
+            v = s * min(size, opened + tune.opening_V, 10.0)
         state, _, voltage = law.step(state, wanted, measured)
         assert voltage == pytest.approx(v, abs=1e-9), k
         sent = [*sent[1:], voltage]
