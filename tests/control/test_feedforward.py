@@ -57,7 +57,8 @@ def test_the_difference_equation_written_out_plainly():
     law, model = _law("j2")
     t, tune = 0.05, law.tuning
     delay = (model.delay_samples * model.sample_s + tune.extra_delay_s) / t
-    whole, rest = int(delay), delay - int(delay)
+    whole = int(delay + 1e-9)
+    rest = delay - whole
     side = {s: law.map.side(s) for s in (-1.0, 1.0)}
     share, edge = {-1.0: 1.0, 1.0: 1.0}, {-1.0: 0.0, 1.0: 0.0}
     sent, estimates, standing = [0.0] * 12, [0.0] * 3, False
