@@ -1,8 +1,10 @@
 """What a comparison leaves in its folder: page with tables and plots, pictures, numbers."""
 
+import base64
 import html
 import json
 import os
+from collections.abc import Mapping
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -37,10 +39,14 @@ def write_bench(bench: Bench, folder: Path) -> Path:
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for sequence in _sequences(bench):
-            _write(folder / f"{sequence}.png", plots_png([panels(bench, sequence)], _title(bench), sequence))
+        pictures = {
+            sequence: plots_png([panels(bench, sequence)], _title(bench), sequence)
+            for sequence in _sequences(bench)
+        }
+        for sequence, picture in pictures.items():
+            _write(folder / f"{sequence}.png", picture)
         _write(folder / "bench.json", json.dumps(as_json(bench), indent=1).encode())
-        _write(folder / "bench.html", page(bench).encode())
+        _write(folder / "bench.html", page(bench, pictures).encode())
     except OSError as error:
         raise InputError(f"--out {folder}: cannot write there: {error.strerror or error}") from None
     return folder / "bench.html"
@@ -80,8 +86,11 @@ def _line(trial: Trial, values: Any, *, stepped: bool) -> Line:
     return Line(CONTROLLERS[trial.controller][0], trial.time_s, values, colour, stepped=stepped)
 
 
-def page(bench: Bench) -> str:
-    """One HTML file that needs no network: the sentence, the ranking, tables, plots."""
+def page(bench: Bench, pictures: Mapping[str, bytes]) -> str:
+    """One HTML file that needs no network: the sentence, the ranking, tables, plots.
+
+    The first sequence's plot can be zoomed; the others are pictures, which keeps the page small.
+    """
     title = _title(bench)
     brackets = " In brackets: what the thesis prints (appendix G, Table 6.9)." if bench.plant == "sdp" else ""
     parts = [
@@ -103,7 +112,11 @@ def page(bench: Bench) -> str:
                     _table(*rows(bench, sequence, measure)),
                 ]
         parts += ["<p class='other'>end effector</p>", _table(*tool_rows(bench, sequence))]
-        parts.append(plots_html([panels(bench, sequence)]))
+        if sequence == _sequences(bench)[0]:
+            parts.append(plots_html([panels(bench, sequence)]))
+        else:
+            data = base64.b64encode(pictures[sequence]).decode()
+            parts.append(f"<img alt='{sequence}' style='max-width:100%' src='data:image/png;base64,{data}'>")
     return "\n".join([*parts, "</body></html>"])
 
 
