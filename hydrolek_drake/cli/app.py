@@ -46,6 +46,9 @@ COMMANDS: dict[str, CommandEntry] = {
     ),
     "teleop": CommandEntry("hydrolek_drake.cli.teleop", "teleop", "the operator's console in the browser"),
     "show": CommandEntry("hydrolek_drake.cli.show", "show", "show a saved run of the arms in the browser"),
+    "control": CommandEntry(
+        "hydrolek_drake.cli.control", "control", "compare controllers (bench), or design one (design)"
+    ),
     "benchmark": CommandEntry(
         "hydrolek_drake.cli.benchmark", "benchmark", "speed and exactness of the executions"
     ),

@@ -1,0 +1,80 @@
+"""Set-point sequences of chapters 6 and 7: step, sine and grasp."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+import yaml
+
+from hydrolek_drake.control.law import Array
+from hydrolek_drake.errors import InputError
+
+NAMES = ("step", "sine", "grasp")
+
+
+@cache
+def sequence_data() -> dict[str, Any]:
+    """Content of `sequences.yaml`."""
+    return yaml.safe_load(files(__package__).joinpath("sequences.yaml").read_text(encoding="utf-8"))
+
+
+@dataclass(frozen=True)
+class SetPoints:
+    """A sequence for several joints.
+
+    Attributes:
+        name: step, sine or grasp.
+        joints: as asked for.
+        start_deg: where the joints rest at first, shape (joints,).
+        values_deg: one row per control sample, shape (n, joints).
+        first_step: rows during which the first step is answered; empty for the sine.
+    """
+
+    name: str
+    joints: tuple[str, ...]
+    start_deg: Array
+    values_deg: Array
+    first_step: slice
+
+
+def set_points(name: str, joints: Sequence[str], sample_s: float, *, machine: bool) -> SetPoints:
+    """A sequence by name.
+
+    Args:
+        name: of `NAMES`.
+        joints: "j1" ... "j5", or with the arm, "left_j1".
+        sample_s: control sample [s].
+        machine: the form for the full machine: shorter holds, and sines about a working posture.
+
+    Raises:
+        InputError: no such sequence or joint.
+    """
+    if name not in NAMES:
+        raise InputError(f"no sequence '{name}'; choose {', '.join(NAMES)}")
+    data = sequence_data()[name]
+
+    def rows(key: str) -> Array:
+        values = []
+        for joint in joints:
+            arm, _, number = joint.rpartition("_")
+            if number not in data[key]:
+                raise InputError(f"sequence {name} has no joint '{joint}'; choose {', '.join(data[key])}")
+            sign = -1.0 if arm == "left" and number in sequence_data()["mirrored"] else 1.0
+            values.append(sign * float(data[key][number]))
+        return np.array(values)
+
+    if name == "sine":
+        start = rows("from_machine" if machine else "from")
+        count = round(float(data["duration"]["value"]) / sample_s)
+        cycles = np.array([float(data["cycles"][joint.rpartition("_")[2]]) for joint in joints])
+        phase = 2.0 * np.pi * np.outer(np.arange(count) / count, cycles)
+        return SetPoints(name, tuple(joints), start, start + rows("amplitude") * np.sin(phase), slice(0, 0))
+    hold = data["hold_machine"] if machine and "hold_machine" in data else data["hold"]
+    count = round(float(hold["value"]) / sample_s)
+    start = rows("from")
+    first, second = (rows("to"), start) if name == "step" else (rows("before"), rows("target"))
+    values = np.vstack([np.tile(first, (count, 1)), np.tile(second, (count, 1))])
+    return SetPoints(name, tuple(joints), start, values, slice(0, count))
