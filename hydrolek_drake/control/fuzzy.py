@@ -1,0 +1,170 @@
+"""Fuzzy control with one and with two inputs, section 7.1, evaluated as a precomputed surface."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+import yaml
+
+from hydrolek_drake.control.law import Array, InputElement
+
+SETS = ("NB", "N", "Z", "P", "PB")
+_POINTS = 2001  # of the output's universe in the centroid
+
+
+@cache
+def fuzzy_data() -> dict[str, Any]:
+    """Content of `fuzzy.yaml`."""
+    return yaml.safe_load(files(__package__).joinpath("fuzzy.yaml").read_text(encoding="utf-8"))
+
+
+def membership(value: Array, corners: Sequence[float]) -> Array:
+    """Degree of membership of a trapezoid with given corners, 0 to 1; feet at infinity are open shoulders."""
+    a, b, c, d = corners
+    rising = np.ones_like(value) if np.isinf(b) else np.clip((value - a) / max(b - a, 1e-300), 0.0, 1.0)
+    falling = np.ones_like(value) if np.isinf(c) else np.clip((d - value) / max(d - c, 1e-300), 0.0, 1.0)
+    return np.minimum(rising, falling)
+
+
+def infer(strengths: Mapping[str, Array], outputs: Mapping[str, Sequence[float]]) -> Array:
+    """Mamdani inference: sets cut at their rules' strengths, joined by maximum, centroid of the area.
+
+    Args:
+        strengths: of each output set, shape (n,).
+        outputs: corners of the output sets.
+
+    Returns:
+        Shape (n,); 0 where no rule fires.
+    """
+    universe = np.linspace(outputs["NB"][0], outputs["PB"][3], _POINTS)
+    shape = np.zeros((len(next(iter(strengths.values()))), _POINTS))
+    for name, strength in strengths.items():
+        cut = np.minimum(membership(universe, outputs[name]), np.asarray(strength)[:, np.newaxis])
+        np.maximum(shape, cut, out=shape)
+    area = shape.sum(axis=1)
+    return np.where(area > 0.0, shape @ universe / np.maximum(area, np.finfo(float).tiny), 0.0)
+
+
+def single_input_surface(data: Mapping[str, Any]) -> tuple[Array, Array]:
+    """Errors [deg] and outputs of the five rules."""
+    errors = _axis(data["error"], data["grid"]["error"])
+    strengths = {data["single"][name]: membership(errors, data["error"][name]) for name in SETS}
+    return errors, infer(strengths, data["output"])
+
+
+def two_input_surface(
+    data: Mapping[str, Any], rules: Mapping[str, Sequence[str]]
+) -> tuple[Array, Array, Array]:
+    """Errors [deg], changes [deg per sample] and outputs (errors, changes) of 25 rules.
+
+    A rule fires as strongly as the weaker of its two conditions.
+    """
+    errors = _axis(data["error"], data["grid"]["error"])
+    changes = _axis(data["change"], data["grid"]["change"])
+    of_change = {name: membership(changes, data["change"][name]) for name in SETS}
+    surface = np.empty((len(errors), len(changes)))
+    for i, error in enumerate(errors):
+        strengths = {name: np.zeros(len(changes)) for name in SETS}
+        for row in SETS:
+            of_error = float(membership(np.array(error), data["error"][row]))
+            for column, consequence in zip(SETS, rules[row], strict=True):
+                fired = np.minimum(of_error, of_change[column])
+                strengths[consequence] = np.maximum(strengths[consequence], fired)
+        surface[i] = infer(strengths, data["output"])
+    return errors, changes, surface
+
+
+def _axis(sets: Mapping[str, Sequence[float]], count: int) -> Array:
+    return np.linspace(sets["NB"][2], sets["PB"][1], count)
+
+
+@cache
+def _single() -> tuple[Array, Array]:
+    return single_input_surface(fuzzy_data())
+
+
+@cache
+def _double() -> tuple[Array, Array, Array]:
+    return two_input_surface(fuzzy_data(), fuzzy_data()["two_input"])
+
+
+@dataclass(frozen=True)
+class SingleInputFuzzyLaw:
+    """Error to output by five rules, section 7.1.1.
+
+    Attributes:
+        element: output [deg per sample] to voltage.
+        errors: grid of the precomputed curve [deg].
+        outputs: on the grid.
+    """
+
+    element: InputElement
+    errors: Array = field(default_factory=lambda: _single()[0])
+    outputs: Array = field(default_factory=lambda: _single()[1])
+
+    @property
+    def size(self) -> int:
+        """No state."""
+        return 0
+
+    def initial(self, measured_deg: float) -> Array:
+        """No state."""
+        return np.zeros(0)
+
+    def step(self, state: Array, set_point_deg: float, measured_deg: float) -> tuple[Array, float, float]:
+        """See `ControlLaw.step`."""
+        output = float(np.interp(set_point_deg - measured_deg, self.errors, self.outputs))
+        return state.copy(), output, self.element.voltage(output)
+
+
+@dataclass(frozen=True)
+class TwoInputFuzzyLaw:
+    """Error and change of error to output by 25 rules, section 7.1.2.
+
+    Table 7.1 cannot be used with the error that section 6.2.1 defines, e = set point - angle: it answers a
+    positive error with a negative voltage. With e = angle - set point it closes the loop, but does not brake:
+    its middle row is Z whatever the change, and joint and set point may pass each other at full speed. It is
+    also lopsided: (P, P) gives NB where its mirror image (N, N) gives P. The rules used here have the same
+    sets, are symmetric, and brake (docs/control.md).
+
+    Attributes:
+        element: output [deg per sample] to voltage.
+        errors: grid of the precomputed surface [deg].
+        changes: grid [deg per sample].
+        surface: outputs, shape (errors, changes).
+    """
+
+    element: InputElement
+    errors: Array = field(default_factory=lambda: _double()[0])
+    changes: Array = field(default_factory=lambda: _double()[1])
+    surface: Array = field(default_factory=lambda: _double()[2])
+
+    @property
+    def size(self) -> int:
+        """The last error, and whether there was one."""
+        return 2
+
+    def initial(self, measured_deg: float) -> Array:
+        """No error yet."""
+        return np.zeros(2)
+
+    def step(self, state: Array, set_point_deg: float, measured_deg: float) -> tuple[Array, float, float]:
+        """See `ControlLaw.step`; the surface is interpolated linearly in both inputs."""
+        error = set_point_deg - measured_deg
+        change = error - float(state[0]) if state[1] else 0.0
+        i, share_i = _cell(self.errors, error)
+        j, share_j = _cell(self.changes, change)
+        low = (1.0 - share_j) * self.surface[i, j] + share_j * self.surface[i, j + 1]
+        high = (1.0 - share_j) * self.surface[i + 1, j] + share_j * self.surface[i + 1, j + 1]
+        output = float((1.0 - share_i) * low + share_i * high)
+        return np.array([error, 1.0]), output, self.element.voltage(output)
+
+
+def _cell(axis: Array, value: float) -> tuple[int, float]:
+    """Index of the grid cell that holds `value`, and how far along it lies; clipped to the grid."""
+    place = (min(max(value, axis[0]), axis[-1]) - axis[0]) / (axis[1] - axis[0])
+    index = min(int(place), len(axis) - 2)
+    return index, float(place - index)
