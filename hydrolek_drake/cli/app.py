@@ -31,6 +31,9 @@ COMMANDS: dict[str, CommandEntry] = {
     "replay": CommandEntry(
         "hydrolek_drake.cli.replay", "replay", "drive a rig's model with a recorded command and compare"
     ),
+    "identify": CommandEntry(
+        "hydrolek_drake.cli.identify", "identify", "identify sdp: SDP models from open-loop step tests"
+    ),
     "effects": CommandEntry(
         "hydrolek_drake.cli.effects", "effects", "list the known effects, or show one in full"
     ),
