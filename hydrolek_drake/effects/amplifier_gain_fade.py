@@ -5,7 +5,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -19,6 +19,10 @@ EFFECT = Effect(
         ),
     ),
     size="fraction",
+    search={
+        "fraction": Search("unity", 0.5, (0.03, 0.15)),
+        "time_constant_s": Search("duration", 3, (0.1, 0.4), lowest=0.02, log=True),
+    },
     source="copper's resistance rises 0.39 % per kelvin while the amplifier holds its voltage",
     confused_with={
         "fluid.warm_up": "warming oil speeds the joint up and leaves the dead-zone alone",

@@ -4,7 +4,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -18,6 +18,11 @@ EFFECT = Effect(
         Parameter("inertia_kg_m2", "kg m^2", "inertia of the base", neutral=1.0, lowest=0.0, positive=True),
     ),
     size="stiffness_Nm_per_rad",
+    weakens=True,
+    search={
+        "stiffness_Nm_per_rad": Search("load_stiffness", 10000, (300.0, 30.0), lowest=3, log=True),
+        "inertia_kg_m2": Search("inertia", 30, (1.0, 0.3), lowest=0.03, log=True),
+    },
     source="thesis 6.1.5: moving faster 'could lead to some movement of the platform base'",
     confused_with={
         "fluid.entrained_air": "air softens most where the pressure is low",

@@ -4,7 +4,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -13,6 +13,9 @@ EFFECT = Effect(
     equation="T_d + delay_s",
     parameters=(Parameter("delay_s", "s", "added transport delay", neutral=0.0),),
     size="delay_s",
+    search={
+        "delay_s": Search("travel_time", 0.15, (0.01, 0.05)),
+    },
     source="thesis 6.1.3 (time delay of 0.15 s and 0.25 s, read by eye)",
     confused_with={
         "valve.spool_stiction": "stiction delays small commands more than large ones, a delay all alike",

@@ -5,7 +5,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -18,6 +18,9 @@ EFFECT = Effect(
         ),
     ),
     size="coulomb_N",
+    search={
+        "coulomb_N": Search("force", 0.4, (0.01, 0.06)),
+    },
     source="thesis (4.1), F_c; Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083",
     confused_with={
         "cylinder.stribeck_friction": "with Stribeck the friction falls as the rod starts to move",

@@ -4,7 +4,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -21,6 +21,9 @@ EFFECT = Effect(
         ),
     ),
     size="conductance_m3_per_s_Pa",
+    search={
+        "conductance_m3_per_s_Pa": Search("conductance", 1, (0.02, 0.15)),
+    },
     source="Merritt, Hydraulic Control Systems (1967), ch. 6: laminar leakage of pistons",
     confused_with={
         "valve.null_leakage": "leaking lands also let both pressures settle near half the supply",

@@ -4,7 +4,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -16,6 +16,10 @@ EFFECT = Effect(
         Parameter("length_m", "m", "stroke over which it acts", neutral=1.0, lowest=0.0, positive=True),
     ),
     size="damping_N_s_per_m",
+    search={
+        "damping_N_s_per_m": Search("damping", 4, (0.1, 0.5)),
+        "length_m": Search("stroke", 0.5, (0.1, 0.3), lowest=0.01),
+    },
     source="cushioning spears of differential cylinders (Merritt 1967, ch. 6)",
     confused_with={
         "sensor.nonlinearity": "a bow of the sensor shows at both ends and at rest",

@@ -5,7 +5,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -25,6 +25,12 @@ EFFECT = Effect(
         ),
     ),
     size="stribeck_N",
+    contains=("cylinder.coulomb_friction",),
+    search={
+        "coulomb_N": Search("force", 0.4, (0.01, 0.05)),
+        "stribeck_N": Search("force", 0.4, (0.01, 0.05)),
+        "stribeck_velocity_m_per_s": Search("rod_speed", 0.5, (0.03, 0.15), lowest=0.005, log=True),
+    },
     source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083, Stribeck curve",
     confused_with={
         "cylinder.coulomb_friction": "Coulomb friction does not fall with speed; creeping speed decides",

@@ -33,6 +33,25 @@ HOOKS = {
 
 
 @dataclass(frozen=True)
+class Search:
+    """How far a fit looks for one parameter of an effect, in multiples of a natural scale of the machine.
+
+    Attributes:
+        of: attribute of `scales.Scales`.
+        largest: upper end of the range.
+        starts: where a search begins, all of them tried; a second sign is a start of its own.
+        lowest: lower end of the range.
+        log: whether the range is searched on a logarithmic scale.
+    """
+
+    of: str
+    largest: float
+    starts: tuple[float, ...]
+    lowest: float = 0.0
+    log: bool = False
+
+
+@dataclass(frozen=True)
 class Effect:
     """One effect: identity, equation, parameters and the hooks by which it enters the physics.
 
@@ -45,6 +64,11 @@ class Effect:
         source: where the law comes from.
         confused_with: ids of effects with a similar signature, and what tells them apart.
         needs: the variants it can act on, as `section: names`; empty for all.
+        search: parameter -> how far a fit looks for it.
+        searched_on: the variants on which a diagnosis looks for it, as `needs`; fewer than those it can act
+            on where another effect says the same of a hydraulic joint.
+        weakens: whether it fades as its size grows, like a spring that becomes stiffer.
+        contains: ids of effects that are special cases of it, so that both together say nothing new.
     """
 
     id: str
@@ -55,6 +79,10 @@ class Effect:
     source: str
     confused_with: dict[str, str] = field(default_factory=dict)
     needs: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    search: dict[str, Search] = field(default_factory=dict)
+    searched_on: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    weakens: bool = False
+    contains: tuple[str, ...] = ()
     hooks: dict[str, Callable[..., Any]] = field(default_factory=dict)
 
     @property

@@ -4,7 +4,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -17,6 +17,9 @@ EFFECT = Effect(
         ),
     ),
     size="air_fraction",
+    search={
+        "air_fraction": Search("air_fraction", 6, (0.1, 1.0)),
+    },
     source="isothermal compression of free air: V_air = fraction p_atm / p, compressibility fraction p_atm / p^2",
     confused_with={
         "base.compliance": "a soft base rings at a frequency that does not depend on the pressures",

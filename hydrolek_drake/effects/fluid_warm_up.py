@@ -5,7 +5,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -19,6 +19,10 @@ EFFECT = Effect(
         ),
     ),
     size="fraction",
+    search={
+        "fraction": Search("unity", 0.7, (0.05, 0.25)),
+        "time_constant_s": Search("duration", 3, (0.1, 0.4), lowest=0.02, log=True),
+    },
     source="mineral oil loses about half of its viscosity per 15 K",
     confused_with={
         "amplifier.gain_fade": "a fading gain slows the joint down and widens the dead-zone",

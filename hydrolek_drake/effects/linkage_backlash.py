@@ -4,7 +4,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -13,6 +13,9 @@ EFFECT = Effect(
     equation="play of gap_rad in all between cylinder side and link; spring and damper where it is closed",
     parameters=(Parameter("gap_rad", "rad", "play, from contact to contact", neutral=0.0, lowest=0.0),),
     size="gap_rad",
+    search={
+        "gap_rad": Search("travel", 0.08, (0.004, 0.015)),
+    },
     source="worn pins; contact model of Nordin and Gutman, Automatica 38 (2002) 1633",
     confused_with={
         "sensor.hysteresis": "play of the sensor leaves the pressures alone",

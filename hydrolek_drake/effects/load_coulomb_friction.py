@@ -5,7 +5,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -14,6 +14,10 @@ EFFECT = Effect(
     equation="force tanh(v / friction_velocity) against the load",
     parameters=(Parameter("force_N", "N", "Coulomb friction (N m for a joint)", neutral=0.0, lowest=0.0),),
     size="force_N",
+    search={
+        "force_N": Search("load_force", 0.5, (0.01, 0.06)),
+    },
+    searched_on={"cylinder": ("electric_motor",)},
     source="thesis (4.1), F_c; Janot, Gautier, Brunot, EMPS benchmark (2019)",
     confused_with={
         "load.friction_asymmetry": "asymmetry is the part that differs between the directions",

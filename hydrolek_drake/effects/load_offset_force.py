@@ -4,7 +4,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -13,6 +13,10 @@ EFFECT = Effect(
     equation="force against the positive direction",
     parameters=(Parameter("force_N", "N", "constant force against the positive direction", neutral=0.0),),
     size="force_N",
+    search={
+        "force_N": Search("load_force", 0.5, (0.01, -0.01), lowest=-0.5),
+    },
+    searched_on={"cylinder": ("electric_motor",)},
     source="Janot, Gautier, Brunot, EMPS benchmark (2019): offset of the drive",
     confused_with={
         "load.friction_asymmetry": "an offset acts at rest too",

@@ -4,7 +4,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -16,6 +16,10 @@ EFFECT = Effect(
         Parameter("time_s", "s", "when it is picked up", neutral=0.0),
     ),
     size="mass_kg",
+    search={
+        "mass_kg": Search("payload", 0.5, (0.02, 0.1)),
+        "time_s": Search("duration", 1, (0.0, 0.3, 0.6)),
+    },
     source="rigid-body mechanics, thesis (4.1)",
     confused_with={
         "valve.asymmetric_overlap": "a shifted null leaves the pressures at rest alone",

@@ -4,7 +4,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -13,6 +13,10 @@ EFFECT = Effect(
     equation="damping v against the load",
     parameters=(Parameter("damping_N_s_per_m", "N s/m", "added damping", neutral=0.0),),
     size="damping_N_s_per_m",
+    search={
+        "damping_N_s_per_m": Search("load_damping", 1, (0.02, 0.1)),
+    },
+    searched_on={"cylinder": ("electric_motor",)},
     source="thesis (4.1), F_v",
     confused_with={
         "load.coulomb_friction": "dry friction does not grow with speed",

@@ -4,7 +4,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -13,6 +13,9 @@ EFFECT = Effect(
     equation="reading + rate t",
     parameters=(Parameter("rate_rad_per_min", "rad/min", "drift", neutral=0.0),),
     size="rate_rad_per_min",
+    search={
+        "rate_rad_per_min": Search("drift_per_min", 0.3, (0.01, -0.01), lowest=-0.3),
+    },
     source="thesis 4.7: joint 5 'drifting that can be clearly seen'",
     confused_with={
         "cylinder.cross_port_leakage": "leakage moves the joint itself, and only under load",

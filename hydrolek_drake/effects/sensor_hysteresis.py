@@ -4,7 +4,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -13,6 +13,9 @@ EFFECT = Effect(
     equation="play operator of half_width on the reading",
     parameters=(Parameter("half_width_rad", "rad", "half of the play", neutral=0.0, lowest=0.0),),
     size="half_width_rad",
+    search={
+        "half_width_rad": Search("travel", 0.05, (0.002, 0.008)),
+    },
     source="play operator, Krasnosel'skii and Pokrovskii, Systems with Hysteresis (1989)",
     confused_with={
         "linkage.backlash": "play in the linkage also shows in the pressures and as a free swing of the load",

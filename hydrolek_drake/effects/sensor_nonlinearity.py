@@ -4,7 +4,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -13,6 +13,9 @@ EFFECT = Effect(
     equation="reading + amplitude (1 - z^2), z from -1 to 1 over the travel",
     parameters=(Parameter("amplitude_rad", "rad", "bow in the middle of the travel", neutral=0.0),),
     size="amplitude_rad",
+    search={
+        "amplitude_rad": Search("travel", 0.1, (0.01, -0.01), lowest=-0.1),
+    },
     source="conformity error of potentiometers; lowest even term that vanishes at the calibrated ends",
     confused_with={
         "cylinder.end_cushion": "a cushion acts only while moving inwards",

@@ -4,7 +4,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -15,6 +15,9 @@ EFFECT = Effect(
         Parameter("resistance_Pa_s_per_m3", "Pa s/m^3", "fall of pressure per flow", neutral=0.0, lowest=0.0),
     ),
     size="resistance_Pa_s_per_m3",
+    search={
+        "resistance_Pa_s_per_m3": Search("resistance", 2, (0.05, 0.3)),
+    },
     source="source impedance of pump and line; seen on the PATU crane (9.3 to 9.1 MPa while lifting)",
     confused_with={
         "cylinder.cross_port_leakage": "leakage slows the joint under load even at small flow",

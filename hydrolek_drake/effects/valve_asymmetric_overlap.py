@@ -4,7 +4,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -13,6 +13,9 @@ EFFECT = Effect(
     equation="x - (overlap + shift) opens towards A, -x - (overlap - shift) towards B",
     parameters=(Parameter("shift_m", "m", "shift of the null towards B", neutral=0.0),),
     size="shift_m",
+    search={
+        "shift_m": Search("overlap", 0.8, (0.1, -0.1), lowest=-0.8),
+    },
     source="Merritt, Hydraulic Control Systems (1967), ch. 5: null shift of spool valves",
     confused_with={
         "valve.null_leakage": "leakage lets the joint creep at zero command",

@@ -4,7 +4,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -21,6 +21,9 @@ EFFECT = Effect(
         ),
     ),
     size="conductance_m3_per_s_Pa",
+    search={
+        "conductance_m3_per_s_Pa": Search("conductance", 0.4, (0.01, 0.06)),
+    },
     source="Merritt, Hydraulic Control Systems (1967), ch. 5: laminar flow through the radial clearance of the lands",
     confused_with={
         "cylinder.cross_port_leakage": "a leaking piston lets the load sink; leaking lands also push both "

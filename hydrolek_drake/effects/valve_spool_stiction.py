@@ -5,7 +5,7 @@ from typing import Any
 
 from numba import njit
 
-from hydrolek_drake.effects.effect import Effect
+from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -14,6 +14,9 @@ EFFECT = Effect(
     equation="force tanh(x'/stiction_velocity) against the spool",
     parameters=(Parameter("force_N", "N", "Coulomb friction of the spool", neutral=0.0, lowest=0.0),),
     size="force_N",
+    search={
+        "force_N": Search("spool_force", 0.4, (0.02, 0.1)),
+    },
     source="Merritt, Hydraulic Control Systems (1967), ch. 5; smoothed as in the solenoid's stiction_velocity",
     confused_with={
         "command.delay": "a delay is the same for large and small commands",

@@ -1,6 +1,6 @@
 """One recording of one joint, prepared so that a rollout can be held against it again and again."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,6 +28,8 @@ class Channel:
         model: attribute of `Signals` that it is compared with.
         measured: NaN where the recording has no value. # (n,)
         noise: standard deviation of its noise.
+        model_error: standard deviation of what the model's integration adds, sample by sample; None for
+            nothing. # (n,)
     """
 
     key: str
@@ -35,6 +37,14 @@ class Channel:
     model: str
     measured: np.ndarray
     noise: float
+    model_error: np.ndarray | None = None
+
+    @property
+    def deviation(self) -> np.ndarray | float:
+        """Standard deviation that the residual of a perfect model would have."""
+        if self.model_error is None:
+            return self.noise
+        return np.sqrt(self.noise**2 + self.model_error**2)
 
 
 @dataclass(frozen=True)
@@ -93,9 +103,22 @@ class Experiment:
         """
         parts = []
         for channel in self.channels:
-            residual = (channel.measured - getattr(signals, channel.model)) / channel.noise
+            residual = (channel.measured - getattr(signals, channel.model)) / channel.deviation
             parts.append(np.where(self.used & np.isfinite(channel.measured), residual, 0.0))
         return np.concatenate(parts)
+
+    def until(self, seconds: float) -> "Experiment":
+        """The beginning of the experiment, up to so many seconds after its first sample."""
+        count = int(np.searchsorted(self.time, self.time[0] + seconds, side="right"))
+        channels = tuple(
+            replace(
+                channel,
+                measured=channel.measured[:count],
+                model_error=None if channel.model_error is None else channel.model_error[:count],
+            )
+            for channel in self.channels
+        )
+        return replace(self, time=self.time[:count], channels=channels, used=self.used[:count])
 
     @property
     def counted(self) -> int:
@@ -103,8 +126,8 @@ class Experiment:
         return sum(int((self.used & np.isfinite(c.measured)).sum()) for c in self.channels)
 
     def split(self, used: np.ndarray) -> "Experiment":
-        """The same experiment with other samples that count. # (n,)"""
-        return Experiment(**{**self.__dict__, "used": used})
+        """The same experiment with other samples that count, a truth value each."""
+        return replace(self, used=used)
 
 
 def experiments_of(

@@ -22,14 +22,18 @@ class Fit:
     Attributes:
         unit: place in the unit cube. # (n,)
         residuals: there, in units of the noise. # (values,)
+        off_prior: distance of each parameter from the rig's own value, in standard deviations. # (n,)
         jacobian: d residuals / d unit there. # (values, n)
+        prior_jacobian: d off_prior / d unit. # (n, n)
         counted: values that count; where a sample does not count its residual is zero.
         evaluations: rollouts of all experiments that it took.
     """
 
     unit: np.ndarray
     residuals: np.ndarray
+    off_prior: np.ndarray
     jacobian: np.ndarray
+    prior_jacobian: np.ndarray
     counted: int
     evaluations: int
 
@@ -37,6 +41,16 @@ class Fit:
     def chi_squared(self) -> float:
         """Sum of the squared residuals in units of the noise."""
         return float(self.residuals @ self.residuals)
+
+    @property
+    def objective(self) -> float:
+        """What was minimised: squared residuals, and squared distances from the prior."""
+        return self.chi_squared + float(self.off_prior @ self.off_prior)
+
+    @property
+    def with_prior(self) -> np.ndarray:
+        """Jacobian of residuals and distances from the prior. # (values + n, n)."""
+        return np.concatenate([self.jacobian, self.prior_jacobian])
 
     @property
     def over_noise(self) -> float:
@@ -72,11 +86,12 @@ def fit_from(
         value = problem.residuals(unit)
         known.clear()
         known[unit.tobytes()] = value
-        return value
+        return np.concatenate([value, problem.prior_residuals(unit)])
 
     def jacobian(unit: np.ndarray) -> np.ndarray:
-        return problem.jacobian(unit, known.get(unit.tobytes()))
+        return np.concatenate([problem.jacobian(unit, known.get(unit.tobytes())), prior_jacobian])
 
+    prior_jacobian = problem.prior_jacobian()
     inside = np.clip(start, EDGE, 1.0 - EDGE)
     result = least_squares(
         residuals,
@@ -89,7 +104,16 @@ def fit_from(
         ftol=tolerance,
         gtol=1e-12,
     )
-    return Fit(result.x, result.fun, result.jac, problem.counted, problem.evaluations - before)
+    values = len(result.fun) - len(result.x)
+    return Fit(
+        unit=result.x,
+        residuals=result.fun[:values],
+        off_prior=result.fun[values:],
+        jacobian=result.jac[:values],
+        prior_jacobian=prior_jacobian,
+        counted=problem.counted,
+        evaluations=problem.evaluations - before,
+    )
 
 
 def multi_start(
@@ -114,7 +138,7 @@ def multi_start(
     best: Fit | None = None
     for number, start in enumerate(starts):
         fit = fit_from(problem, start, loss=loss, most_steps=most_steps)
-        if best is None or fit.chi_squared < best.chi_squared:
+        if best is None or fit.objective < best.objective:
             best = fit
         if progress is not None:
             progress(number, best)

@@ -52,7 +52,7 @@ class Free:
         return (value - self.lower) / (self.upper - self.lower)
 
     def slope(self, u: float) -> float:
-        """d value / d u, for intervals in physical units."""
+        """Change of the value with its place, for intervals in physical units."""
         if self.log:
             return self.from_unit(u) * math.log(self.upper / self.lower)
         return self.upper - self.lower
@@ -89,7 +89,7 @@ class ParameterSet:
         return tuple(parameter.path for parameter in self.free)
 
     def records(self, unit: np.ndarray) -> np.ndarray:
-        """Records of all joints, shape (n joints,), for a place in the unit cube. # (n,)"""
+        """Records of all joints, shape (n joints,), for a place in the unit cube."""
         records = self._base.copy()
         vectors = flat(records)
         for parameter, (joints, positions), u in zip(self.free, self._places, unit, strict=True):
@@ -101,7 +101,7 @@ class ParameterSet:
         return {p.path: p.from_unit(float(u)) for p, u in zip(self.free, unit, strict=True)}
 
     def unit(self, values: Mapping[str, float] | None = None) -> np.ndarray:
-        """Place of the given values, or of the rig's own, pulled into the cube. # (n,)"""
+        """Place of the given values, or of the rig's own, pulled into the cube."""
         given = values or {}
         places = [
             p.to_unit(max(v, p.lower) if p.log else v)
@@ -162,5 +162,7 @@ def _places(rig: Rig, vectors: np.ndarray, parameter: Free) -> tuple[np.ndarray,
     same = (changed == vectors) | (np.isnan(changed) & np.isnan(vectors))
     joints, positions = np.nonzero(~same)
     if not len(joints) or not np.all(changed[joints, positions] == probe):
-        raise InputError(f"{parameter.path} cannot be fitted: it does not enter the compiled physics by itself")
+        raise InputError(
+            f"{parameter.path} cannot be fitted: it does not enter the compiled physics by itself"
+        )
     return joints, positions

@@ -8,7 +8,7 @@ import numpy as np
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import ParameterSet
 
-DIFFERENCE = 1e-3
+DIFFERENCE = 1e-4
 """Step of the forward differences, as a fraction of a parameter's range: far above rounding, and far below
 the distance over which a residual bends."""
 
@@ -25,6 +25,7 @@ class Problem:
         experiments: Sequence[Experiment],
         longest_step: float | None = None,
         pool: Executor | None = None,
+        prior: np.ndarray | None = None,
     ) -> None:
         """Prepare.
 
@@ -33,19 +34,26 @@ class Problem:
             experiments: what must be followed.
             longest_step: of the rollouts [s]; None for the rig's own.
             pool: threads that share the columns of a Jacobian (rollouts run outside Python's lock).
+            prior: standard deviation of each parameter's place in the unit cube about the rig's own value,
+                infinite for those of which nothing is known; None for none of them. # (n,)
         """
         self.parameters = parameters
         self.experiments = tuple(experiments)
         self.longest_step = longest_step
         self.pool = pool
+        self._prior_mean = parameters.unit()
+        self._prior_weight = np.zeros(len(parameters)) if prior is None else 1.0 / prior
         self.evaluations = 0
         self.counted = sum(experiment.counted for experiment in self.experiments)
 
     def residuals(self, unit: np.ndarray) -> np.ndarray:
-        """(measured - model) / noise of all experiments. # (values,)
+        """Measured minus model over noise, of all experiments.
 
         Args:
             unit: place in the unit cube. # (n,)
+
+        Returns:
+            Experiment after experiment, channel after channel. # (values,)
         """
         self.evaluations += 1
         records = self.parameters.records(unit)
@@ -57,11 +65,14 @@ class Problem:
         return np.clip(np.nan_to_num(residuals, nan=DIVERGED), -DIVERGED, DIVERGED)
 
     def jacobian(self, unit: np.ndarray, at: np.ndarray | None = None) -> np.ndarray:
-        """d residuals / d unit by forward differences (backward at the upper end). # (values, n)
+        """Jacobian of the residuals by forward differences (backward at the upper end).
 
         Args:
             unit: place in the unit cube. # (n,)
             at: the residuals there, if known.
+
+        Returns:
+            Change of each residual with each parameter's place. # (values, n)
         """
         base = self.residuals(unit) if at is None else at
         steps = np.where(unit + DIFFERENCE <= 1.0, DIFFERENCE, -DIFFERENCE)
@@ -75,7 +86,10 @@ class Problem:
         columns = list(map(column, indices)) if self.pool is None else list(self.pool.map(column, indices))
         return np.stack(columns, axis=1) if columns else np.zeros((base.size, 0))
 
-    def chi_squared(self, unit: np.ndarray) -> float:
-        """Sum of the squared residuals in units of the noise."""
-        residuals = self.residuals(unit)
-        return float(residuals @ residuals)
+    def prior_residuals(self, unit: np.ndarray) -> np.ndarray:
+        """Distance of each parameter from the rig's own value, in standard deviations. # (n,)."""
+        return (unit - self._prior_mean) * self._prior_weight
+
+    def prior_jacobian(self) -> np.ndarray:
+        """Change of the prior residuals with each parameter's place. # (n, n)."""
+        return np.diag(self._prior_weight)

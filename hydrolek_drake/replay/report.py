@@ -2,11 +2,11 @@
 
 import json
 import math
-import os
 from pathlib import Path
 from typing import Any
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import write_whole
 from hydrolek_drake.recordings import write_signals
 from hydrolek_drake.replay.comparison import Comparison
 from hydrolek_drake.replay.page import page
@@ -32,9 +32,9 @@ def write_report(replay: Replay, comparisons: tuple[Comparison, ...], folder: Pa
     try:
         folder.mkdir(parents=True, exist_ok=True)
         write_signals(folder / "signals.parquet", replay.recording.time, *_signals(replay))
-        _write(folder / "replay.png", picture(replay, comparisons, title))
-        _write(folder / "replay.json", json.dumps(as_json(replay, comparisons), indent=1).encode())
-        _write(folder / "replay.html", page(replay, comparisons, title).encode())
+        write_whole(folder / "replay.png", picture(replay, comparisons, title))
+        write_whole(folder / "replay.json", json.dumps(as_json(replay, comparisons), indent=1).encode())
+        write_whole(folder / "replay.html", page(replay, comparisons, title).encode())
     except OSError as error:
         raise InputError(f"--out {folder}: cannot write there: {error.strerror or error}") from None
     return folder / "replay.html"
@@ -95,12 +95,3 @@ def _signals(replay: Replay) -> tuple[dict[str, Any], dict[str, str]]:
             signals[f"{pair.key}_{name}"] = values
             units[f"{pair.key}_{name}"] = pair.unit
     return signals, units
-
-
-def _write(path: Path, data: bytes) -> None:
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        part.write_bytes(data)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)

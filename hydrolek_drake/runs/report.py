@@ -7,6 +7,7 @@ from typing import Any
 
 from hydrolek_drake import __version__
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import write_whole
 from hydrolek_drake.recordings import write_signals
 from hydrolek_drake.replay.picture import plots_png
 from hydrolek_drake.runs.page import page
@@ -50,11 +51,11 @@ def write_run(
     title = f"{done.scenario.name}: {done.scenario.title}"
     try:
         write_signals(folder / "signals.parquet", done.run.time, *named_signals(done))
-        _write(folder / "run.json", json.dumps(as_json(done, joints), indent=1).encode())
-        _write(folder / "signals.png", plots_png(overview(done), title, sentence(done, joints)))
+        write_whole(folder / "run.json", json.dumps(as_json(done, joints), indent=1).encode())
+        write_whole(folder / "signals.png", plots_png(overview(done), title, sentence(done, joints)))
         if replay3d is not None:
-            _write(folder / "replay3d.html", replay3d.encode())
-        _write(folder / "simulate.html", page(done, joints, replay3d is not None).encode())
+            write_whole(folder / "replay3d.html", replay3d.encode())
+        write_whole(folder / "simulate.html", page(done, joints, replay3d is not None).encode())
     except OSError as error:
         raise InputError(f"--out {folder}: cannot write there: {error.strerror or error}") from None
     return folder / "simulate.html"
@@ -90,12 +91,3 @@ def as_json(done: ScenarioRun, joints: tuple[JointSummary, ...]) -> dict[str, An
             for joint in joints
         },
     }
-
-
-def _write(path: Path, data: bytes) -> None:
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        part.write_bytes(data)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)

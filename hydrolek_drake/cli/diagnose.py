@@ -1,0 +1,65 @@
+"""`hydrolek diagnose`: locate the mismatch, name the missing physics, model it, show the fit improve."""
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hydrolek_drake.cli.settings import SetOption, parse_settings
+from hydrolek_drake.errors import InputError
+
+
+def diagnose(
+    rig: Annotated[str, typer.Argument(metavar="RIG", help="name of a built-in rig, or a rig file")],
+    recordings: Annotated[list[Path], typer.Argument(metavar="RECORDING", help="recordings to explain")],
+    holdout: Annotated[
+        list[Path] | None,
+        typer.Option(metavar="RECORDING", help="recording that decides and is not fitted (repeatable)"),
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="threads; as many as there are cores by default")
+    ] = None,
+    set_: SetOption = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="folder for report, fitted rig and residuals")
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(help="taken by all commands; a diagnosis draws no random numbers")
+    ] = None,
+) -> None:
+    """Find out what physics a rig's model leaves out, from recordings of the machine."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    from rich.console import Console
+
+    from hydrolek_drake.cli.output import console
+    from hydrolek_drake.diagnosis.diagnosis import diagnose as run_diagnosis
+    from hydrolek_drake.diagnosis.report import write_report
+    from hydrolek_drake.diagnosis.table import summary
+    from hydrolek_drake.recordings import read_recording
+    from hydrolek_drake.rigs import load_rig
+    from hydrolek_drake.runs.report import prepare_folder
+
+    if workers is not None and workers < 1:
+        raise InputError(f"--workers {workers}: at least 1 is needed")
+    given = [*recordings, *(holdout or [])]
+    for path in given:
+        if given.count(path) > 1:
+            raise InputError(f"recording {path} is given twice; held-out data must be other data")
+    output, progress = console(), Console(stderr=True)
+    loaded = load_rig(rig, parse_settings(set_))
+    train = [read_recording(path, loaded.columns) for path in recordings]
+    held = [read_recording(path, loaded.columns) for path in holdout or []]
+    if out is not None:
+        prepare_folder(out)
+    count = workers or os.cpu_count() or 1
+    with progress.status("starting") as status, ThreadPoolExecutor(count) as pool:
+        done = run_diagnosis(loaded, train, held, pool, say=lambda text: status.update(f"{text} ..."))
+        if out is not None:
+            status.update("writing the report ...")
+            page = write_report(done, out)
+    for line in summary(done):
+        output.print(line, soft_wrap=True)
+    if out is not None:
+        output.print(f"\nreport: {page}", markup=False, soft_wrap=True)

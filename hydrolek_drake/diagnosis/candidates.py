@@ -1,0 +1,84 @@
+"""Which effects could explain a recording, how far each is searched, and where a search begins."""
+
+import itertools
+import math
+from dataclasses import dataclass
+
+from hydrolek_drake.effects import EFFECTS, Effect
+from hydrolek_drake.effects.scales import Scales
+from hydrolek_drake.identification.parameter_set import Free
+from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rigs.rig import declaration
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One effect at one joint.
+
+    Attributes:
+        effect: the effect.
+        joint: where it acts.
+        free: its parameters with the range of the search.
+        starts: full path -> value, where searches begin.
+    """
+
+    effect: Effect
+    joint: str
+    free: tuple[Free, ...]
+    starts: tuple[dict[str, float], ...]
+
+    @property
+    def id(self) -> str:
+        """Id of the effect."""
+        return self.effect.id
+
+    @property
+    def size_path(self) -> str:
+        """Full path of the parameter that switches it on."""
+        return f"joints.{self.joint}.effects.{self.effect.id}.{self.effect.size}"
+
+
+def candidates_of(rig: Rig, joint: str, scales: Scales) -> tuple[Candidate, ...]:
+    """Every effect that can act on this joint and is not switched on in the rig yet.
+
+    The range of a parameter is the rig's own if it states one, else the effect's multiple of the machine's
+    natural scale.
+    """
+    on = rig.effects_on(joint)
+    found = []
+    for effect in EFFECTS.values():
+        if effect.id in on or not effect.search or not _acts(effect, rig, joint):
+            continue
+        candidate = _candidate(effect, rig, joint, scales)
+        if candidate is not None:
+            found.append(candidate)
+    return tuple(found)
+
+
+def _acts(effect: Effect, rig: Rig, joint: str) -> bool:
+    wanted = {**effect.needs, **effect.searched_on}
+    if any(rig.variant(joint, section) not in names for section, names in wanted.items()):
+        return False
+    if "linkage_gap" in effect.hooks:  # play needs something that moves within it
+        return rig.value(f"joints.{joint}.linkage.play_inertia") > 0.0
+    return True
+
+
+def _candidate(effect: Effect, rig: Rig, joint: str, scales: Scales) -> Candidate | None:
+    free: list[Free] = []
+    starts: list[list[tuple[str, float]]] = []
+    for name, search in effect.search.items():
+        path = f"joints.{joint}.effects.{effect.id}.{name}"
+        entry, declared = rig.entries[path], declaration(rig, path)
+        lower, upper, begin = scales.range_of(search)
+        log = search.log
+        if entry.range is not None:
+            lower, upper = entry.range
+            log = entry.scale == "log"
+        lower, upper = max(lower, declared.lowest), min(upper, declared.highest)
+        if not (math.isfinite(lower) and math.isfinite(upper) and lower < upper):
+            return None
+        free.append(Free(path, lower, upper, log))
+        inside = sorted({min(max(value, lower), upper) for value in begin})
+        starts.append([(path, value) for value in inside])
+    return Candidate(effect, joint, tuple(free), tuple(dict(c) for c in itertools.product(*starts)))

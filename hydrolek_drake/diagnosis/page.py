@@ -1,0 +1,196 @@
+"""The diagnosis as one HTML file that needs no network: the verdict first, how it was computed last."""
+
+import html
+from collections.abc import Iterable
+
+from hydrolek_drake.diagnosis.diagnosis import Diagnosis
+from hydrolek_drake.diagnosis.evidence import FINER
+from hydrolek_drake.diagnosis.panels import columns
+from hydrolek_drake.diagnosis.report_json import detectable, effects_json, fit_json
+from hydrolek_drake.diagnosis.words import headline, quantity
+from hydrolek_drake.replay.page import STYLE
+from hydrolek_drake.replay.plots_html import plots_html
+from hydrolek_drake.rigs.rig import declaration
+
+COLOURS = {
+    "none": "#2f7d4f",
+    "missing_physics": "#b4520b",
+    "ambiguous": "#8a6d00",
+    "unlisted_physics": "#8b2c5b",
+    "bad_data": "#9b1c1c",
+}
+_STYLE = """
+.verdict { border-left: 6px solid; padding: .6rem 1rem; background: #f7f9fb; margin: 1rem 0 }
+.verdict b { font-size: .85rem; letter-spacing: .04em; text-transform: uppercase }
+.bar { display: inline-block; height: .75em; background: #1b6ca8; vertical-align: middle }
+td.left { text-align: left; white-space: normal }
+"""
+
+
+def page(diagnosis: Diagnosis, next_experiment: str | None) -> str:
+    """The whole page."""
+    title = f"Diagnosis of {diagnosis.rig.name}"
+    colour = COLOURS[diagnosis.verdict]
+    parts = [
+        f"<!doctype html><html lang='en'><head><meta charset='utf-8'><title>{html.escape(title)}</title>"
+        f"<meta name='viewport' content='width=device-width'><style>{STYLE}{_STYLE}</style></head><body>",
+        f"<h1>{html.escape(title)}</h1>",
+        f"<div class='verdict' style='border-color:{colour}'><b style='color:{colour}'>"
+        f"{diagnosis.verdict.replace('_', ' ')}</b><p class='sentence'>{html.escape(headline(diagnosis))}</p>"
+        "</div>",
+    ]
+    if diagnosis.verdict == "bad_data":
+        parts += [
+            f"<ul>{''.join(f'<li>{html.escape(r)}</li>' for r in diagnosis.reasons)}</ul></body></html>"
+        ]
+        return "\n".join(parts)
+    if diagnosis.reasons:
+        parts.append(f"<ul>{''.join(f'<li>{html.escape(r)}</li>' for r in diagnosis.reasons)}</ul>")
+    parts += [
+        _effects(diagnosis),
+        _fit(diagnosis),
+        "<h2>Measured, before and after</h2>",
+        _legend(diagnosis),
+        plots_html(columns(diagnosis)),
+        "<h2>Where and when</h2>",
+        _locations(diagnosis),
+        "<h2>What was held against the held-out data</h2>",
+        _candidates(diagnosis),
+        "<h2>Parameters</h2>",
+        _parameters(diagnosis),
+        "<h2>What these data cannot tell apart</h2>",
+        _groups(diagnosis),
+        "<h2>What would have been seen</h2>",
+        _visible(diagnosis),
+        "<h2>Next experiment</h2>",
+        f"<p class='other'>{html.escape(next_experiment or 'None is needed to decide between effects.')}</p>",
+        "<h2>How it was computed</h2>",
+        _method(diagnosis),
+        "</body></html>",
+    ]
+    return "\n".join(parts)
+
+
+def _cells(texts: Iterable[str], tag: str = "td") -> str:
+    return "".join(f"<{tag}>{text}</{tag}>" for text in texts)
+
+
+def _table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    body = "".join(f"<tr>{_cells(row)}</tr>" for row in rows)
+    return f"<table><tr>{_cells(head, 'th')}</tr>{body}</table>"
+
+
+def _effects(diagnosis: Diagnosis) -> str:
+    told = effects_json(diagnosis)
+    if not told:
+        return ""
+    rows = "".join(
+        f"<li><b>{html.escape(e['id'])}</b> (probability {e['probability']:.2f}): "
+        f"{html.escape(e['sentence'])}</li>"
+        for e in told
+    )
+    return f"<ul>{rows}</ul>"
+
+
+def _fit(diagnosis: Diagnosis) -> str:
+    fit = fit_json(diagnosis)
+    if fit is None:
+        return ""
+    unit = fit["unit"]
+    rows = [
+        (name, *(f"{fit[key][side]:.3g}" for side in ("train_rms", "holdout_rms", "holdout_over_noise")))
+        for name, key in (("nominal model, refitted", "baseline"), ("with the effects named", "with_effects"))
+    ]
+    head = ("position", f"fitted [{unit}]", f"held out [{unit}]", "all signals held out / noise")
+    return (
+        _table(head, rows)
+        + f"<p class='other'>Noise of the position: {fit['noise_floor']:.3g} {unit} rms.</p>"
+    )
+
+
+def _legend(diagnosis: Diagnosis) -> str:
+    if (
+        len({e.name for e in (*diagnosis.held_out, *(diagnosis.bench.training if diagnosis.bench else ()))})
+        > 1
+    ):
+        return "<p class='other'>Left: a recording that was fitted. Right: one that was not.</p>"
+    return "<p class='other'>Shaded: held out, not fitted.</p>"
+
+
+def _locations(diagnosis: Diagnosis) -> str:
+    if not diagnosis.locations:
+        return "<p class='other'>Nothing is left over that could be located.</p>"
+    rows = [
+        (
+            place.joint,
+            place.stage,
+            f"{100 * place.share:.0f} %",
+            html.escape(place.condition),
+            "<br>".join(f"{a:.2f} to {b:.2f} s" for a, b in place.when[:5]) or "all the time",
+        )
+        for place in diagnosis.locations
+    ]
+    return _table(("joint", "stage", "share of the mismatch", "condition", "where it grows most"), rows)
+
+
+def _candidates(diagnosis: Diagnosis) -> str:
+    worst = max(j.over_noise for j in diagnosis.judged)
+    rows = []
+    for judged in diagnosis.judged[:12]:
+        name = " + ".join(c.id for c in judged.hypothesis.effects) or "nominal model"
+        width = 220.0 * judged.over_noise / worst
+        rows.append(
+            (
+                html.escape(name),
+                f"{judged.probability:.3f}",
+                f"{judged.hypothesis.fit.over_noise:.3g}",
+                f"{judged.over_noise:.3g}",
+                f"<span class='bar' style='width:{max(width, 2):.0f}px'></span>",
+            )
+        )
+    return _table(("model", "probability", "fitted / noise", "held out / noise", ""), rows)
+
+
+def _parameters(diagnosis: Diagnosis) -> str:
+    rows = []
+    for path, known in diagnosis.intervals.items():
+        unit = declaration(diagnosis.rig, path).unit
+        nominal = diagnosis.rig.value(path)
+        short = path.removeprefix(f"joints.{diagnosis.rig.joints[0]}.")
+        rows.append(
+            (
+                html.escape(short),
+                quantity(nominal, unit),
+                quantity(known.value, unit),
+                f"{quantity(known.low, unit)} to {quantity(known.high, unit)}",
+            )
+        )
+    return _table(("parameter", "in the rig", "fitted", "95 % interval"), rows)
+
+
+def _groups(diagnosis: Diagnosis) -> str:
+    groups = diagnosis.conclusion.groups if diagnosis.conclusion else ()
+    if not groups:
+        return "<p class='other'>No other listed effect explains the held-out data nearly as well.</p>"
+    return "<ul>" + "".join(f"<li>{html.escape(' or '.join(g))}</li>" for g in groups) + "</ul>"
+
+
+def _visible(diagnosis: Diagnosis) -> str:
+    rows = [(html.escape(name), html.escape(size)) for name, size in detectable(diagnosis).items()]
+    return (
+        "<p class='other'>The smallest size at which each effect that was not named would have shown "
+        "(four standard deviations):</p>" + _table(("effect", "size"), rows)
+    )
+
+
+def _method(diagnosis: Diagnosis) -> str:
+    assert diagnosis.bench is not None and diagnosis.search is not None
+    return (
+        "<p class='other'>The nominal model was refitted first, by bounded least squares within the rig's ranges. "
+        "Every effect that can act on this machine was then held against what was left, alone and, where one was "
+        "not enough, together with others; each model was fitted to the training data only. Models are compared "
+        "by the likelihood of the held-out data less a cost for every effect and parameter. "
+        f"{len(diagnosis.search.hypotheses)} models were fitted to the end, {diagnosis.bench.evaluations} "
+        f"simulations of all recordings, last step {1e3 * FINER * diagnosis.bench.fine:.3g} ms, "
+        f"{diagnosis.seconds:.0f} s.</p>"
+    )

@@ -1,0 +1,83 @@
+"""What the pictures of a diagnosis show: measured, before and after, and what each leaves."""
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.diagnosis import Diagnosis
+from hydrolek_drake.diagnosis.workbench import Hypothesis
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.replay.display import display_factor, display_unit
+from hydrolek_drake.replay.panels import (
+    COMMAND_COLOUR,
+    MEASURED_COLOUR,
+    MODEL_COLOUR,
+    RESIDUAL_COLOUR,
+    Line,
+    Panel,
+)
+from hydrolek_drake.replay.spans import BEYOND_NOISE
+from hydrolek_drake.replay.thinning import thinned
+from hydrolek_drake.rollout.rollout import Signals
+
+BEFORE_COLOUR = "#b8c0c8"
+AFTER_COLOUR = MODEL_COLOUR
+
+
+def columns(diagnosis: Diagnosis) -> list[list[Panel]]:
+    """Training data on the left, held-out data on the right; the joint with the largest mismatch."""
+    assert diagnosis.bench is not None
+    joint = diagnosis.locations[0].joint if diagnosis.locations else diagnosis.bench.training[0].joint
+    train = next(e for e in diagnosis.bench.training if e.joint == joint)
+    held = next((e for e in diagnosis.held_out if e.joint == joint), train)
+    same = train.name == held.name and np.array_equal(train.time, held.time)
+    if same:
+        return [_stack(diagnosis, train, "", held_out_spans(held))]
+    return [_stack(diagnosis, train, "fitted: ", ()), _stack(diagnosis, held, "held out: ", ())]
+
+
+def held_out_spans(experiment: Experiment) -> tuple[tuple[float, float], ...]:
+    """Stretches of a recording that are held out [s]."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], experiment.used, [False]]).astype(int)))
+    last = experiment.time.size - 1
+    return tuple(
+        (float(experiment.time[a]), float(experiment.time[min(b, last)]))
+        for a, b in zip(edges[::2], edges[1::2], strict=True)
+    )
+
+
+def simulated(diagnosis: Diagnosis, hypothesis: Hypothesis, experiment: Experiment) -> Signals:
+    """What a fitted model does under the recorded command."""
+    assert diagnosis.bench is not None
+    parameters = diagnosis.bench.parameters(hypothesis.effects)
+    records = parameters.records(parameters.unit(hypothesis.values))
+    return experiment.simulate(records, diagnosis.step).signals
+
+
+def _stack(
+    diagnosis: Diagnosis, experiment: Experiment, what: str, shaded: tuple[tuple[float, float], ...]
+) -> list[Panel]:
+    before = simulated(diagnosis, diagnosis.baseline.hypothesis, experiment)
+    after = simulated(diagnosis, diagnosis.best.hypothesis, experiment)
+    enlarged = bool(diagnosis.best.hypothesis.effects)
+    time = experiment.time
+    stack = []
+    for channel in experiment.channels:
+        factor, unit = display_factor(channel.unit), display_unit(channel.unit)
+        old, new = getattr(before, channel.model), getattr(after, channel.model)
+        curves = [
+            ("measured", channel.measured, MEASURED_COLOUR),
+            ("nominal model, refitted", old, BEFORE_COLOUR),
+        ]
+        if enlarged:
+            curves.append(("with the missing physics", new, AFTER_COLOUR))
+        lines = tuple(Line(name, *thinned(time, factor * v), colour) for name, v, colour in curves)
+        stack.append(Panel(f"{what}{channel.key} [{unit}]", lines, shaded, None, 2.0))
+        band = BEYOND_NOISE * factor * channel.noise
+        told = [("left before", channel.measured - old, RESIDUAL_COLOUR)]
+        if enlarged:
+            told.append(("left after", channel.measured - new, AFTER_COLOUR))
+        for name, residual, colour in told:
+            line = Line(name, *thinned(time, factor * residual), colour)
+            stack.append(Panel(f"{name} [{unit}]", (line,), shaded, band, 1.0, 2.0 * band))
+    command = Line("command", *thinned(time, experiment.command), COMMAND_COLOUR, stepped=True)
+    stack.append(Panel("command [V]", (command,), shaded, None, 0.8))
+    return stack

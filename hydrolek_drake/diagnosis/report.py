@@ -1,0 +1,63 @@
+"""What a diagnosis leaves in its folder: report, page, fitted rig, residuals."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import yaml
+
+from hydrolek_drake.diagnosis.diagnosis import Diagnosis
+from hydrolek_drake.diagnosis.page import page
+from hydrolek_drake.diagnosis.panels import simulated
+from hydrolek_drake.diagnosis.report_json import as_json
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import write_whole
+from hydrolek_drake.recordings import write_signals
+
+
+def write_report(diagnosis: Diagnosis, folder: Path, next_experiment: str | None = None) -> Path:
+    """Write `report.json`, `report.html`, `rig_fitted.yaml` and `residuals_*.parquet`, each when complete.
+
+    Bad data leave only the first two.
+
+    Returns:
+        Path of the page.
+
+    Raises:
+        InputError: the folder cannot be written to.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tree = as_json(diagnosis, next_experiment)
+        if diagnosis.bench is not None:
+            rig = diagnosis.fitted_rig().as_tree()
+            write_whole(folder / "rig_fitted.yaml", yaml.safe_dump(rig, sort_keys=False, allow_unicode=True))
+            _write_residuals(diagnosis, folder)
+        write_whole(folder / "report.html", page(diagnosis, next_experiment))
+        write_whole(folder / "report.json", json.dumps(tree, indent=1, allow_nan=False))
+    except OSError as error:
+        raise InputError(f"--out {folder}: cannot write there: {error.strerror or error}") from None
+    return folder / "report.html"
+
+
+def _write_residuals(diagnosis: Diagnosis, folder: Path) -> None:
+    """One file a recording: what was measured, and what is left before and after."""
+    assert diagnosis.bench is not None
+    sides = {"train": diagnosis.bench.training, "holdout": diagnosis.held_out}
+    for side, experiments in sides.items():
+        for number, experiment in enumerate(experiments, start=1):
+            before = simulated(diagnosis, diagnosis.baseline.hypothesis, experiment)
+            after = simulated(diagnosis, diagnosis.best.hypothesis, experiment)
+            signals: dict[str, np.ndarray] = {f"{experiment.joint}.command": experiment.command}
+            units = {f"{experiment.joint}.command": "V"}
+            for channel in experiment.channels:
+                told = {
+                    "measured": channel.measured,
+                    "before": channel.measured - getattr(before, channel.model),
+                    "after": channel.measured - getattr(after, channel.model),
+                }
+                for name, values in told.items():
+                    signals[f"{channel.key}_{name}"] = values
+                    units[f"{channel.key}_{name}"] = channel.unit
+            path = folder / f"residuals_{side}_{number}_{experiment.joint}.parquet"
+            write_signals(path, experiment.time, signals, units)

@@ -1,0 +1,136 @@
+"""`report.json`, as the contract promises it."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.diagnosis import Diagnosis, smallest_visible
+from hydrolek_drake.diagnosis.words import effect_sentence, headline, path_of, quantity
+from hydrolek_drake.identification.experiment import Channel, Experiment
+from hydrolek_drake.replay.display import display_factor, display_unit
+
+MOST_LISTED = 12
+"""So many hypotheses are listed."""
+
+
+def as_json(diagnosis: Diagnosis, next_experiment: str | None) -> dict[str, Any]:
+    """The report as a tree."""
+    report: dict[str, Any] = {
+        "schema": 1,
+        "verdict": diagnosis.verdict,
+        "sentence": headline(diagnosis),
+        "locations": [
+            {
+                "stage": place.stage,
+                "joint": place.joint,
+                "share_of_mismatch": round(place.share, 4),
+                "when": [[round(a, 3), round(b, 3)] for a, b in place.when],
+                "condition": place.condition,
+            }
+            for place in diagnosis.locations
+        ],
+        "effects": effects_json(diagnosis),
+        "not_distinguishable": [list(g) for g in diagnosis.conclusion.groups] if diagnosis.conclusion else [],
+        "next_experiment": next_experiment,
+        "detectable_from": detectable(diagnosis),
+        "fit": fit_json(diagnosis),
+        "candidates": candidates_json(diagnosis),
+        "reasons": list(diagnosis.reasons),
+        "seconds": round(diagnosis.seconds, 1),
+    }
+    return report
+
+
+def effects_json(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """What was added to the model, the most probable first."""
+    if diagnosis.conclusion is None:
+        return []
+    told = []
+    for candidate in diagnosis.best.hypothesis.effects:
+        parameters = {}
+        for parameter in candidate.effect.parameters:
+            known = diagnosis.intervals[path_of(candidate, parameter)]
+            parameters[parameter.name] = {"value": known.value, "low": known.low, "high": known.high}
+        told.append(
+            {
+                "id": candidate.id,
+                "joint": candidate.joint,
+                "probability": round(diagnosis.conclusion.probability[candidate.size_path], 4),
+                "parameters": parameters,
+                "sentence": effect_sentence(candidate, diagnosis),
+            }
+        )
+    return sorted(told, key=lambda entry: -entry["probability"])
+
+
+def detectable(diagnosis: Diagnosis) -> dict[str, str]:
+    """Effect -> smallest size that these data would have shown."""
+    if diagnosis.search is None:
+        return {}
+    found = {}
+    for score in smallest_visible(diagnosis):
+        effect = score.candidate.effect
+        unit = next(p.unit for p in effect.parameters if p.name == effect.size)
+        bound = "at most" if effect.weakens else "at least"
+        found[effect.id] = f"{effect.size} {bound} {quantity(score.visible_from, unit)}"
+    return found
+
+
+def fit_json(diagnosis: Diagnosis) -> dict[str, Any] | None:
+    """Errors of the position before and after, in the unit that people read."""
+    if diagnosis.bench is None:
+        return None
+    training, held_out = diagnosis.bench.training, diagnosis.held_out
+    channel = training[0].channels[0]
+    factor = display_factor(channel.unit)
+    sides = {}
+    for name, judged in (("baseline", diagnosis.baseline), ("with_effects", diagnosis.best)):
+        hypothesis = judged.hypothesis
+        train = diagnosis.bench.residuals(hypothesis, training, diagnosis.step)
+        sides[name] = {
+            "train_rms": factor * position_rms(training, train),
+            "holdout_rms": factor * position_rms(held_out, judged.held_out),
+            "train_over_noise": hypothesis.fit.over_noise,
+            "holdout_over_noise": judged.over_noise,
+        }
+    return {
+        "noise_floor": factor * _mean_noise(training, channel.key),
+        "unit": display_unit(channel.unit),
+        **sides,
+    }
+
+
+def position_rms(experiments: tuple[Experiment, ...], residuals: np.ndarray) -> float:
+    """Root mean square of the positions' residuals [SI], from residuals in units of the noise."""
+    squared, count, place = 0.0, 0, 0
+    for experiment in experiments:
+        for index, channel in enumerate(experiment.channels):
+            part = residuals[place : place + experiment.time.size]
+            place += experiment.time.size
+            if index == 0:
+                squared += float(np.sum((part * channel.deviation) ** 2))
+                count += _counted(experiment, channel)
+    return math.sqrt(squared / max(count, 1))
+
+
+def _counted(experiment: Experiment, channel: Channel) -> int:
+    return int((experiment.used & np.isfinite(channel.measured)).sum())
+
+
+def _mean_noise(experiments: tuple[Experiment, ...], key: str) -> float:
+    levels = [c.noise for e in experiments for c in e.channels[:1] if c.key == key]
+    return float(np.sqrt(np.mean(np.square(levels))))
+
+
+def candidates_json(diagnosis: Diagnosis) -> list[dict[str, Any]]:
+    """The hypotheses that were held against held-out data, the most probable first."""
+    return [
+        {
+            "effects": [c.id for c in judged.hypothesis.effects],
+            "probability": round(judged.probability, 6),
+            "train_over_noise": judged.hypothesis.fit.over_noise,
+            "holdout_over_noise": judged.over_noise,
+        }
+        for judged in diagnosis.judged[:MOST_LISTED]
+    ]

@@ -1,0 +1,124 @@
+"""How much an effect could improve a fit, from rollouts at a few sizes and linear algebra alone.
+
+Around a fitted model the residuals are r + J d for a small change d of its parameters. With an effect at some
+size the residuals are r + e. What the fitted parameters cannot undo of e is its part across the columns of J.
+The gain of the effect is the fall of the squared residuals if it takes its best multiple:
+
+    gain = (e . r)^2 / (e . e), both across J, if they point against each other.
+
+It is the score test of Rao (1948) with finite differences, so it also sees effects that start like a play.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.least_squares import Fit
+
+SHRUNK = (1.0, 0.1)
+"""Sizes at which an effect is tried, as multiples of the starts of its search."""
+
+
+@dataclass(frozen=True)
+class Score:
+    """One effect held against what a model leaves.
+
+    Attributes:
+        candidate: the effect.
+        gain: predicted fall of the squared residuals, in units of the noise squared.
+        start: full path -> value at which its fit should begin.
+        left: squared residuals with the effect at its start, after the best change of the fitted parameters.
+        visible_from: size of the effect (SI) whose gain would be `VISIBLE`.
+    """
+
+    candidate: Candidate
+    gain: float
+    start: dict[str, float]
+    left: float
+    visible_from: float
+
+
+AT_BOUND = 1e-3
+"""A fitted parameter this close to an end of its range (in ranges) cannot move on."""
+
+VISIBLE = 16.0
+"""Gain at which an effect would have been seen: four standard deviations of its size."""
+
+
+class Across:
+    """Projection across the columns of a fit's Jacobian."""
+
+    def __init__(self, fit: Fit) -> None:
+        """Orthonormal basis of the columns; those that say nothing or cannot move on are left out."""
+        norms = np.linalg.norm(fit.jacobian, axis=0)
+        use = (norms > 0.0) & (np.abs(fit.unit - 0.5) < 0.5 - AT_BOUND)
+        kept = fit.with_prior[:, use] / norms[use]
+        if kept.shape[1]:
+            left, singular, _ = np.linalg.svd(kept, full_matrices=False)
+            self._basis = left[:, singular > 1e-8 * singular[0]]
+        else:
+            self._basis = np.zeros((len(fit.with_prior), 0))
+
+    def __call__(self, vector: np.ndarray) -> np.ndarray:
+        """The part of a vector that the columns cannot make."""
+        return vector - self._basis @ (self._basis.T @ vector)
+
+
+def scores_of(
+    bench: Workbench, hypothesis: Hypothesis, candidates: Sequence[Candidate], step: float
+) -> list[Score]:
+    """Score every candidate that the model does not have yet, the most promising first."""
+    own = {candidate.size_path for candidate in hypothesis.effects}
+    across = Across(hypothesis.fit)
+    free = [candidate for candidate in candidates if candidate.size_path not in own]
+    here = np.concatenate([bench.residuals(hypothesis, bench.training, step), hypothesis.fit.off_prior])
+    scored = bench.side_by_side(lambda c: _score(bench, hypothesis, c, step, across, here), free)
+    return sorted(scored, key=lambda score: -score.gain)
+
+
+def _score(
+    bench: Workbench,
+    hypothesis: Hypothesis,
+    candidate: Candidate,
+    step: float,
+    across: Across,
+    here: np.ndarray,
+) -> Score:
+    bench.alive()
+    effects = (*hypothesis.effects, candidate)
+    problem = bench.problem(effects, step)
+    left = across(here)
+    best_gain, best_left = 0.0, float("inf")
+    start = candidate.starts[0]
+    weakens = candidate.effect.weakens
+    visible = 0.0 if weakens else float("inf")
+    for begin in candidate.starts:
+        for shrink in SHRUNK:
+            size = begin[candidate.size_path] * (1.0 / shrink if weakens else shrink)
+            tried = {**begin, candidate.size_path: size}
+            if not _inside(candidate, tried):
+                continue
+            moved = problem.residuals(problem.parameters.unit({**hypothesis.values, **tried}))
+            # parameters of the effect have no prior, and those of the model have not moved
+            change = np.concatenate([moved, hypothesis.fit.off_prior]) - here
+            e = across(change)
+            power = float(e @ e)
+            if power <= 0.0:
+                continue
+            along = -float(e @ left)
+            gain = along * along / power if along > 0.0 else 0.0
+            remaining = float(np.sum((left + e) ** 2))
+            if remaining < best_left:
+                best_left, start = remaining, tried
+            best_gain = max(best_gain, gain)
+            root = (VISIBLE / power) ** 0.5
+            visible = max(visible, size / root) if weakens else min(visible, abs(size) * root)
+    bench.evaluations += problem.evaluations
+    return Score(candidate, best_gain, start, best_left, visible)
+
+
+def _inside(candidate: Candidate, values: dict[str, float]) -> bool:
+    return all(free.lower <= values[free.path] <= free.upper for free in candidate.free)

@@ -1,0 +1,82 @@
+"""A diagnosis in the words of an engineer."""
+
+from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.diagnosis.diagnosis import Diagnosis
+from hydrolek_drake.diagnosis.intervals import Interval
+from hydrolek_drake.physics.parameters import Parameter
+from hydrolek_drake.replay.display import shown
+
+
+def quantity(value: float, unit: str) -> str:
+    """A value in SI with the unit that people use."""
+    main = unit.split("|")[0]
+    return f"{value:.3g}" if main == "1" else shown(value, main)
+
+
+def sizes(candidate: Candidate, intervals: dict[str, Interval]) -> str:
+    """Every parameter of an effect with its interval."""
+    told = []
+    for parameter in candidate.effect.parameters:
+        known = intervals.get(path_of(candidate, parameter))
+        if known is None:
+            continue
+        told.append(
+            f"{parameter.meaning} {quantity(known.value, parameter.unit)} "
+            f"({quantity(known.low, parameter.unit)} to {quantity(known.high, parameter.unit)})"
+        )
+    return ", ".join(told)
+
+
+def path_of(candidate: Candidate, parameter: Parameter) -> str:
+    """Full path of an effect's parameter."""
+    return f"joints.{candidate.joint}.effects.{candidate.id}.{parameter.name}"
+
+
+def effect_sentence(candidate: Candidate, diagnosis: Diagnosis) -> str:
+    """What an engineer would say about one effect."""
+    place = next(
+        (p for p in diagnosis.locations if (p.stage, p.joint) == (candidate.effect.stage, candidate.joint)),
+        None,
+    )
+    where = f" It shows {place.condition}." if place else ""
+    return (
+        f"{candidate.joint}, {candidate.effect.stage}: {candidate.effect.title}: "
+        f"{sizes(candidate, diagnosis.intervals)}.{where}"
+    )
+
+
+def headline(diagnosis: Diagnosis) -> str:
+    """The verdict in one sentence."""
+    if diagnosis.verdict == "bad_data":
+        return f"These recordings cannot be diagnosed: {diagnosis.reasons[0]}."
+    best, baseline = diagnosis.best, diagnosis.baseline
+    before, after = _ratio(baseline.over_noise), _ratio(best.over_noise)
+    if diagnosis.verdict == "none":
+        return (
+            f"Nothing is missing: the nominal model, with its own parameters fitted, predicts the held-out data "
+            f"to {after} the noise."
+        )
+    names = " and ".join(c.effect.title for c in best.hypothesis.effects)
+    stages = " and ".join(dict.fromkeys(c.effect.stage for c in best.hypothesis.effects))
+    if diagnosis.verdict == "missing_physics":
+        return (
+            f"The model leaves out {names} ({stages}): with it the error on held-out data falls from "
+            f"{before} to {after} the noise."
+        )
+    if diagnosis.verdict == "ambiguous":
+        groups = diagnosis.conclusion.groups if diagnosis.conclusion else ()
+        if not groups:
+            return "Something small may be missing, but these data do not decide whether it is."
+        group = " or ".join(groups[0])
+        return (
+            f"Something is missing, but these data cannot tell {group} apart: the most probable of them takes "
+            f"the error on held-out data from {before} to {after} the noise."
+        )
+    return (
+        f"Physics is missing that is in no list: the best of the known effects leaves {after} the noise on "
+        f"held-out data (nominal model: {before})."
+    )
+
+
+def _ratio(over_noise: float) -> str:
+    return f"{over_noise:.3g} times"

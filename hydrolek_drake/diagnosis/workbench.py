@@ -1,0 +1,182 @@
+"""Fits of the nominal model and of models with effects, all to the same recordings."""
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import Fit, fit_from
+from hydrolek_drake.identification.parameter_set import Free, ParameterSet
+from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.replay.noise import noise_level
+from hydrolek_drake.rigs import Rig
+
+SPREAD = 1.0 / math.sqrt(12.0)
+"""Standard deviation, in ranges, of a parameter of which only its range is known.
+
+Used as a weak prior about the rig's own values: what a recording does not tell stays where the rig has it,
+instead of wandering off to make up for physics that is missing.
+"""
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """The nominal model with some effects, fitted.
+
+    Attributes:
+        effects: what is added to the nominal model; empty for the nominal model itself.
+        values: full path -> fitted value (SI), nominal parameters first.
+        fit: how well it follows the training data, and its Jacobian.
+        step: integration step with which it was fitted [s].
+    """
+
+    effects: tuple[Candidate, ...]
+    values: dict[str, float]
+    fit: Fit
+    step: float
+
+    @property
+    def ids(self) -> frozenset[str]:
+        """What identifies it: id and joint of its effects."""
+        return key_of(self.effects)
+
+    @property
+    def extra(self) -> int:
+        """Parameters that the nominal model does not have."""
+        return sum(len(candidate.free) for candidate in self.effects)
+
+
+def key_of(effects: Iterable[Candidate]) -> frozenset[str]:
+    """A set of effects, whatever their order."""
+    return frozenset(candidate.size_path for candidate in effects)
+
+
+class Workbench:
+    """Recordings for training, the rig's nominal parameters, and fits of any set of effects."""
+
+    def __init__(
+        self,
+        rig: Rig,
+        nominal: Sequence[Free],
+        training: Sequence[Experiment],
+        pool: Executor,
+        alive: Callable[[], None] = lambda: None,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            rig: the machine with nominal values and all searched effects off.
+            nominal: its free parameters.
+            training: the recordings that are fitted.
+            pool: threads for fits side by side.
+            alive: called before each fit; may raise `KeyboardInterrupt`.
+        """
+        self.rig = rig
+        self.nominal = tuple(nominal)
+        self.training = tuple(training)
+        self.pool = pool
+        self.alive = alive
+        self.evaluations = 0
+        self._sets: dict[frozenset[str], ParameterSet] = {}
+
+    @property
+    def fine(self) -> float:
+        """The rig's own integration step [s]."""
+        return self.training[0].longest_step
+
+    def parameters(self, effects: Sequence[Candidate]) -> ParameterSet:
+        """The searched parameters of the nominal model with these effects."""
+        key = key_of(effects)
+        if key not in self._sets:
+            free = [*self.nominal, *(p for candidate in effects for p in candidate.free)]
+            self._sets[key] = ParameterSet(self.rig, free)
+        return self._sets[key]
+
+    def problem(
+        self, effects: Sequence[Candidate], step: float, experiments: Sequence[Experiment] | None = None
+    ) -> Problem:
+        """Residuals of this model, on the training data unless others are given."""
+        parameters = self.parameters(effects)
+        prior = np.full(len(parameters), np.inf)
+        prior[: len(self.nominal)] = SPREAD
+        return Problem(parameters, experiments or self.training, step, prior=prior)
+
+    def fit(
+        self,
+        effects: Sequence[Candidate],
+        values: dict[str, float],
+        step: float,
+        most_steps: int,
+        tolerance: float = 1e-5,
+        experiments: Sequence[Experiment] | None = None,
+    ) -> Hypothesis:
+        """Fit the nominal model with these effects.
+
+        Args:
+            effects: what is added.
+            values: full path -> start; parameters that are not named start at the rig's own value.
+            step: integration step [s].
+            most_steps: of the trust-region method.
+            tolerance: relative change of the squared residuals at which it ends.
+            experiments: to be fitted; None for all training data.
+        """
+        self.alive()
+        effects = tuple(effects)
+        problem = self.problem(effects, step, experiments)
+        parameters = problem.parameters
+        fit = fit_from(problem, parameters.unit(values), most_steps=most_steps, tolerance=tolerance)
+        self.evaluations += fit.evaluations
+        return Hypothesis(effects, parameters.values(fit.unit), fit, step)
+
+    def refit(
+        self, hypothesis: Hypothesis, step: float, most_steps: int, tolerance: float = 1e-5
+    ) -> Hypothesis:
+        """Go on from where a fit ended, usually with a finer step."""
+        return self.fit(hypothesis.effects, hypothesis.values, step, most_steps, tolerance)
+
+    def residuals(self, hypothesis: Hypothesis, experiments: Sequence[Experiment], step: float) -> np.ndarray:
+        """Residuals of a fitted model on any recordings, in units of the noise. # (values,)."""
+        problem = self.problem(hypothesis.effects, step, experiments)
+        return problem.residuals(problem.parameters.unit(hypothesis.values))
+
+    def side_by_side(self, work: Callable, items: Sequence) -> list:
+        """Results of independent pieces of work, in their order; an interrupt cancels those not begun."""
+        futures = [self.pool.submit(work, item) for item in items]
+        try:
+            return [future.result() for future in futures]
+        except BaseException:
+            for future in futures:
+                future.cancel()
+            raise
+
+    def weighted_by(self, hypothesis: Hypothesis, experiments: Sequence[Experiment]) -> list[Experiment]:
+        """The same experiments with noise and model error as they show beside this model.
+
+        A recorded signal's own movement passes for noise where it is fast; most of it is gone in the residual.
+        The error of the integration is told from a second rollout with half the step: the method is of second
+        order, so the coarser one is wrong by 4/3 of their difference.
+        """
+        problem = self.problem(hypothesis.effects, self.fine, experiments)
+        records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
+        better = []
+        for experiment in experiments:
+            coarse = experiment.simulate(records, self.fine).signals
+            fine = experiment.simulate(records, 0.5 * self.fine).signals
+            channels = []
+            for channel in experiment.channels:
+                model = getattr(fine, channel.model)
+                level = noise_level(channel.measured - model)
+                error = 4.0 / 3.0 * np.abs(getattr(coarse, channel.model) - model)
+                channels.append(
+                    replace(
+                        channel,
+                        noise=level if 0.0 < level < channel.noise else channel.noise,
+                        model_error=np.nan_to_num(error),
+                    )
+                )
+            better.append(replace(experiment, channels=tuple(channels)))
+        return better

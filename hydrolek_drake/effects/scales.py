@@ -1,0 +1,138 @@
+"""A machine's natural scales: what is large and what is small on it.
+
+A search for an effect must know how far to look on a machine that it has never seen. Each effect states its
+range as multiples of one of these scales, which follow from the rig's own numbers and from the recording.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from hydrolek_drake.effects.effect import Search
+
+
+@dataclass(frozen=True)
+class Scales:
+    """What follows from a joint's nominal numbers and from what was recorded; SI units.
+
+    Attributes:
+        force: of the actuator at full supply (rod side for cylinders) [N or N m].
+        load_force: the same at the joint [N m or N].
+        rod_speed: at full opening without load [m/s or rad/s].
+        load_speed: the same at the joint [rad/s or m/s].
+        conductance: full flow over supply pressure [m^3/(s Pa)].
+        resistance: its inverse [Pa s/m^3].
+        overlap: of the spool; its full opening if it has none [m].
+        spool_force: of the spring at full opening [N].
+        air_fraction: at which air doubles the oil's compressibility at a quarter of the supply pressure.
+        travel: of the joint in the recording [rad or m].
+        stroke: the same at the actuator [m or rad].
+        travel_time: for this travel at full speed [s].
+        duration: of the recording [s].
+        inertia: of the load [kg m^2 or kg].
+        payload: mass whose weight is the load force at the tool [kg]; infinite if payloads have no weight.
+    """
+
+    force: float
+    load_force: float
+    rod_speed: float
+    load_speed: float
+    conductance: float
+    resistance: float
+    overlap: float
+    spool_force: float
+    air_fraction: float
+    travel: float
+    stroke: float
+    travel_time: float
+    duration: float
+    inertia: float
+    payload: float
+    unity: float = 1.0
+
+    @property
+    def damping(self) -> float:
+        """Force over speed at the rod [N s/m]."""
+        return self.force / self.rod_speed
+
+    @property
+    def load_damping(self) -> float:
+        """Force over speed at the joint [N m s/rad or N s/m]."""
+        return self.load_force / self.load_speed
+
+    @property
+    def load_stiffness(self) -> float:
+        """Load force over travel [N m/rad or N/m]."""
+        return self.load_force / self.travel
+
+    @property
+    def drift_per_min(self) -> float:
+        """The whole travel over the recording [rad/min or m/min]."""
+        return self.travel * 60.0 / self.duration
+
+    def range_of(self, search: Search) -> tuple[float, float, tuple[float, ...]]:
+        """Lower and upper end and the starts of a search (SI)."""
+        scale = float(getattr(self, search.of))
+        return search.lowest * scale, search.largest * scale, tuple(s * scale for s in search.starts)
+
+
+def motor_scales(force: float, speed: float, inertia: float, travel: float, duration: float) -> Scales:
+    """Scales of a joint without hydraulics: what belongs to oil and valve is NaN."""
+    nothing = math.nan
+    return Scales(
+        force=force,
+        load_force=force,
+        rod_speed=speed,
+        load_speed=speed,
+        conductance=nothing,
+        resistance=nothing,
+        overlap=nothing,
+        spool_force=nothing,
+        air_fraction=nothing,
+        travel=travel,
+        stroke=travel,
+        travel_time=travel / speed,
+        duration=duration,
+        inertia=inertia,
+        payload=inertia,
+    )
+
+
+def hydraulic_scales(joint: Any, full_flow: float, lever: float, travel: float, duration: float) -> Scales:
+    """Scales of a hydraulic joint.
+
+    Args:
+        joint: its parameter record.
+        full_flow: through the fully opened valve at half of the supply pressure [m^3/s].
+        lever: rod travel over joint travel in the middle of what was recorded [m/rad or 1].
+        travel: of the joint in the recording [rad or m].
+        duration: of the recording [s].
+    """
+    pressure = float(joint["supply"]["pressure"] - joint["supply"]["tank_pressure"])
+    area = float(joint["cylinder"]["area_a"])
+    valve, solenoid = joint["valve"], joint["solenoid"]
+    overlap = float(valve["overlap_a"]) or float(valve["full_opening_a"])
+    spring = float(solenoid["spring"])
+    weight = abs(float(joint["load"]["payload_gravity_cos"])) + abs(
+        float(joint["load"]["payload_gravity_sin"])
+    )
+    force = pressure * area
+    speed = full_flow / area
+    return Scales(
+        force=force,
+        load_force=force * lever,
+        rod_speed=speed,
+        load_speed=speed / lever,
+        conductance=full_flow / pressure,
+        resistance=pressure / full_flow,
+        overlap=overlap,
+        spool_force=spring * float(valve["full_opening_a"]),
+        air_fraction=(0.25 * pressure) ** 2
+        / (float(joint["fluid"]["bulk_modulus"]) * float(joint["fluid"]["atmospheric_pressure"])),
+        travel=travel,
+        stroke=travel * lever,
+        travel_time=travel * lever / speed,
+        duration=duration,
+        inertia=float(joint["load"]["inertia"]),
+        payload=force * lever / weight if weight > 0.0 else math.inf,
+    )
