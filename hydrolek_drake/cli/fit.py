@@ -25,9 +25,7 @@ def fit(
     budget: Annotated[int, typer.Option(min=1, help="simulations that a search may make")] = 8000,
     norm: Annotated[str, typer.Option(help="p of (4.13): 1, 2 or inf")] = "2",
     segments: Annotated[int, typer.Option(min=1, help="parts of the recordings for nsga2, (4.17)")] = 8,
-    loss: Annotated[
-        str, typer.Option(help="of least squares: linear, soft_l1, huber or cauchy")
-    ] = "linear",
+    loss: Annotated[str, typer.Option(help="of least squares: linear, soft_l1, huber or cauchy")] = "linear",
     workers: Annotated[int, typer.Option(min=1, help="processes for the evaluations")] = 1,
     cluster: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Dask scheduler, such as tcp://host:8786")
@@ -86,13 +84,13 @@ def fit(
             progress=lambda done, best: status.update(f"{method}: {done} evaluations, best {best:.4g}"),
         )
     table = Table("parameter", "value", "95 % interval", "unit")
-    for path, (value, low, high) in fitted.intervals().items():
-        table.add_row(path, f"{value:.6g}", f"{low:.6g} to {high:.6g}", loaded.entries[path].unit)
+    for name, (value, low, high) in fitted.intervals().items():
+        table.add_row(name, f"{value:.6g}", f"{low:.6g} to {high:.6g}", loaded.entries[name].unit)
     output.print(table)
     for sentence in sentences(fitted):
         output.print(sentence, markup=False, soft_wrap=True)
     if out is not None:
-        for written in write_fit(fitted, out):
-            output.print(f"wrote {written}", markup=False, soft_wrap=True)
+        for file in write_fit(fitted, out):
+            output.print(f"wrote {file}", markup=False, soft_wrap=True)
     if fitted.interrupted:
         raise KeyboardInterrupt

@@ -69,7 +69,11 @@ class RigFit:
         rows = {}
         for free, u, h in zip(self.parameters.free, self.unit, half, strict=True):
             low, high = np.clip([u - h, u + h], 0.0, 1.0)
-            rows[free.path] = (free.from_unit(float(u)), free.from_unit(float(low)), free.from_unit(float(high)))
+            rows[free.path] = (
+                free.from_unit(float(u)),
+                free.from_unit(float(low)),
+                free.from_unit(float(high)),
+            )
         return rows
 
 

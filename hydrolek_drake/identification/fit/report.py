@@ -11,11 +11,21 @@ AT_NOISE = 1.05
 """Rms over noise up to which a fit counts as having reached it."""
 
 
+AT_END = 1e-3
+"""Part of the range from its end within which a parameter counts as having run into it."""
+
+
 def sentences(fitted: RigFit) -> list[str]:
     """How well it follows, and what the recordings cannot tell."""
     lines = [f"{fitted.method}, {fitted.evaluations} evaluations: {_judged(fitted.over_noise)}"]
     if fitted.holdout_over_noise is not None:
         lines.append(f"held-out recordings: {_judged(fitted.holdout_over_noise)}")
+    for free, u in zip(fitted.parameters.free, fitted.unit, strict=True):
+        if min(u, 1.0 - u) < AT_END:
+            which = "lower" if u < 0.5 else "upper"
+            lines.append(
+                f"{free.path} ended at the {which} end of its range: widen the range, or doubt the model"
+            )
     for one, other, correlation in fitted.known.confused[:5]:
         lines.append(f"{one} and {other} cannot be told apart here (correlation {correlation:+.3f})")
     for direction in fitted.known.blurred():

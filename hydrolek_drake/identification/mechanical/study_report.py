@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from hydrolek_drake.identification.genetic.settings import SIMPLE
 from hydrolek_drake.identification.mechanical.mechanical_model import mechanical_parameters
 from hydrolek_drake.identification.mechanical.study import Run, study_data
 
@@ -114,7 +115,7 @@ def _median(runs: Sequence[Run], attribute: str) -> str:
 
 
 def learning_picture(runs: Sequence[Run], name: str) -> bytes:
-    """Mean of the learning curves of each row, each run normalized to 1 at its first generation."""
+    """Learning curves of each row: geometric mean of the runs, each over its best of the first population."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(7.0, 4.0), layout="constrained")
@@ -122,12 +123,13 @@ def learning_picture(runs: Sequence[Run], name: str) -> bytes:
     for row in CURVES[name]:
         own = [run.learning for run in runs if run.row == row]
         shortest = min(map(len, own))
-        curves = np.array([curve[:shortest] / curve[0] for curve in own])
-        axis.plot(np.arange(1, shortest + 1), curves.mean(axis=0), label=LABELS.get(name, {}).get(row, row))
+        curves = np.array([curve[:shortest] / curve[min(SIMPLE.population, shortest) - 1] for curve in own])
+        mean = np.exp(np.log(np.maximum(curves, np.finfo(float).tiny)).mean(axis=0))
+        axis.semilogy(np.arange(1, shortest + 1), mean, label=LABELS.get(name, {}).get(row, row))
     axis.set_xlabel("evaluations")
-    axis.set_ylabel("least objective over that of the first chromosome")
-    axis.set_title(f"mean of {len(own)} runs", fontsize=9)
-    axis.set_ylim(0.0, 1.05)
+    axis.set_ylabel("least objective over that of the first population")
+    axis.set_title(f"geometric mean of {len(own)} runs", fontsize=9)
+    axis.set_ylim(None, 3.0)
     axis.grid(alpha=0.25)
     axis.legend()
     data = io.BytesIO()

@@ -32,7 +32,7 @@ class ClusterWorkers:
         from distributed import Client
 
         try:
-            self._client = Client(address, timeout=CONNECT_WITHIN, set_as_default=False)
+            self._client = Client(address, timeout=CONNECT_WITHIN)
         except (OSError, ValueError, TimeoutError) as error:
             raise InputError(
                 f"--cluster {address}: no Dask scheduler answers there; start one with 'dask scheduler' and "
@@ -41,7 +41,9 @@ class ClusterWorkers:
         self.overdue = overdue
         if not self._client.scheduler_info()["workers"]:
             self._client.close()
-            raise InputError(f"--cluster {address}: the scheduler has no workers; start 'dask worker {address}'")
+            raise InputError(
+                f"--cluster {address}: the scheduler has no workers; start 'dask worker {address}'"
+            )
         self._objective = objective
         self._sent = self._client.scatter(objective, broadcast=True)
 
@@ -78,7 +80,9 @@ class ClusterWorkers:
             for chunk in chunks
         ]
         rounds = -(-len(chunks) // threads)
-        longest = None if self.overdue is None else self.overdue * rounds * max(len(chunk) for chunk in chunks)
+        longest = (
+            None if self.overdue is None else self.overdue * rounds * max(len(chunk) for chunk in chunks)
+        )
         try:
             wait(futures, timeout=longest)
         except (DaskTimeoutError, TimeoutError):

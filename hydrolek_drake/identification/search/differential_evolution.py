@@ -1,9 +1,15 @@
 """Differential evolution (Storn and Price, 1997), scipy's implementation."""
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.optimize import differential_evolution
 
 from hydrolek_drake.identification.search.evaluation import Evaluator
+
+
+class _Stopped(Exception):
+    """Carries any error through scipy, which replaces a ValueError of an objective by a message of its own."""
 
 
 def run_differential_evolution(
@@ -17,11 +23,28 @@ def run_differential_evolution(
         first: places to begin with; the best-first one is made a member. # (k, d)
         members: of the population for each parameter.
     """
+    trouble: list[Exception] = []
 
     def values(columns: np.ndarray) -> np.ndarray:
-        units = np.atleast_2d(columns.T)
-        return evaluator.values(units)[:, 0]
+        try:
+            return evaluator.values(np.atleast_2d(columns.T))[:, 0]
+        except Exception as error:
+            trouble.append(error)
+            raise _Stopped from error
 
+    try:
+        _minimise(values, evaluator, rng, first, members)
+    except _Stopped:
+        raise trouble[0] from None
+
+
+def _minimise(
+    values: Callable[[np.ndarray], np.ndarray],
+    evaluator: Evaluator,
+    rng: np.random.Generator,
+    first: np.ndarray | None,
+    members: int,
+) -> None:
     differential_evolution(
         values,
         [(0.0, 1.0)] * evaluator.dimension,

@@ -19,9 +19,7 @@ _objective: Any = None  # of a worker process: sent once, not with each point
 
 def chunks_of(count: int, workers: int) -> list[np.ndarray]:
     """Indices 0 ... count - 1 in nearly equal runs, `CHUNKS_PER_WORKER` for each worker."""
-    return [
-        chunk for chunk in np.array_split(np.arange(count), CHUNKS_PER_WORKER * workers) if chunk.size
-    ]
+    return [chunk for chunk in np.array_split(np.arange(count), CHUNKS_PER_WORKER * workers) if chunk.size]
 
 
 def evaluate_chunk(objective: Any, points: list[np.ndarray]) -> list[np.ndarray | None]:
@@ -71,7 +69,9 @@ class ProcessWorkers:
         chunks = chunks_of(len(points), self.workers)
         futures = {self._submit([points[i] for i in chunk]): chunk for chunk in chunks}
         rounds = -(-len(chunks) // self.workers)
-        longest = None if self.overdue is None else self.overdue * rounds * max(len(chunk) for chunk in chunks)
+        longest = (
+            None if self.overdue is None else self.overdue * rounds * max(len(chunk) for chunk in chunks)
+        )
         done, late = wait(futures, timeout=longest)
         again = [chunk for future, chunk in futures.items() if not self._collect(future, done, chunk, values)]
         if again:
