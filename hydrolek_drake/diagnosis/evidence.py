@@ -1,10 +1,11 @@
 """Which hypothesis is right, judged on data that none of them was fitted to.
 
 The log-likelihood of the held-out data under a hypothesis that was fitted to the training data is
--chi^2 / 2, less the cost of its effects and of their parameters, all divided by tau. tau is 1 for a
-model at the noise; where even the best model stays above it, tau makes the likelihoods as flat as that misfit
-demands. Probabilities are the normalised exponentials of these (Bayes with equal odds for all hypotheses of
-the same number of parameters).
+-chi^2 / 2, less the cost of its effects and of their parameters, all divided by tau. Fitted parameters that
+are off within their uncertainty add about one to chi^2 each. Where the best model's chi^2 exceeds the noise by
+more, something systematic is left, and tau is that excess for each parameter: differences of that size do not
+decide (quasi-likelihood, McCullagh, Nelder, Generalized Linear Models, 1989, chapter 9). Probabilities are the
+normalised exponentials (Bayes with equal odds for all hypotheses of the same number of effects).
 """
 
 import math
@@ -22,6 +23,9 @@ EFFECT_COST = 4.5
 
 PARAMETER_COST = 1.0
 """Log-odds against each further parameter: what chance gains on data that it was fitted to (Akaike)."""
+
+NOISE_KNOWN = 0.015
+"""Relative uncertainty of the noise level, which is estimated from the recording."""
 
 FINER = 0.5
 """Last fits use this fraction of the rig's own step, so that the step's error cannot decide."""
@@ -94,7 +98,7 @@ def _contenders(first: Sequence[Judged], found: Search) -> list[Hypothesis]:
     """Those that may still win, and always the nominal model and the best fits without one of their effects."""
     ranked = sorted(first, key=lambda j: -j.support)
     best = ranked[0]
-    scale = max(1.0, best.over_noise**2)
+    scale = dispersion(best)
     near = [
         j.hypothesis for j in ranked if (j.half_chi_squared - best.half_chi_squared) / scale < OUT_OF_REACH
     ]
@@ -105,12 +109,18 @@ def _contenders(first: Sequence[Judged], found: Search) -> list[Hypothesis]:
 
 def with_probabilities(judged: Sequence[Judged]) -> list[Judged]:
     """The same, with probabilities, the most probable first."""
-    scale = max(1.0, min(j.over_noise for j in judged) ** 2)
+    scale = dispersion(min(judged, key=lambda j: j.half_chi_squared))
     support = np.array([j.support for j in judged]) / scale
     weight = np.exp(support - support.max())
     weight /= weight.sum()
     ranked = sorted(zip(weight.tolist(), judged, strict=True), key=lambda pair: -pair[0])
     return [Judged(j.hypothesis, j.held_out, j.held_out_counted, w) for w, j in ranked]
+
+
+def dispersion(best: Judged) -> float:
+    """How much flatter than for pure noise the likelihood is: tau, from the best model's excess."""
+    excess = 2.0 * best.half_chi_squared - (1.0 + NOISE_KNOWN) ** 2 * best.held_out_counted
+    return max(1.0, excess / len(best.hypothesis.fit.unit))
 
 
 def probability_of(effect_path: str, judged: Sequence[Judged]) -> float:

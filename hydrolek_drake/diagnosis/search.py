@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.score import Score, scores_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
+from hydrolek_drake.identification.least_squares import Fit
 
 COARSE = 4.0
 """Integration step of the first fits over the rig's own: 16 times its error, a quarter of its time."""
@@ -82,13 +83,13 @@ class Search:
 
 def cost_of(hypothesis: Hypothesis) -> float:
     """Squared residuals plus what chance alone would gain by so many parameters, chosen among many."""
-    gain = gain_needed(hypothesis.fit.counted)
+    gain = max(GAIN_NEEDED, FIDELITY * hypothesis.fit.counted)
     return hypothesis.fit.objective + gain * len(hypothesis.effects) + 2.0 * hypothesis.extra
 
 
-def gain_needed(counted: int) -> float:
-    """Fall of the squared residuals that one effect must bring, with so many values."""
-    return max(GAIN_NEEDED, FIDELITY * counted)
+def gain_needed(fit: Fit) -> float:
+    """Fall of the squared residuals that one more effect must bring."""
+    return max(GAIN_NEEDED, FIDELITY * fit.counted)
 
 
 def search(bench: Workbench, candidates: Sequence[Candidate], say: Callable[[str], None]) -> Search:
@@ -132,7 +133,7 @@ def _worth_going_on(found: Search) -> bool:
     best = found.best
     if found.rounds and len(best.effects) < found.rounds:
         return False  # one effect more did not pay
-    return bool(found.left) and found.left[0].gain > gain_needed(best.fit.counted)
+    return bool(found.left) and found.left[0].gain > gain_needed(best.fit)
 
 
 def fit_baseline(bench: Workbench) -> Hypothesis:
@@ -165,7 +166,7 @@ def _grow(
         )
         for score in scored:
             if _redundant(parent, score.candidate) or (
-                not far and score.gain < 0.5 * gain_needed(parent.fit.counted)
+                not far and score.gain < 0.5 * gain_needed(parent.fit)
             ):
                 continue
             effects = (*parent.effects, score.candidate)

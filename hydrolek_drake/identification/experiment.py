@@ -77,12 +77,18 @@ class Experiment:
     spool_steps: int
     used: np.ndarray
 
-    def simulate(self, records: np.ndarray, longest_step: float | None = None) -> Outcome:
+    def simulate(
+        self,
+        records: np.ndarray,
+        longest_step: float | None = None,
+        probes: tuple[float, np.ndarray] | None = None,
+    ) -> Outcome:
         """Roll the joint out under the recorded command.
 
         Args:
             records: of all joints of the rig. # (joints,)
             longest_step: [s]; None for the rig's own.
+            probes: unknown inputs, as in `rollout.roll_out`.
         """
         record = records[self.index : self.index + 1]
         state = None if self.start is None else rest_state(record, self.start)
@@ -94,6 +100,7 @@ class Experiment:
             state=state,
             longest_step=longest_step or self.longest_step,
             spool_steps=self.spool_steps,
+            probes=probes,
         )
 
     def residuals(self, signals: Signals) -> np.ndarray:

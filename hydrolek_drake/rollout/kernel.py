@@ -54,9 +54,45 @@ class Slopes(NamedTuple):
     lead_w: float
 
 
+class Probe(NamedTuple):
+    """Unknown inputs, one a stage, with which a diagnosis asks where physics is missing; all zero otherwise."""
+
+    command: float  # added to the command [V]
+    amplifier: float  # relative change of the coil currents
+    valve: float  # relative change of the openings
+    supply: float  # added to the supply pressure [Pa]
+    cylinder: float  # force added at the rod [N]
+    load: float  # moment added at the joint [N m]
+    sensor: float  # added to the reading [rad or m]
+
+
+PROBES = Probe._fields
+NO_PROBE = np.zeros((0, len(PROBES)))
+
+
+@njit
+def _probe_at(time: float, begin: float, spacing: float, values: np.ndarray) -> Probe:
+    """Probes at a time, on straight lines between samples of uniform spacing."""
+    if len(values) == 0:
+        return Probe(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    place = min(max((time - begin) / spacing, 0.0), len(values) - 1.0)
+    i = min(int(place), len(values) - 2)
+    f = place - i
+    a, b = values[i], values[i + 1]
+    return Probe(
+        a[0] + f * (b[0] - a[0]),
+        a[1] + f * (b[1] - a[1]),
+        a[2] + f * (b[2] - a[2]),
+        a[3] + f * (b[3] - a[3]),
+        a[4] + f * (b[4] - a[4]),
+        a[5] + f * (b[5] - a[5]),
+        a[6] + f * (b[6] - a[6]),
+    )
+
+
 @njit
 def rates(
-    s: State, x: float, voltage: float, time: float, inertia: float, joint: Any
+    s: State, x: float, voltage: float, time: float, inertia: float, probe: Probe, joint: Any
 ) -> tuple[State, Slopes, float, float]:
     """Rates of the state, their stiff slopes, the supply pressure [Pa] and the rod force [N]."""
     rocking = hooks.base_stiffness(joint) > 0.0
@@ -77,8 +113,10 @@ def rates(
     else:
         stroke, lever = linkage.stroke_and_lever(side_q, joint)
         v = lever * side_w
-        p_supply = supply.supply_pressure(s.flow, joint)
+        p_supply = supply.supply_pressure(s.flow, joint) + probe.supply
         open_a, open_b = valve.openings(x, joint)
+        open_a *= 1.0 + probe.valve
+        open_b *= 1.0 + probe.valve
         flow_a, flow_b, drawn, settle_a, settle_b = valve.chamber_flows(
             open_a, open_b, p_supply, s.p_a, s.p_b, time, joint
         )
@@ -91,8 +129,10 @@ def rates(
         force = cylinder.pressure_force(s.p_a, s.p_b, joint) - friction
         flow_rate = supply.flow_rate_of_change(s.flow, drawn, joint)
 
+    force += probe.cylinder
     moment = force * lever
     resisting, slope_r = load.resisting_load(s.q, s.w, time, joint)
+    resisting -= probe.load
     lead_acceleration = slope_lead = 0.0
     if playing:
         side_inertia = joint.linkage.play_inertia
@@ -128,10 +168,19 @@ def rates(
 
 @njit
 def _step(
-    s: State, x: float, x_next: float, voltage: float, time: float, h: float, inertia: float, joint: Any
+    s: State,
+    x: float,
+    x_next: float,
+    voltage: float,
+    time: float,
+    h: float,
+    inertia: float,
+    probe: Probe,
+    probe_next: Probe,
+    joint: Any,
 ) -> State:
     """One Rosenbrock-W step of `h` seconds; the spool goes from `x` to `x_next` meanwhile."""
-    k, slope, _, _ = rates(s, x, voltage, time, inertia, joint)
+    k, slope, _, _ = rates(s, x, voltage, time, inertia, probe, joint)
     c_a = 1.0 / (1.0 - GAMMA * h * slope.p_a)
     c_b = 1.0 / (1.0 - GAMMA * h * slope.p_b)
     c_w = 1.0 / (1.0 - GAMMA * h * slope.w)
@@ -149,7 +198,7 @@ def _step(
         s.lead_q + h * k.lead_q,
         s.lead_w + h * k_l,
     )
-    m, _, _, _ = rates(middle, x_next, voltage, time + h, inertia, joint)
+    m, _, _, _ = rates(middle, x_next, voltage, time + h, inertia, probe_next, joint)
     half = 0.5 * h
     return State(
         max(s.p_a + half * (3.0 * k_a + (m.p_a - 2.0 * k_a) * c_a), 0.0),
@@ -193,6 +242,8 @@ def integrate(
     times: np.ndarray,
     longest_step: float,
     spool_steps: int,
+    probe_spacing: float,
+    probe_values: np.ndarray,
     out: np.ndarray,
 ) -> int:
     """Integrate one joint through a command and write its signals at `times`.
@@ -205,6 +256,8 @@ def integrate(
         times: when to write [s], shape (n,); the integration starts at the first.
         longest_step: [s].
         spool_steps: spool steps within one step.
+        probe_spacing: of the samples of the probes, which begin at the first of `times` [s].
+        probe_values: `PROBES` over time, shape (k, 7); no rows for none.
         out: `SIGNALS`, shape (n, 8).
 
     Returns:
@@ -233,23 +286,32 @@ def integrate(
             until = target
             if following <= last and command_times[following] + delay < target:
                 until = max(command_times[following] + delay, t)
-            voltage = command.drive_voltage(command_values[held], joint)
+            probe = _probe_at(t, begin, probe_spacing, probe_values)
+            voltage = command.drive_voltage(command_values[held] + probe.command, joint)
             steps = max(math.ceil((until - t) / longest_step - 1e-9), 1)
             h = (until - t) / steps
             if h > 0.0:
                 for i in range(steps):
                     time = t + i * h - begin
                     drive_a, drive_b = amplifier.coil_currents(voltage, time + 0.5 * h, joint)
-                    x_next, xd = solenoid.advance(x, xd, drive_a, drive_b, h, spool_steps, joint)
-                    s = _step(s, x, x_next, voltage, time, h, _inertia_at(time, rod, joint), joint)
+                    probe_next = _probe_at(t + (i + 1) * h, begin, probe_spacing, probe_values)
+                    gain = 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
+                    x_next, xd = solenoid.advance(
+                        x, xd, gain * drive_a, gain * drive_b, h, spool_steps, joint
+                    )
+                    inertia = _inertia_at(time, rod, joint)
+                    s = _step(s, x, x_next, voltage, time, h, inertia, probe, probe_next, joint)
                     x = x_next
+                    probe = probe_next
                     play = sensor.played(play, s.q - s.tilt, joint)
             t = until
         if _out_of_bounds(x, s):
             return row
-        voltage = command.drive_voltage(command_values[held], joint)
-        _, _, p_supply, force = rates(s, x, voltage, t - begin, _inertia_at(t - begin, rod, joint), joint)
-        out[row, 0] = sensor.reading(play, t - begin, joint)
+        probe = _probe_at(t, begin, probe_spacing, probe_values)
+        voltage = command.drive_voltage(command_values[held] + probe.command, joint)
+        inertia = _inertia_at(t - begin, rod, joint)
+        _, _, p_supply, force = rates(s, x, voltage, t - begin, inertia, probe, joint)
+        out[row, 0] = sensor.reading(play, t - begin, joint) + probe.sensor
         out[row, 1] = s.q
         out[row, 2] = s.w
         out[row, 3] = s.p_a

@@ -99,6 +99,7 @@ def roll_out(
     state: np.ndarray | None = None,
     longest_step: float,
     spool_steps: int = 1,
+    probes: tuple[float, np.ndarray] | None = None,
 ) -> Outcome:
     """Drive one joint with a recorded command.
 
@@ -110,6 +111,8 @@ def roll_out(
         state: where to start; None for rest at the rig's initial position.
         longest_step: upper bound of the integration step [s].
         spool_steps: steps of the spool within one step of the rest.
+        probes: unknown inputs `kernel.PROBES`: spacing of their samples [s], and the samples, shape (k, 7),
+            the first at the first of `times`; None for none.
 
     Raises:
         InputError: times that do not rise, or not as many command values as command times.
@@ -118,6 +121,7 @@ def roll_out(
     out = np.full((len(times), len(kernel.SIGNALS)), np.nan)
     times = np.ascontiguousarray(times, dtype=float)
     start = np.full(STATE_SIZE, np.nan) if state is None else state.copy()
+    probe_spacing, probe_values = probes or (1.0, kernel.NO_PROBE)
     diverged = _missing_number(joint)
     if diverged is None:
         try:
@@ -130,6 +134,8 @@ def roll_out(
                 times,
                 longest_step,
                 spool_steps,
+                probe_spacing,
+                np.ascontiguousarray(probe_values, dtype=float),
                 out,
             )
             if rows < len(times):
