@@ -31,8 +31,15 @@ COMMANDS: dict[str, CommandEntry] = {
     "replay": CommandEntry(
         "hydrolek_drake.cli.replay", "replay", "drive a rig's model with a recorded command and compare"
     ),
+    "fit": CommandEntry("hydrolek_drake.cli.fit", "fit", "estimate a rig's free parameters from recordings"),
     "diagnose": CommandEntry(
         "hydrolek_drake.cli.diagnose", "diagnose", "find out what physics the model leaves out, and model it"
+    ),
+    "sensitivity": CommandEntry(
+        "hydrolek_drake.cli.sensitivity", "sensitivity", "which parameters matter, and in which part"
+    ),
+    "identify": CommandEntry(
+        "hydrolek_drake.cli.identify", "identify", "identify sdp: SDP models from open-loop step tests"
     ),
     "effects": CommandEntry(
         "hydrolek_drake.cli.effects", "effects", "list the known effects, or show one in full"

@@ -1,0 +1,96 @@
+"""`hydrolek fit`: a rig's free parameters from recordings."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hydrolek_drake.cli.settings import SetOption, parse_settings
+from hydrolek_drake.errors import InputError
+
+
+def fit(
+    rig: Annotated[str, typer.Argument(metavar="RIG", help="name of a built-in rig, or a rig file")],
+    recordings: Annotated[list[Path], typer.Argument(metavar="RECORDING", help="fitted together")],
+    method: Annotated[
+        str, typer.Option(help="least-squares (recommended), cma, de, ga or nsga2 (the thesis's)")
+    ] = "least-squares",
+    parameter: Annotated[
+        list[str] | None,
+        typer.Option(metavar="PATH", help="only this parameter (repeatable); else all with a range"),
+    ] = None,
+    holdout: Annotated[
+        list[Path] | None, typer.Option(metavar="RECORDING", help="only compared with (repeatable)")
+    ] = None,
+    budget: Annotated[int, typer.Option(min=1, help="simulations that a search may make")] = 8000,
+    norm: Annotated[str, typer.Option(help="p of (4.13): 1, 2 or inf")] = "2",
+    segments: Annotated[int, typer.Option(min=1, help="parts of the recordings for nsga2, (4.17)")] = 8,
+    loss: Annotated[str, typer.Option(help="of least squares: linear, soft_l1, huber or cauchy")] = "linear",
+    workers: Annotated[int, typer.Option(min=1, help="processes for the evaluations")] = 1,
+    cluster: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Dask scheduler, such as tcp://host:8786")
+    ] = None,
+    overdue: Annotated[
+        float | None, typer.Option(metavar="SECONDS", help="an evaluation that takes longer has failed")
+    ] = None,
+    set_: SetOption = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="folder for rig_fitted.yaml, fit.json, checkpoint")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="of everything random")] = 1,
+) -> None:
+    """Estimate a rig's free parameters so that its model follows the recordings.
+
+    With --out, Ctrl-C keeps what is done: the same command goes on from there to the same result.
+    """
+    from rich.console import Console
+    from rich.table import Table
+
+    from hydrolek_drake.cli.output import console
+    from hydrolek_drake.identification.fit import fit_rig
+    from hydrolek_drake.identification.fit.report import sentences, write_fit
+    from hydrolek_drake.identification.least_squares import LOSSES
+    from hydrolek_drake.recordings import read_recording
+    from hydrolek_drake.rigs import load_rig
+
+    if norm not in ("1", "2", "inf"):
+        raise InputError(f"--norm {norm}: choose 1, 2 or inf")
+    if loss not in LOSSES:
+        raise InputError(f"--loss {loss}: choose {', '.join(LOSSES)}")
+    given = [*recordings, *(holdout or [])]
+    for path in given:
+        if given.count(path) > 1:
+            raise InputError(f"recording {path} is given twice")
+    output, progress = console(), Console(stderr=True)
+    loaded = load_rig(rig, parse_settings(set_))
+    read = [read_recording(path, loaded.columns) for path in recordings]
+    held = [read_recording(path, loaded.columns) for path in holdout or []]
+    with progress.status("fitting") as status:
+        fitted = fit_rig(
+            loaded,
+            read,
+            method,
+            paths=parameter,
+            holdout=held,
+            budget=budget,
+            p=float(norm),
+            segments=segments,
+            loss=loss,
+            seed=seed,
+            workers=workers,
+            cluster=cluster,
+            overdue=overdue,
+            checkpoint=None if out is None else out / f"checkpoint_{method}",
+            progress=lambda done, best: status.update(f"{method}: {done} evaluations, best {best:.4g}"),
+        )
+    table = Table("parameter", "value", "95 % interval", "unit")
+    for name, (value, low, high) in fitted.intervals().items():
+        table.add_row(name, f"{value:.6g}", f"{low:.6g} to {high:.6g}", loaded.entries[name].unit)
+    output.print(table)
+    for sentence in sentences(fitted):
+        output.print(sentence, markup=False, soft_wrap=True)
+    if out is not None:
+        for file in write_fit(fitted, out):
+            output.print(f"wrote {file}", markup=False, soft_wrap=True)
+    if fitted.interrupted:
+        raise KeyboardInterrupt

@@ -1,0 +1,88 @@
+"""`hydrolek sensitivity`: which parameters matter, and when."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hydrolek_drake.cli.settings import SetOption, parse_settings
+
+
+def sensitivity(
+    rig: Annotated[str, typer.Argument(metavar="RIG", help="name of a built-in rig, or a rig file")],
+    recording: Annotated[
+        Path | None,
+        typer.Argument(metavar="RECORDING", help="whose command drives the joint; else random levels"),
+    ] = None,
+    joint: Annotated[
+        list[str] | None, typer.Option(metavar="JOINT", help="only this joint (repeatable); else all")
+    ] = None,
+    parameter: Annotated[
+        list[str] | None,
+        typer.Option(metavar="PATH", help="only this parameter (repeatable); else the whole chain"),
+    ] = None,
+    spread: Annotated[
+        float, typer.Option(help="part of its value by which a parameter without a range is varied")
+    ] = 0.2,
+    segments: Annotated[int, typer.Option(min=1, help="equal parts of the time")] = 8,
+    trajectories: Annotated[int, typer.Option(min=2, help="of the elementary effects (Morris)")] = 10,
+    top: Annotated[int, typer.Option(min=1, help="rows of the table")] = 20,
+    set_: SetOption = None,
+    out: Annotated[Path | None, typer.Option(metavar="DIR", help="folder for numbers and pictures")] = None,
+    seed: Annotated[int, typer.Option(help="of command and trajectories")] = 1,
+) -> None:
+    """Rank a joint's parameters by what they change in its reading, one at a time and all together."""
+    import numpy as np
+    from rich.console import Console
+    from rich.table import Table
+
+    from hydrolek_drake.cli.output import console
+    from hydrolek_drake.identification.sensitivity.report import short, write_study
+    from hydrolek_drake.identification.sensitivity.study import study_sensitivity
+    from hydrolek_drake.recordings import read_recording
+    from hydrolek_drake.rigs import load_rig
+
+    output, progress = console(), Console(stderr=True)
+    loaded = load_rig(rig, parse_settings(set_))
+    read = None if recording is None else read_recording(recording, loaded.columns)
+    present = [name for name in loaded.joints if read is None or f"{name}.command" in read.signals]
+    for name in joint or present or list(loaded.joints):
+        with progress.status(name) as status:
+            study = study_sensitivity(
+                loaded,
+                name,
+                np.random.default_rng(seed),
+                recording=read,
+                paths=parameter,
+                spread=spread,
+                segments=segments,
+                trajectories=trajectories,
+                say=lambda text, name=name: status.update(f"{name}: {text}"),  # type: ignore[misc]
+            )
+        unit = study.response.unit
+        table = Table(
+            f"{name}", f"mu* [{unit}]", f"sigma [{unit}]", f"one at a time [{unit}]", "most in segment"
+        )
+        for i in study.ranking[:top]:
+            table.add_row(
+                short(study.paths[i], name),
+                f"{np.sqrt((study.effects.mean_size[i] ** 2).mean()):.3g}",
+                f"{np.sqrt((study.effects.deviation[i] ** 2).mean()):.3g}",
+                f"{np.sqrt((study.one_at_a_time.spread[i] ** 2).mean()):.3g}",
+                f"{int(np.argmax(study.effects.mean_size[i])) + 1}",
+            )
+        output.print(table)
+        output.print(
+            f"{name}: {len(study.paths)} parameters varied, {len(study.varied.left_out)} left out; "
+            f"{len(study.known.blurred())} combinations are not determined within their range by this command",
+            soft_wrap=True,
+        )
+        for one, other, correlation in study.known.confused[:5]:
+            output.print(
+                f"{short(one, name)} and {short(other, name)} cannot be told apart "
+                f"(correlation {correlation:+.3f})",
+                soft_wrap=True,
+            )
+        if out is not None:
+            for written in write_study(study, out):
+                output.print(f"wrote {written}", markup=False, soft_wrap=True)

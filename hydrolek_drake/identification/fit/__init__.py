@@ -1,0 +1,5 @@
+"""A rig's parameters from recordings, by any of the searches."""
+
+from hydrolek_drake.identification.fit.fitting import RigFit, fit_rig
+
+__all__ = ["RigFit", "fit_rig"]

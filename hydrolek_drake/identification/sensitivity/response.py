@@ -1,0 +1,108 @@
+"""The output whose change is studied: a joint's reading under a command, split into segments."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.identification.objective.norms import segment_edges
+from hydrolek_drake.identification.parameter_set import ParameterSet
+from hydrolek_drake.recordings import Recording, require
+from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rollout.rollout import roll_out
+
+DURATION = 40.0
+"""Seconds of the command that is used where no recording is given."""
+
+DWELL = 0.5
+"""Seconds for which it holds each level."""
+
+SAMPLE = 0.01
+"""Its sampling interval [s], section 4.3.1."""
+
+
+@dataclass(frozen=True)
+class Response:
+    """Reading of a joint as a function of the place in the unit cube.
+
+    Attributes:
+        parameters: what is varied.
+        index: the joint's place among the rig's.
+        unit: of the reading, "deg" or "mm".
+        factor: from SI to it.
+        time: [s]. # (n,)
+        command: [V]. # (n,)
+        segments: equal parts of the time.
+    """
+
+    parameters: ParameterSet
+    index: int
+    unit: str
+    factor: float
+    time: np.ndarray
+    command: np.ndarray
+    segments: int
+
+    def __call__(self, unit: np.ndarray) -> np.ndarray:
+        """Reading, NaN after a divergence. # (n,)."""
+        rig = self.parameters.rig
+        record = self.parameters.records(unit)[self.index : self.index + 1]
+        outcome = roll_out(
+            record,
+            self.time,
+            self.command,
+            self.time,
+            longest_step=rig.value("integration.longest_step"),
+            spool_steps=int(rig.value("integration.spool_steps")),
+        )
+        return self.factor * outcome.signals.reading
+
+    def per_segment(self, change: np.ndarray) -> np.ndarray:
+        """Root mean square of a change in each segment; NaN counts as none. # (..., n) -> (..., segments)."""
+        edges = segment_edges(len(self.time), self.segments)
+        squares = np.nan_to_num(change) ** 2
+        parts = [squares[..., a:b].mean(axis=-1) for a, b in pairwise(edges)]
+        return np.sqrt(np.stack(parts, axis=-1))
+
+
+def response_of(
+    rig: Rig,
+    joint: str,
+    parameters: ParameterSet,
+    segments: int,
+    recording: Recording | None,
+    rng: np.random.Generator,
+) -> Response:
+    """The joint under a recorded command, or under random levels over its whole voltage range.
+
+    Raises:
+        InputError: no command in the recording, a constant one, or too many segments.
+    """
+    if recording is None:
+        time = np.arange(round(DURATION / SAMPLE)) * SAMPLE
+        limit = rig.value(f"joints.{joint}.command.limit")
+        held = round(DWELL / SAMPLE)
+        levels = rng.uniform(-1.0, 1.0, -(-time.size // held))
+        command = np.repeat(limit * levels**3, held)[: time.size]  # more small voltages than large ones
+    else:
+        key = f"{joint}.command"
+        require(recording, [], complete=[key], units={key: "V"})
+        time, command = (
+            np.asarray(recording.time, dtype=float),
+            np.asarray(recording.signal(key), dtype=float),
+        )
+        if np.ptp(command) == 0.0:
+            raise InputError(f"{recording.source}: {key} is constant, so no parameter shows")
+    if not 1 <= segments <= time.size:
+        raise InputError(f"--segments {segments}: choose 1 to {time.size}")
+    sliding = rig.variant(joint, "load") == "sliding"
+    return Response(
+        parameters=parameters,
+        index=rig.joints.index(joint),
+        unit="mm" if sliding else "deg",
+        factor=1e3 if sliding else float(np.degrees(1.0)),
+        time=time,
+        command=np.ascontiguousarray(command),
+        segments=segments,
+    )
