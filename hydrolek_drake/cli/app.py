@@ -41,6 +41,11 @@ COMMANDS: dict[str, CommandEntry] = {
     "identify": CommandEntry(
         "hydrolek_drake.cli.identify", "identify", "identify sdp: SDP models from open-loop step tests"
     ),
+    "challenge": CommandEntry(
+        "hydrolek_drake.cli.challenge",
+        "challenge",
+        "diagnose concealed machines of the project's own, and score",
+    ),
     "effects": CommandEntry(
         "hydrolek_drake.cli.effects", "effects", "list the known effects, or show one in full"
     ),

@@ -1,0 +1,356 @@
+"""The joint bench once more, written from its page alone: the machine that conceals an effect.
+
+It takes numbers from the rig and shares no equation, integrator or step with the rollout that diagnoses it:
+classic Runge-Kutta of fourth order at 0.02 ms. It also has physics that is in no list.
+"""
+
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from hydrolek_drake.rigs import Rig
+
+STEP_S = 2e-5
+SAMPLE_S = 0.01
+_INNER = 500  # steps a sample
+
+
+class Machine(NamedTuple):
+    """Numbers of one machine, its listed effects, and those in no list; zero is off."""
+
+    i_max: float
+    k_f: float
+    gap: float
+    m: float
+    c: float
+    k: float
+    x_o: float
+    w: float
+    area: float
+    c_q: float
+    rho: float
+    dp_t: float
+    p_s: float
+    p_t: float
+    bulk: float
+    a_a: float
+    a_b: float
+    v_0: float
+    stroke: float
+    c_cyl: float
+    a: float
+    b: float
+    phi: float
+    inertia: float
+    mgl: float
+    c_j: float
+    q_lo: float
+    q_hi: float
+    k_stop: float
+    c_stop: float
+    t_d: float
+    delay_s: float = 0.0
+    fade: float = 0.0
+    fade_s: float = 1.0
+    shift_m: float = 0.0
+    stiction_n: float = 0.0
+    null_leak: float = 0.0
+    droop: float = 0.0
+    air: float = 0.0
+    warm: float = 0.0
+    warm_s: float = 1.0
+    cross_leak: float = 0.0
+    coulomb_n: float = 0.0
+    stribeck_n: float = 0.0
+    stribeck_v: float = 1.0
+    cushion: float = 0.0
+    cushion_m: float = 1.0
+    gap_rad: float = 0.0
+    base_k: float = 0.0
+    base_j: float = 1.0
+    bow_rad: float = 0.0
+    play_rad: float = 0.0
+    drift_rad_per_min: float = 0.0
+    ripple_pa: float = 0.0  # in no list: supply pressure + ripple sin(2 pi f t)
+    ripple_hz: float = 1.0
+    tight_n: float = 0.0  # in no list: dry friction that grows with the stroke squared
+    hose: float = 0.0  # in no list: hose on side A, volume v_0 hose p / 1 MPa on top
+    shaking_nm: float = 0.0  # in no list: periodic moment at the joint
+    shaking_hz: float = 1.0
+
+
+LISTED: dict[str, dict[str, str]] = {
+    "command.delay": {"delay_s": "delay_s"},
+    "amplifier.gain_fade": {"fraction": "fade", "time_constant_s": "fade_s"},
+    "valve.asymmetric_overlap": {"shift_m": "shift_m"},
+    "valve.spool_stiction": {"force_N": "stiction_n"},
+    "valve.null_leakage": {"conductance_m3_per_s_Pa": "null_leak"},
+    "supply.pressure_droop": {"resistance_Pa_s_per_m3": "droop"},
+    "fluid.entrained_air": {"air_fraction": "air"},
+    "fluid.warm_up": {"fraction": "warm", "time_constant_s": "warm_s"},
+    "cylinder.cross_port_leakage": {"conductance_m3_per_s_Pa": "cross_leak"},
+    "cylinder.coulomb_friction": {"coulomb_N": "coulomb_n"},
+    "cylinder.stribeck_friction": {
+        "coulomb_N": "coulomb_n", "stribeck_N": "stribeck_n", "stribeck_velocity_m_per_s": "stribeck_v",
+    },
+    "cylinder.end_cushion": {"damping_N_s_per_m": "cushion", "length_m": "cushion_m"},
+    "linkage.backlash": {"gap_rad": "gap_rad"},
+    "base.compliance": {"stiffness_Nm_per_rad": "base_k", "inertia_kg_m2": "base_j"},
+    "sensor.nonlinearity": {"amplitude_rad": "bow_rad"},
+    "sensor.hysteresis": {"half_width_rad": "play_rad"},
+    "sensor.drift": {"rate_rad_per_min": "drift_rad_per_min"},
+}  # fmt: skip
+"""Effect -> its parameters -> field of the machine."""
+
+SPREAD = {
+    "area": "valve.max_area_a",
+    "x_o": "valve.overlap_a",
+    "w": "valve.full_opening_a",
+    "p_s": "supply.pressure",
+    "bulk": "fluid.bulk_modulus",
+    "c_cyl": "cylinder.viscous_friction",
+    "inertia": "load.inertia",
+    "mgl": "load.gravity_cos",
+    "i_max": "amplifier.max_current_a",
+    "t_d": "command.delay",
+}
+"""What differs from machine to machine of this build -> its path in the rig."""
+
+
+def nominal_machine(rig: Rig) -> Machine:
+    """The machine that the rig describes."""
+    v = rig.value
+    return Machine(
+        i_max=v("amplifier.max_current_a"),
+        k_f=v("solenoid.force_constant_a"),
+        gap=v("solenoid.gap_constant"),
+        m=v("solenoid.moving_mass"),
+        c=v("solenoid.damping"),
+        k=v("solenoid.spring"),
+        x_o=v("valve.overlap_a"),
+        w=v("valve.full_opening_a"),
+        area=v("valve.max_area_a"),
+        c_q=v("valve.discharge"),
+        rho=v("fluid.density"),
+        dp_t=v("fluid.laminar_transition"),
+        p_s=v("supply.pressure"),
+        p_t=v("supply.tank_pressure"),
+        bulk=v("fluid.bulk_modulus"),
+        a_a=v("cylinder.area_a"),
+        a_b=v("cylinder.area_b"),
+        v_0=v("cylinder.dead_volume_a"),
+        stroke=v("cylinder.stroke"),
+        c_cyl=v("cylinder.viscous_friction"),
+        a=v("linkage.distance_parent"),
+        b=v("linkage.distance_child"),
+        phi=v("linkage.angle_offset"),
+        inertia=v("load.inertia"),
+        mgl=v("load.gravity_cos"),
+        c_j=v("load.damping"),
+        q_lo=v("load.lower_stop"),
+        q_hi=v("load.upper_stop"),
+        k_stop=v("load.stop_stiffness"),
+        c_stop=v("load.stop_damping"),
+        t_d=v("command.delay"),
+    )
+
+
+def with_effects(machine: Machine, effects: Mapping[str, Mapping[str, float]]) -> Machine:
+    """The machine with listed effects, as they stand in labels and reports."""
+    fields: dict[str, float] = {}
+    for effect, parameters in effects.items():
+        for name, value in parameters.items():
+            fields[LISTED[effect][name]] = value
+    return machine._replace(**fields)
+
+
+@njit
+def _flow(g: Any, opening: float, drop: float, gain: float) -> float:
+    return g.c_q * gain * opening * math.sqrt(2.0 / g.rho) * drop / (drop * drop + g.dp_t * g.dp_t) ** 0.25
+
+
+@njit
+def _cylinder(g: Any, q: float) -> tuple[float, float]:
+    length = math.sqrt(g.a * g.a + g.b * g.b - 2.0 * g.a * g.b * math.cos(q + g.phi))
+    low = math.sqrt(g.a * g.a + g.b * g.b - 2.0 * g.a * g.b * math.cos(g.q_lo + g.phi))
+    return length - low, g.a * g.b * math.sin(q + g.phi) / length
+
+
+@njit
+def _derivative(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) -> None:
+    """Rates of x, x', P_A, P_B, q, q', flow felt by the supply, cylinder side and its rate, tilt and its rate."""
+    x, xd, p_a, p_b, q, qd, felt, cq, cqd, tilt, tiltd = y
+    current = g.i_max * (1.0 - g.fade * (1.0 - math.exp(-t / g.fade_s)))
+    i_a = current * min(max(volts, 0.0), 10.0) / 10.0
+    i_b = current * min(max(-volts, 0.0), 10.0) / 10.0
+    force = (
+        g.k_f * i_a**2 / (1.0 + g.gap * max(x, 0.0)) ** 2 - g.k_f * i_b**2 / (1.0 + g.gap * max(-x, 0.0)) ** 2
+    )
+    out[0] = xd
+    out[1] = (force - g.c * xd - g.k * x - g.stiction_n * math.tanh(xd / 2e-4)) / g.m
+    right = g.area * min(max((x - g.x_o - g.shift_m) / (g.w - g.x_o), 0.0), 1.0)
+    left = g.area * min(max((-x - g.x_o + g.shift_m) / (g.w - g.x_o), 0.0), 1.0)
+    s_warm = g.warm * (1.0 - math.exp(-t / g.warm_s))
+    p_s = g.p_s - g.droop * felt + g.ripple_pa * math.sin(2.0 * math.pi * g.ripple_hz * t)
+    pa = _flow(g, right, p_s - p_a, 1.0 + s_warm) + g.null_leak * (p_s - p_a)
+    at = _flow(g, left, p_a - g.p_t, 1.0 + s_warm) + g.null_leak * (p_a - g.p_t)
+    pb = _flow(g, left, p_s - p_b, 1.0 + s_warm) + g.null_leak * (p_s - p_b)
+    bt = _flow(g, right, p_b - g.p_t, 1.0 + s_warm) + g.null_leak * (p_b - g.p_t)
+    out[6] = (pa + pb - felt) / 0.02
+    playing = g.gap_rad > 0.0
+    side, sided = (cq, cqd) if playing else (q, qd)
+    if g.base_k > 0.0:
+        side -= tilt
+        sided -= tiltd
+    s, lever = _cylinder(g, side)
+    v = lever * sided
+    across = g.cross_leak * (p_a - p_b)
+    soft_a = 1.0 / g.bulk + g.air * 1e5 / max(p_a, 1e5) ** 2
+    soft_b = 1.0 / g.bulk + g.air * 1e5 / max(p_b, 1e5) ** 2
+    vol_a = g.v_0 + g.a_a * max(s, 0.0)
+    vol_b = g.v_0 + g.a_b * max(g.stroke - s, 0.0)
+    hose = g.hose * g.v_0 / 1e6
+    out[2] = (pa - at - across - g.a_a * v) / (vol_a * soft_a + hose)
+    out[3] = (pb - bt + across + g.a_b * v) / (vol_b * soft_b)
+    if p_a <= 0.0 and out[2] < 0.0:
+        out[2] = 0.0
+    if p_b <= 0.0 and out[3] < 0.0:
+        out[3] = 0.0
+    ratio = v / g.stribeck_v
+    dry = (g.coulomb_n + g.stribeck_n * math.exp(-ratio * ratio)) * math.tanh(v / 5e-4)
+    dry += g.tight_n * (s / 0.15) ** 2 * math.tanh(v / 5e-4)
+    rod = g.a_a * p_a - g.a_b * p_b - g.c_cyl * (1.0 - s_warm) * v - dry
+    if g.cushion > 0.0 and s < g.cushion_m and v < 0.0:
+        rod -= g.cushion * v * (1.0 - s / g.cushion_m)
+    moment = rod * lever
+    stop = 0.0
+    if q > g.q_hi:
+        stop = -g.k_stop * (q - g.q_hi) - g.c_stop * qd
+    elif q < g.q_lo:
+        stop = -g.k_stop * (q - g.q_lo) - g.c_stop * qd
+    rest = stop - g.mgl * math.cos(q) - g.c_j * qd
+    rest += g.shaking_nm * math.sin(2.0 * math.pi * g.shaking_hz * t)
+    out[4] = qd
+    if playing:
+        lead, closing = cq - q, cqd - qd
+        half = 0.5 * g.gap_rad
+        through = 0.0
+        if lead > half:
+            through = 2e5 * (lead - half) + 400.0 * closing
+        elif lead < -half:
+            through = 2e5 * (lead + half) + 400.0 * closing
+        out[5] = (through + rest) / g.inertia
+        out[7] = cqd
+        out[8] = (moment - through) / 2.0
+    else:
+        out[5] = (moment + rest) / g.inertia
+        out[7] = 0.0
+        out[8] = 0.0
+    out[9] = tiltd
+    out[10] = 0.0
+    if g.base_k > 0.0:
+        damping = 0.1 * math.sqrt(g.base_k * g.base_j)
+        out[10] = (-moment - g.base_k * tilt - damping * tiltd) / g.base_j
+
+
+@njit(cache=True, nogil=True)
+def _play(
+    g: Any,
+    command: np.ndarray,
+    set_points: np.ndarray,
+    gain: float,
+    noise: np.ndarray,
+    y: np.ndarray,
+    volts: np.ndarray,
+    out: np.ndarray,
+) -> None:
+    """Run through all samples; with a gain the command is a proportional controller's with dead-zone compensation."""
+    h = STEP_S
+    k1, k2, k3, k4 = np.zeros(11), np.zeros(11), np.zeros(11), np.zeros(11)
+    shaft = y[4] - y[9]
+    lag = g.t_d + g.delay_s
+    for n in range(len(out)):
+        t = n * SAMPLE_S
+        z = 2.0 * (shaft - g.q_lo) / (g.q_hi - g.q_lo) - 1.0
+        out[n, 0] = shaft + g.bow_rad * (1.0 - z * z) + g.drift_rad_per_min * t / 60.0
+        out[n, 1] = y[2]
+        out[n, 2] = y[3]
+        if gain > 0.0:
+            error = set_points[n] - out[n, 0] - noise[n]
+            volts[n] = 0.0
+            if abs(error) > 0.005:
+                volts[n] = min(max(gain * error + math.copysign(1.2, error), -10.0), 10.0)
+        else:
+            volts[n] = command[n]
+        for i in range(_INNER):
+            now = t + i * h
+            place = math.floor((now + 0.5 * h - lag) / SAMPLE_S)
+            u = volts[int(place)] if place >= 0 else 0.0
+            _derivative(g, y, u, now, k1)
+            _derivative(g, y + 0.5 * h * k1, u, now + 0.5 * h, k2)
+            _derivative(g, y + 0.5 * h * k2, u, now + 0.5 * h, k3)
+            _derivative(g, y + h * k3, u, now + h, k4)
+            for j in range(11):
+                y[j] += h / 6.0 * (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j])
+            y[2] = max(y[2], 0.0)
+            y[3] = max(y[3], 0.0)
+            seen = y[4] - y[9]
+            shaft = min(max(shaft, seen - g.play_rad), seen + g.play_rad)
+
+
+class Played(NamedTuple):
+    """What a machine did, without noise: applied voltage, reading [rad], pressures [Pa]. # (n,) each."""
+
+    volts: np.ndarray
+    reading: np.ndarray
+    pressure_a: np.ndarray
+    pressure_b: np.ndarray
+
+
+def play(
+    machine: Machine,
+    command: np.ndarray | None,
+    set_points: np.ndarray | None = None,
+    gain: float = 0.0,
+    noise: np.ndarray | None = None,
+) -> Played:
+    """Run a machine from rest at 25 deg, by a voltage or by a controller that follows set points.
+
+    Args:
+        machine: its numbers.
+        command: voltage every 10 ms; None for a controller. # (n,)
+        set_points: for the controller [rad]. # (n,)
+        gain: of the controller [V/rad].
+        noise: what the controller's measurement adds [rad]. # (n,)
+    """
+    given = command if command is not None else set_points
+    assert given is not None
+    count = len(given)
+    nothing = np.zeros(count)
+    start = math.radians(25.0)
+    y = np.zeros(11)
+    _, lever = _cylinder(machine, start)
+    moment = machine.mgl * math.cos(start)
+    y[3] = 3e6
+    y[4] = y[7] = start
+    if machine.base_k > 0.0:  # at rest the base leans against the load
+        y[9] = -moment / machine.base_k
+        _, lever = _cylinder(machine, start - y[9])
+    if machine.gap_rad > 0.0:
+        y[7] = start  # the play is centred, as on the bench's page
+    y[2] = (moment / lever + machine.a_b * y[3]) / machine.a_a
+    volts, out = np.zeros(count), np.zeros((count, 3))
+    _play(
+        machine,
+        nothing if command is None else np.asarray(command, dtype=float),
+        nothing if set_points is None else np.asarray(set_points, dtype=float),
+        gain,
+        nothing if noise is None else noise,
+        y,
+        volts,
+        out,
+    )
+    return Played(volts, out[:, 0], out[:, 1], out[:, 2])

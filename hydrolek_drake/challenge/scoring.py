@@ -1,0 +1,117 @@
+"""How a diagnosis did on a concealed case, and on all of them."""
+
+import itertools
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+BINS = (0.0, 0.5, 0.7, 0.9, 0.99, 1.0 + 1e-9)
+"""Edges of the probabilities for the calibration."""
+
+
+def score(case: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, Any]:
+    """What was right about one report.
+
+    Args:
+        case: the label, as in `cases.Case`.
+        report: `report.json`.
+    """
+    truth = set(case["effects"])
+    named = {e["id"] for e in report["effects"] if not e["id"].startswith("unlisted.")}
+    stages = [place["stage"] for place in report["locations"]]
+    result = {
+        "name": case["name"],
+        "kind": case["kind"],
+        "size": case["size"],
+        "drive": case["drive"],
+        "pressures": case["pressures"],
+        "truth": sorted(truth) or sorted(case["unlisted"]),
+        "verdict": report["verdict"],
+        "named": sorted(named),
+        "probability": min((e["probability"] for e in report["effects"]), default=None),
+        "seconds": report["seconds"],
+        "holdout_over_noise": (report["fit"] or {}).get("with_effects", {}).get("holdout_over_noise"),
+        "baseline_over_noise": (report["fit"] or {}).get("baseline", {}).get("train_over_noise"),
+    }
+    if case["kind"] == "healthy":
+        result["right"] = report["verdict"] == "none"
+        result["right_stage"] = result["right"]
+    elif case["kind"] == "unlisted":
+        result["right"] = report["verdict"] == "unlisted_physics"
+        result["right_stage"] = case["stages"][0] in stages[:1]
+    else:
+        group = {effect for g in report["not_distinguishable"] for effect in g}
+        result["right"] = named == truth
+        result["in_group"] = bool(truth & group)
+        result["right_stage"] = set(case["stages"]) <= set(stages)
+        result["parameter_errors"] = _errors(case["effects"], report["effects"])
+    return result
+
+
+def _errors(truth: Mapping[str, Mapping[str, float]], told: Sequence[Mapping[str, Any]]) -> list[float]:
+    found = {e["id"]: e["parameters"] for e in told}
+    return [
+        abs(found[effect][name]["value"] - value) / abs(value)
+        for effect, parameters in truth.items()
+        if effect in found
+        for name, value in parameters.items()
+        if value
+    ]
+
+
+def summary(results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Shares over all cases."""
+    of = {
+        kind: [r for r in results if r["kind"] == kind]
+        for kind in ("healthy", "single", "double", "unlisted")
+    }
+    visible = [r for r in of["single"] if r["size"] != "barely"]
+    errors = [error for r in results for error in r.get("parameter_errors", [])]
+    seconds = [r["seconds"] for r in results]
+    return {
+        "cases": len(results),
+        "false_alarms": _told([not r["right"] for r in of["healthy"]]),
+        "visible_singles_right": _told([r["right"] for r in visible]),
+        "visible_singles_right_stage": _told([r["right_stage"] for r in visible]),
+        "barely_visible_singles_right": _told([r["right"] for r in of["single"] if r["size"] == "barely"]),
+        "doubles_right": _told([r["right"] for r in of["double"]]),
+        "unlisted_recognised": _told([r["right"] for r in of["unlisted"]]),
+        "unlisted_right_stage": _told([r["right_stage"] for r in of["unlisted"]]),
+        "median_parameter_error": float(np.median(errors)) if errors else None,
+        "median_seconds": float(np.median(seconds)) if seconds else None,
+        "median_seconds_healthy": float(np.median([r["seconds"] for r in of["healthy"]]))
+        if of["healthy"]
+        else None,
+        "calibration": _calibration(results),
+    }
+
+
+def _told(right: Sequence[bool]) -> dict[str, Any]:
+    return {"count": sum(right), "of": len(right), "share": sum(right) / len(right) if right else None}
+
+
+def _calibration(results: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Of the effects named with a probability in each bin, how many were right."""
+    named = [r for r in results if r["named"] and r["probability"] is not None]
+    told = []
+    for low, high in itertools.pairwise(BINS):
+        inside = [r for r in named if low <= r["probability"] < high]
+        told.append({"from": low, "to": min(high, 1.0), **_told([r["right"] for r in inside])})
+    return told
+
+
+def markdown(results: Sequence[Mapping[str, Any]]) -> str:
+    """Every case in a table, failures first."""
+    lines = [
+        "| case | kind | size | drive | pressures | concealed | verdict | named | p | right | s |",
+        "|---" * 11 + "|",
+    ]
+    for r in sorted(results, key=lambda r: (r["right"], r["name"])):
+        p = "" if r["probability"] is None else f"{r['probability']:.2f}"
+        lines.append(
+            f"| {r['name']} | {r['kind']} | {r['size']} | {r['drive']} | {'yes' if r['pressures'] else 'no'} | "
+            f"{', '.join(r['truth'])} | {r['verdict']} | {', '.join(r['named'])} | {p} | "
+            f"{'yes' if r['right'] else 'NO'} | {r['seconds']:.0f} |"
+        )
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,84 @@
+"""`hydrolek challenge`: concealed machines of the project's own, diagnosed and scored."""
+
+import json
+import os
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from hydrolek_drake.errors import InputError
+
+
+def challenge(
+    cases: Annotated[int, typer.Option(help="how many machines are drawn")] = 200,
+    first: Annotated[int | None, typer.Option(help="diagnose only so many of them, a fair sample")] = None,
+    seed: Annotated[int, typer.Option(help="of machines, effects, commands and noise")] = 1,
+    workers: Annotated[
+        int | None, typer.Option(help="threads; as many as there are cores by default")
+    ] = None,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="folder for cases and results")] = Path(
+        "out/challenge"
+    ),
+) -> None:
+    """Draw machines with concealed effects, diagnose them, then open the labels and score.
+
+    Finished cases are kept: the same command goes on where it was interrupted.
+    """
+    from concurrent.futures import ThreadPoolExecutor
+
+    from rich.console import Console
+
+    from hydrolek_drake.challenge.cases import digest, draw_cases, labels_of, record
+    from hydrolek_drake.challenge.scoring import markdown, score, summary
+    from hydrolek_drake.cli.output import console
+    from hydrolek_drake.diagnosis.diagnosis import INTERRUPTED, diagnose
+    from hydrolek_drake.diagnosis.report_json import as_json
+    from hydrolek_drake.files import write_whole
+    from hydrolek_drake.recordings import read_recording
+    from hydrolek_drake.rigs import load_rig
+    from hydrolek_drake.runs.report import prepare_folder
+
+    for name, value in (("--cases", cases), ("--workers", workers), ("--first", first)):
+        if value is not None and value < 1:
+            raise InputError(f"{name} {value}: at least 1 is needed")
+    output, progress = console(), Console(stderr=True)
+    prepare_folder(out)
+    rig = load_rig("joint_bench", {})
+    kept = out / f"labels_{cases}_{seed}.json"
+    with progress.status("drawing machines (sizes are found by simulation) ..."):
+        if kept.exists():
+            labels = kept.read_text()
+            drawn = None
+        else:
+            drawn = draw_cases(rig, cases, seed)
+            labels = labels_of(drawn)
+            write_whole(kept, labels)
+    output.print(f"sha256 of the labels: {digest(labels)}")
+    told: list[dict[str, Any]] = json.loads(labels)[:first]
+    results = []
+    with progress.status("") as status, ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
+        for number, label in enumerate(told, start=1):
+            status.update(f"case {number} of {len(told)} ...")
+            folder = out / f"{label['name']}_{cases}_{seed}"
+            report = folder / "report.json"
+            if not report.exists():
+                record(rig, _case(label), folder)
+                recordings = [
+                    read_recording(folder / f"{side}.csv", rig.columns) for side in ("train", "holdout")
+                ]
+                done = diagnose(rig, recordings[:1], recordings[1:], pool)
+                if INTERRUPTED in done.reasons:
+                    raise KeyboardInterrupt
+                write_whole(report, json.dumps(as_json(done), indent=1))
+            results.append(score(label, json.loads(report.read_text())))
+    write_whole(out / "summary.json", json.dumps({"summary": summary(results), "cases": results}, indent=1))
+    write_whole(out / "cases.md", markdown(results))
+    for name, value in summary(results).items():
+        output.print(f"{name}: {value}", markup=False, soft_wrap=True)
+
+
+def _case(label: dict[str, Any]) -> Any:
+    from hydrolek_drake.challenge.cases import Case
+
+    return Case(**{**label, "stages": tuple(label["stages"])})
