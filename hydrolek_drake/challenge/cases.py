@@ -34,7 +34,7 @@ SHOWS = {"barely": 1.5, "middle": 6.0, "large": 30.0}
 KINDS = (("healthy", 0.3), ("single", 0.45), ("double", 0.12), ("unlisted", 0.13))
 """Kind of case -> share of all."""
 
-TRAIN_S, HOLDOUT_S, PROBE_S = 40.0, 30.0, 20.0
+TRAIN_S, HOLDOUT_S, PROBE_S = 40.0, 30.0, 12.0
 SCALINGS = 3
 
 

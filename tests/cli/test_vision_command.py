@@ -7,7 +7,7 @@ from hydrolek_drake.cli.app import run
 
 
 def test_targets_on_the_simulated_pipe(capsys, tmp_path):
-    clicks = ["--click", "375", "240", "--grasp", "375", "200", "--cut", "375", "300"]
+    clicks = ["--click", "320", "240", "--grasp", "320", "200", "--cut", "320", "300"]
     assert run(["vision", "sim", *clicks, "--out", str(tmp_path)]) == 0
     text = capsys.readouterr().out
     assert "pipe: radius 3" in text and "cut end:" in text
