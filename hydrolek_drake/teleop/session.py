@@ -362,6 +362,9 @@ class OperatorSession:
     def _after_moving(self, machine: MachineState) -> None:
         if self._stage is not Stage.MOVING or machine.mode not in (Mode.DONE, Mode.ABORTED):
             return
+        machine = self._machine.state()
+        if machine.mode not in (Mode.DONE, Mode.ABORTED):
+            return  # the state that was given is from before this task began
         self._took = self._seconds()
         self._began = None
         done = machine.mode is Mode.DONE
