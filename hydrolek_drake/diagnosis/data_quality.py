@@ -38,9 +38,12 @@ def reasons_against(recording: Recording, experiments: Sequence[Experiment]) -> 
         reasons.append(
             f"{recording.name} has {recording.time.size} samples; at least {LEAST_SAMPLES} are needed"
         )
-    for finding in recording.findings:
-        if finding.kind == "clock":
-            reasons.append(f"{recording.name}: {finding.message}")
+    gaps = sum(end - start for f in recording.findings if f.kind == "gap" for start, end in f.spans)
+    if gaps > MOST_MISSING * recording.duration:
+        reasons.append(
+            f"{recording.name}: nothing was recorded for {gaps:.1f} s of {recording.duration:.1f} s, "
+            "so what the machine was told meanwhile is not known"
+        )
     for experiment in experiments:
         position = experiment.channels[0]
         known = np.isfinite(position.measured)
