@@ -1,0 +1,34 @@
+"""The challenge's own bench is the bench of the practice recordings, effects included."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.challenge.bench_machine import LISTED, nominal_machine, play, with_effects
+from hydrolek_drake.recordings import read_recording
+from hydrolek_drake.rigs import load_rig
+
+DATA = Path(__file__).parents[1] / "data" / "bench"
+LABELS = {label["id"]: label for label in json.loads((DATA / "practice_labels.json").read_text())}
+FIELDS = {
+    "A_max_m2": "area", "x_o_m": "x_o", "w_m": "w", "P_S_Pa": "p_s", "B_Pa": "bulk", "c_cyl_N_s_per_m": "c_cyl",
+    "J_kg_m2": "inertia", "mgl_Nm": "mgl", "I_max_A": "i_max", "T_d_s": "t_d",
+}  # fmt: skip
+SAMPLES = 1000
+NOISE_DEG = 0.05
+LISTED_PAIRS = [name for name, label in LABELS.items() if set(label["effects"]) <= set(LISTED)]
+
+
+@pytest.mark.parametrize("pair", LISTED_PAIRS)
+def test_it_reproduces_the_practice_recordings_to_the_noise(pair: str) -> None:
+    label = LABELS[pair]
+    rig = load_rig("joint_bench", {})
+    own = {FIELDS[name]: value for name, value in label["machine"].items()}
+    machine = with_effects(nominal_machine(rig)._replace(**own), label["effects"])
+    recording = read_recording(DATA / pair / "train.csv", rig.columns)
+    done = play(machine, np.asarray(recording.signal("joint.command"))[:SAMPLES])
+    left = np.degrees(np.asarray(recording.signal("joint.angle"))[:SAMPLES] - done.reading)
+    # the deviation of 1000 samples of noise is known to 2.2 %; three times that
+    assert np.sqrt(np.mean(left**2)) < 1.07 * NOISE_DEG
