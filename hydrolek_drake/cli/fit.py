@@ -26,7 +26,9 @@ def fit(
     norm: Annotated[str, typer.Option(help="p of (4.13): 1, 2 or inf")] = "2",
     segments: Annotated[int, typer.Option(min=1, help="parts of the recordings for nsga2, (4.17)")] = 8,
     loss: Annotated[str, typer.Option(help="of least squares: linear, soft_l1, huber or cauchy")] = "linear",
-    workers: Annotated[int, typer.Option(min=1, help="processes for the evaluations")] = 1,
+    workers: Annotated[
+        int, typer.Option(min=1, help="processes for the evaluations; threads, for least-squares")
+    ] = 1,
     cluster: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Dask scheduler, such as tcp://host:8786")
     ] = None,
@@ -41,7 +43,8 @@ def fit(
 ) -> None:
     """Estimate a rig's free parameters so that its model follows the recordings.
 
-    With --out, Ctrl-C keeps what is done: the same command goes on from there to the same result.
+    Ctrl-C gives the best so far. With --out, the same command then goes on to the same result (all but
+    least-squares, which starts anew).
     """
     from rich.console import Console
     from rich.table import Table

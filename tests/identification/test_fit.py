@@ -12,6 +12,7 @@ from hydrolek_drake.identification.experiment import experiments_of
 from hydrolek_drake.identification.fit import fit_rig
 from hydrolek_drake.identification.fit.report import sentences, write_fit
 from hydrolek_drake.identification.fit.rig_objective import RigObjective
+from hydrolek_drake.identification.least_squares import multi_start
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.recordings import read_recording
@@ -109,6 +110,8 @@ def test_a_constant_command_is_refused(rig, recording, tmp_path):
         (["--parameter", "fluid.density"], "has no range"),
         (["--norm", "3"], "choose 1, 2 or inf"),
         (["--loss", "square"], "choose linear"),
+        (["--cluster", "tcp://127.0.0.1:1"], "least-squares runs in threads"),
+        (["--overdue", "5"], "least-squares runs in threads"),
     ],
 )
 def test_bad_input_is_one_line_and_status_2(arguments, said, capsys):
@@ -123,3 +126,28 @@ def test_an_empty_range_is_refused(tmp_path, capsys):
     (tmp_path / "rig.yaml").write_text(yaml.safe_dump(tree))
     assert run(["fit", str(tmp_path / "rig.yaml"), str(BENCH / "train.csv")]) == 2
     assert "range" in capsys.readouterr().err
+
+
+def test_interrupted_least_squares_gives_the_best_finished_start(rig, recording):
+    def stop(evaluations, best):
+        raise KeyboardInterrupt
+
+    found = fit_rig(rig, [recording], paths=TWO, progress=stop)
+    assert found.interrupted
+    assert "would start anew" in sentences(found)[-1]
+    assert found.over_noise < 10.0
+
+
+@pytest.mark.parametrize("pair", ["practice_01", "practice_02"])
+def test_random_starts_reach_the_noise_on_holdout(pair, rig):
+    train, holdout = (
+        Problem(
+            ParameterSet(rig, free_parameters(rig)),
+            experiments_of(rig, read_recording(BENCH.parent / pair / f"{part}.csv", rig.columns)),
+        )
+        for part in ("train", "holdout")
+    )
+    start = np.random.default_rng(1).uniform(size=(2, len(train.parameters)))
+    best = multi_start(train, start)
+    residuals = holdout.residuals(best.unit)
+    assert np.sqrt(residuals @ residuals / holdout.counted) < 1.05

@@ -3,6 +3,7 @@
 import contextlib
 import hashlib
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -112,7 +113,7 @@ def fit_rig(
         settings: of the genetic algorithms; None for the thesis's.
         loss: of the least squares.
         seed: of everything random.
-        workers: processes for the evaluations.
+        workers: processes for the evaluations; threads, for the least squares.
         cluster: address of a Dask scheduler, instead of processes.
         overdue: time that one evaluation may take [s].
         checkpoint: file to which evaluations are written and from which an interrupted search goes on. Least
@@ -128,10 +129,18 @@ def fit_rig(
     training = [one for recording in recordings for one in experiments_of(rig, recording, signals)]
     held = [one for recording in holdout for one in experiments_of(rig, recording, signals)]
     problem = Problem(parameters, training)
+    if method == "least-squares" and (cluster is not None or overdue is not None):
+        option = "--cluster" if cluster is not None else "--overdue"
+        raise InputError(
+            f"{option}: least-squares runs in threads of this process (--workers N) and cannot use it; "
+            f"choose --method {', '.join(name for name in METHODS if name != method)}"
+        )
     rng = np.random.default_rng(seed)
     if method == "least-squares":
-        fit = _least_squares(problem, rng, loss, progress)
-        unit, evaluations, found, interrupted = fit.unit, fit.evaluations, None, False
+        with ThreadPoolExecutor(workers) as threads:
+            shared = Problem(parameters, training, pool=threads) if workers > 1 else problem
+            fit, interrupted = _least_squares(shared, rng, loss, progress)
+        unit, evaluations, found = fit.unit, shared.evaluations, None
         jacobian = fit.jacobian
     else:
         objective = RigObjective(problem, p, segments if method == "nsga2" else None)
@@ -177,14 +186,22 @@ def fit_rig(
 
 def _least_squares(
     problem: Problem, rng: np.random.Generator, loss: str, progress: Callable[[int, float], None] | None
-) -> Fit:
+) -> tuple[Fit, bool]:
+    """The best of the starts that were finished, and whether Ctrl-C ended them early."""
     starts = [problem.parameters.unit(), *rng.uniform(size=(STARTS - 1, len(problem.parameters)))]
+    finished: list[Fit] = []
 
     def told(number: int, best: Fit) -> None:
+        finished[:] = [best]
         if progress is not None:
             progress(problem.evaluations, best.over_noise)
 
-    return multi_start(problem, starts, loss=loss, progress=told)
+    try:
+        return multi_start(problem, starts, loss=loss, progress=told), False
+    except KeyboardInterrupt:
+        if not finished:
+            raise
+        return finished[0], True
 
 
 def _over_noise(residuals: np.ndarray, problem: Problem) -> float:

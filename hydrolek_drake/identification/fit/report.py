@@ -32,7 +32,12 @@ def sentences(fitted: RigFit) -> list[str]:
         mixed = ", ".join(f"{share:+.2f} {path}" for path, share in direction.items())
         lines.append(f"not determined within its range: {mixed}")
     if fitted.interrupted:
-        lines.append("interrupted: the best so far is given; the same command with --out goes on")
+        onward = (
+            "least squares keeps no checkpoint and would start anew"
+            if fitted.search is None
+            else "the same command with --out goes on"
+        )
+        lines.append(f"interrupted: the best so far is given; {onward}")
     return lines
 
 
