@@ -135,7 +135,9 @@ def test_interrupted_least_squares_gives_the_best_finished_start(rig, recording)
     found = fit_rig(rig, [recording], paths=TWO, progress=stop)
     assert found.interrupted
     assert "would start anew" in sentences(found)[-1]
-    assert found.over_noise < 10.0
+    problem = Problem(found.parameters, experiments_of(rig, recording))
+    begun = problem.residuals(found.parameters.unit())
+    assert found.over_noise < np.sqrt(begun @ begun / problem.counted)
 
 
 @pytest.mark.parametrize("pair", ["practice_01", "practice_02"])
