@@ -1,4 +1,4 @@
-"""Least squares on the healthy bench pairs from random starts in the rig's ranges: does each end at the noise?
+"""Least squares on the healthy bench pairs from random starts in the rig's ranges: does every one end at the noise?
 
 Each start stands alone: no second chance from another start. Writes docs/random_starts.json after every start.
 """
