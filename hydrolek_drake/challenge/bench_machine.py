@@ -15,7 +15,6 @@ from hydrolek_drake.rigs import Rig
 
 STEP_S = 2e-5
 SAMPLE_S = 0.01
-_INNER = 500  # steps a sample
 
 
 class Machine(NamedTuple):
@@ -266,9 +265,10 @@ def _play(
     y: np.ndarray,
     volts: np.ndarray,
     out: np.ndarray,
+    inner: int,
 ) -> None:
     """Run through all samples; with a gain the command is a proportional controller's with dead-zone compensation."""
-    h = STEP_S
+    h = SAMPLE_S / inner
     k1, k2, k3, k4 = np.zeros(11), np.zeros(11), np.zeros(11), np.zeros(11)
     shaft = y[4] - y[9]
     lag = g.t_d + g.delay_s
@@ -285,7 +285,7 @@ def _play(
                 volts[n] = min(max(gain * error + math.copysign(1.2, error), -10.0), 10.0)
         else:
             volts[n] = command[n]
-        for i in range(_INNER):
+        for i in range(inner):
             now = t + i * h
             place = math.floor((now + 0.5 * h - lag) / SAMPLE_S)
             u = volts[int(place)] if place >= 0 else 0.0
@@ -316,6 +316,7 @@ def play(
     set_points: np.ndarray | None = None,
     gain: float = 0.0,
     noise: np.ndarray | None = None,
+    step: float = STEP_S,
 ) -> Played:
     """Run a machine from rest at 25 deg, by a voltage or by a controller that follows set points.
 
@@ -325,6 +326,7 @@ def play(
         set_points: for the controller [rad]. # (n,)
         gain: of the controller [V/rad].
         noise: what the controller's measurement adds [rad]. # (n,)
+        step: of the Runge-Kutta method [s].
     """
     given = command if command is not None else set_points
     assert given is not None
@@ -352,5 +354,6 @@ def play(
         y,
         volts,
         out,
+        round(SAMPLE_S / step),
     )
     return Played(volts, out[:, 0], out[:, 1], out[:, 2])

@@ -16,6 +16,7 @@ from hydrolek_drake.challenge.bench_machine import (
     LISTED,
     SAMPLE_S,
     SPREAD,
+    STEP_S,
     Machine,
     Played,
     nominal_machine,
@@ -34,7 +35,10 @@ SHOWS = {"barely": 1.5, "middle": 6.0, "large": 30.0}
 KINDS = (("healthy", 0.3), ("single", 0.45), ("double", 0.12), ("unlisted", 0.13))
 """Kind of case -> share of all."""
 
-TRAIN_S, HOLDOUT_S, PROBE_S = 40.0, 30.0, 12.0
+TRAIN_S, HOLDOUT_S = 40.0, 30.0
+SIZING_STEP_S = 5e-5
+"""Integration step while an effect's size is sought, which need not be exact."""
+
 SCALINGS = 3
 
 
@@ -160,13 +164,15 @@ def _scaled(
 
 
 def _mismatch(plain: Machine, changed: Machine, drive: str, seed: int) -> float:
-    """Root mean square of what the machine without the effect does otherwise, over the noise."""
-    done = _drive(changed, drive, PROBE_S, np.random.default_rng(seed), 0.0)
-    without = play(plain, done.volts)
+    """Root mean square of what the machine without the effect does otherwise in the training data, over the noise."""
+    done = _drive(changed, drive, TRAIN_S, np.random.default_rng(seed), 0.0, SIZING_STEP_S)
+    without = play(plain, done.volts, step=SIZING_STEP_S)
     return float(np.sqrt(np.mean((done.reading - without.reading) ** 2))) / math.radians(0.05)
 
 
-def _drive(machine: Machine, drive: str, seconds: float, rng: np.random.Generator, noise: float) -> Played:
+def _drive(
+    machine: Machine, drive: str, seconds: float, rng: np.random.Generator, noise: float, step: float = STEP_S
+) -> Played:
     count = round(seconds / SAMPLE_S)
     levels: list[float] = [0.0] * 50
     while len(levels) < count:
@@ -177,9 +183,9 @@ def _drive(machine: Machine, drive: str, seconds: float, rng: np.random.Generato
             levels += [math.radians(rng.uniform(0.0, 58.0))] * (3 * hold)
     series = np.array(levels[:count])
     if drive == "open":
-        return play(machine, series)
+        return play(machine, series, step=step)
     series[:50] = math.radians(25.0)
-    return play(machine, None, series, gain=12.0, noise=noise * rng.standard_normal(count))
+    return play(machine, None, series, gain=12.0, noise=noise * rng.standard_normal(count), step=step)
 
 
 def record(rig: Rig, case: Case, folder: Path) -> None:

@@ -42,7 +42,7 @@ def score(case: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, Any]:
         result["right_stage"] = case["stages"][0] in stages[:1]
     else:
         group = {effect for g in report["not_distinguishable"] for effect in g}
-        result["right"] = named == truth
+        result["right"] = named == truth and report["verdict"] == "missing_physics"
         result["in_group"] = bool(truth & group)
         result["right_stage"] = set(case["stages"]) <= set(stages)
         result["parameter_errors"] = _errors(case["effects"], report["effects"])

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate, candidates_of
-from hydrolek_drake.diagnosis.conclusion import Conclusion, conclude
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED, Conclusion, conclude
 from hydrolek_drake.diagnosis.data_quality import reasons_against
 from hydrolek_drake.diagnosis.evidence import FINER, Judged, judge, judge_given_up
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
@@ -32,8 +32,16 @@ BLOCKS = 6
 HELD_BLOCKS = (2, 5)
 """... of which these are held out: one in the middle and the last."""
 
+SHORT_BLOCKS = 18
+"""A held-out recording that shows what the training data do not is cut into so many blocks, of which every third
+stays held out: short ones, so that what it shows is in both parts."""
 
 INTERRUPTED = "interrupted: this is what was known by then; run it again for the whole answer"
+
+MIXED = (
+    "a model that explains the training data fails on the held-out recording, which shows something that the "
+    "training data do not: two thirds of that recording were fitted too, and the rest was held out"
+)
 
 
 @dataclass(frozen=True)
@@ -127,20 +135,18 @@ def diagnose(
     scales = {joint: natural_scales(rig, joint, training) for joint in joints}
     for joint in joints:
         candidates += candidates_of(rig, joint, scales[joint])
-    interrupted = False
-    found = Search()
-    try:
-        search(bench, candidates, found, say)
-    except KeyboardInterrupt:
-        if not found.hypotheses:
-            raise
-        interrupted = True
-        bench.resume()
-    say("holding the models against data that none of them was fitted to")
-    bench.training = tuple(bench.weighted_by(found.best, bench.training))
-    held_out = tuple(bench.weighted_by(found.best, held_out))
-    judged = tuple(judge(bench, found, held_out))
-    conclusion = conclude(judged)
+    known = _attempt(bench, candidates, held_out, say)
+    remarks = [INTERRUPTED] if known.interrupted else []
+    if holdout and not known.interrupted and _unexcited(known.conclusion):
+        say("the held-out recording shows more than the training data: fitting parts of both")
+        mixed, kept = _mixed(bench.training, known.held_out)
+        second = _attempt(Workbench(rig, nominal, mixed, pool), candidates, kept, say)
+        if not second.interrupted:
+            known = second
+            remarks = [MIXED]
+    bench, held_out, found, judged = known.bench, known.held_out, known.found, known.judged
+    conclusion = known.conclusion
+    interrupted = known.interrupted
     best = conclusion.best.hypothesis
     law = None
     if interrupted and conclusion.verdict == "unlisted_physics":  # not every known effect has been tried
@@ -154,7 +160,7 @@ def diagnose(
     return Diagnosis(
         rig=rig,
         verdict=conclusion.verdict,
-        reasons=(INTERRUPTED,) if interrupted else (),
+        reasons=tuple(remarks),
         conclusion=conclusion,
         search=found,
         judged=judged,
@@ -167,6 +173,56 @@ def diagnose(
         proposal=propose(bench, conclusion, [j.hypothesis for j in judged]),
         seconds=clock.perf_counter() - begun,
     )
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What one search and its judgement gave."""
+
+    bench: Workbench
+    found: Search
+    held_out: tuple[Experiment, ...]
+    judged: tuple[Judged, ...]
+    conclusion: Conclusion
+    interrupted: bool
+
+
+def _attempt(
+    bench: Workbench,
+    candidates: Sequence[Candidate],
+    held_out: Sequence[Experiment],
+    say: Callable[[str], None],
+) -> _Known:
+    """Search in the training data, and judge by the held-out data."""
+    interrupted = False
+    found = Search()
+    try:
+        search(bench, candidates, found, say)
+    except KeyboardInterrupt:
+        if not found.hypotheses:
+            raise
+        interrupted = True
+        bench.resume()
+    say("holding the models against data that none of them was fitted to")
+    bench.training = tuple(bench.weighted_by(found.best, bench.training))
+    weighted = tuple(bench.weighted_by(found.best, held_out))
+    judged = tuple(judge(bench, found, weighted))
+    return _Known(bench, found, weighted, judged, conclude(judged), interrupted)
+
+
+def _unexcited(conclusion: Conclusion) -> bool:
+    """Whether a model explains the training data but not the held-out data: those show what the others do not."""
+    return conclusion.verdict == "unlisted_physics" and conclusion.best.hypothesis.fit.over_noise <= EXPLAINED
+
+
+def _mixed(
+    training: Sequence[Experiment], held_out: Sequence[Experiment]
+) -> tuple[tuple[Experiment, ...], tuple[Experiment, ...]]:
+    """All recordings for training but for some blocks of those that were held out."""
+    blocks = [_every_third(e) for e in held_out]
+    fitted = [e.split(e.used & ~held) for e, held in zip(held_out, blocks, strict=True)]
+    kept = [e.split(e.used & held) for e, held in zip(held_out, blocks, strict=True)]
+    return (*training, *fitted), tuple(kept)
 
 
 def _refused(rig: Rig, reasons: Sequence[str], seconds: float) -> Diagnosis:
@@ -220,6 +276,12 @@ def _held_blocks(experiment: Experiment) -> np.ndarray:
     """Samples of the blocks that are held out. # (n,)."""
     block = np.floor(BLOCKS * np.arange(experiment.time.size) / experiment.time.size)
     return np.isin(block, HELD_BLOCKS)
+
+
+def _every_third(experiment: Experiment) -> np.ndarray:
+    """Every third of `SHORT_BLOCKS`. # (n,)."""
+    block = np.floor(SHORT_BLOCKS * np.arange(experiment.time.size) / experiment.time.size)
+    return block % 3 == 2
 
 
 def _nominal(rig: Rig, training: Sequence[Experiment]) -> tuple[Free, ...]:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.search import FIDELITY, NEARLY, Search
+from hydrolek_drake.diagnosis.search import FIDELITY, NEARLY, Search, gain_needed
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 
@@ -93,8 +93,23 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
         lambda h: bench.refit(h, finer, FINISH) if _decides(h, found) else h,
         chosen,
     )
-    judged = bench.side_by_side(lambda h: Judged(h, bench.residuals(h, held_out, finer), counted), refitted)
+    paying = [h for h in refitted if _pays(h, refitted)]
+    judged = bench.side_by_side(lambda h: Judged(h, bench.residuals(h, held_out, finer), counted), paying)
     return with_probabilities(judged)
+
+
+def _pays(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
+    """Whether every further effect also lowers the error of the training data by what chance could not.
+
+    Two fits of nearly the same model end in slightly different places; on held-out data that can look like
+    the gain of an effect that does next to nothing.
+    """
+    return all(
+        other.fit.objective - hypothesis.fit.objective
+        >= gain_needed(other.fit) * len(hypothesis.ids - other.ids)
+        for other in others
+        if other.ids < hypothesis.ids
+    )
 
 
 def judge_given_up(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> list[Judged]:

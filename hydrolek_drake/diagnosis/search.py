@@ -4,9 +4,12 @@ Everything here is fitted to the training data alone; which hypothesis is right 
 that none of them was fitted to (`evidence`).
 """
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+
+import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.score import Score, scores_of
@@ -47,6 +50,16 @@ GLANCE, LOOK, POLISH = 4, 15, 8
 
 FOLLOWED = 5
 """So many of the first fits are followed up."""
+
+PULL_S = 0.1
+"""Time constant with which rollouts are pulled to what was measured when free ones get stuck: longer than a valve
+takes to open and a chamber to fill, and far shorter than a move, over which errors pile up."""
+
+PULLED_STEPS = 8
+"""Trust-region steps of a fit with pulled rollouts."""
+
+TRIED_PULLED = 12
+"""So many of the first fits are tried with pulled rollouts too."""
 
 HOPELESS = 4.0
 """First fits whose squared residuals are so many times the best one's are not followed up."""
@@ -206,12 +219,53 @@ def _grow(
     followed = [h for h in glances if h.fit.objective < bound][:FOLLOWED]
     looks = bench.side_by_side(lambda h: bench.refit(h, step, LOOK, tolerance=1e-4), followed)
     looks.sort(key=lambda h: h.fit.objective)
+    if looks[0].fit.over_noise > NEARLY:
+        looks = _unstuck(bench, glances[:TRIED_PULLED], looks, step)
     found.given_up.update((h.ids, h) for h in looks)
     nearest = looks[0].fit.over_noise
     near = [h for h in looks if h.fit.over_noise < max(1.5 * nearest, AT_NOISE)][:BEAM]
     polished = bench.side_by_side(lambda h: bench.refit(h, bench.fine, POLISH), near)
     polished.sort(key=lambda h: h.fit.objective)
     return [*polished, *looks[len(near) :]][: max(len(polished), 3)]
+
+
+def _unstuck(
+    bench: Workbench, glances: Sequence[Hypothesis], looks: Sequence[Hypothesis], step: float
+) -> list[Hypothesis]:
+    """Fits that got stuck, begun again where rollouts that are pulled to the measurements fit best.
+
+    The residuals of a free rollout pile up what went wrong before: a joint that sticks at the wrong moment is
+    wrong from then on, and least squares ends in the next hollow. Pulled rollouts forget within `PULL_S`, as the
+    prediction errors of an observer do (Ljung, System Identification, 1999, chapter 7), so that the same fit goes
+    its way from far off; what drifts slowly they do not see, and so the free fits stand beside them.
+    """
+    part = [experiment.until(GLANCE_S) for experiment in bench.training]
+
+    def pulled(glance: Hypothesis) -> Hypothesis:
+        starts = [{}, *_starts_of(glance.effects)]
+        problem = bench.problem(glance.effects, step, part, PULL_S)
+        units = [problem.parameters.unit(start) for start in starts]
+        errors = [float(np.sum(problem.residuals(unit) ** 2)) for unit in units]
+        start = starts[int(np.argmin(errors))]
+        return bench.fit(
+            glance.effects, start, step, PULLED_STEPS, tolerance=1e-3, experiments=part, pull_time=PULL_S
+        )
+
+    ahead = sorted(bench.side_by_side(pulled, glances), key=lambda h: h.fit.objective)
+
+    def followed(glance: Hypothesis) -> Hypothesis:
+        near = bench.fit(glance.effects, glance.values, step, LOOK, tolerance=1e-4, pull_time=PULL_S)
+        return bench.refit(near, step, LOOK, tolerance=1e-4)
+
+    again = bench.side_by_side(followed, ahead[:BEAM])
+    best = {h.ids: h for h in sorted([*looks, *again], key=lambda h: -h.fit.objective)}
+    return sorted(best.values(), key=lambda h: h.fit.objective)
+
+
+def _starts_of(effects: Sequence[Candidate]) -> list[dict[str, float]]:
+    """Every combination of the places where searches of these effects begin."""
+    combinations = itertools.product(*(candidate.starts for candidate in effects))
+    return [{path: value for start in chosen for path, value in start.items()} for chosen in combinations]
 
 
 def _first(start: tuple[float, dict[str, float]]) -> float:

@@ -105,13 +105,17 @@ class Workbench:
         return self._sets[key]
 
     def problem(
-        self, effects: Sequence[Candidate], step: float, experiments: Sequence[Experiment] | None = None
+        self,
+        effects: Sequence[Candidate],
+        step: float,
+        experiments: Sequence[Experiment] | None = None,
+        pull_time: float | None = None,
     ) -> Problem:
         """Residuals of this model, on the training data unless others are given."""
         parameters = self.parameters(effects)
         prior = np.full(len(parameters), np.inf)
         prior[: len(self.nominal)] = SPREAD
-        return Problem(parameters, experiments or self.training, step, prior=prior)
+        return Problem(parameters, experiments or self.training, step, prior=prior, pull_time=pull_time)
 
     def fit(
         self,
@@ -121,6 +125,7 @@ class Workbench:
         most_steps: int,
         tolerance: float = 1e-5,
         experiments: Sequence[Experiment] | None = None,
+        pull_time: float | None = None,
     ) -> Hypothesis:
         """Fit the nominal model with these effects.
 
@@ -131,10 +136,11 @@ class Workbench:
             most_steps: of the trust-region method.
             tolerance: relative change of the squared residuals at which it ends.
             experiments: to be fitted; None for all training data.
+            pull_time: of the rollouts, as in `Problem`; None for free ones.
         """
         self.alive()
         effects = tuple(effects)
-        problem = self.problem(effects, step, experiments)
+        problem = self.problem(effects, step, experiments, pull_time)
         parameters = problem.parameters
         fit = fit_from(
             problem,

@@ -9,6 +9,7 @@ from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import measured_position, position_key
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rollout.kernel import PULLED
 from hydrolek_drake.rollout.rollout import Outcome, Signals, rest_state, roll_out
 
 REST_SAMPLES = 25
@@ -86,6 +87,7 @@ class Experiment:
         records: np.ndarray,
         longest_step: float | None = None,
         probes: tuple[float, np.ndarray] | None = None,
+        pull_time: float | None = None,
     ) -> Outcome:
         """Roll the joint out under the recorded command.
 
@@ -93,6 +95,8 @@ class Experiment:
             records: of all joints of the rig. # (joints,)
             longest_step: [s]; None for the rig's own.
             probes: unknown inputs, as in `rollout.roll_out`.
+            pull_time: with which reading and pressures are pulled to what was measured [s]; None for a free
+                rollout.
         """
         record = records[self.index : self.index + 1]
         state = None if self.start is None else rest_state(record, self.start)
@@ -105,7 +109,14 @@ class Experiment:
             longest_step=longest_step or self.longest_step,
             spool_steps=self.spool_steps,
             probes=probes,
+            pull=None if pull_time is None else (pull_time, self._to_follow()),
         )
+
+    def _to_follow(self) -> np.ndarray:
+        """What was measured of `PULLED`; NaN where nothing was. # (n, 3)."""
+        nothing = np.full(self.time.size, np.nan)
+        by_model = {channel.model: channel.measured for channel in self.channels}
+        return np.stack([by_model.get(name, nothing) for name in PULLED], axis=1)
 
     def residuals(self, signals: Signals) -> np.ndarray:
         """(measured - model) / noise of every channel, channel after channel; 0 where it does not count.

@@ -29,6 +29,7 @@ class Problem:
         longest_step: float | None = None,
         pool: Executor | None = None,
         prior: np.ndarray | None = None,
+        pull_time: float | None = None,
     ) -> None:
         """Prepare.
 
@@ -39,6 +40,8 @@ class Problem:
             pool: threads that share the columns of a Jacobian (rollouts run outside Python's lock).
             prior: standard deviation of each parameter's place in the unit cube about the rig's own value,
                 infinite for those of which nothing is known; None for none of them. # (n,)
+            pull_time: with which rollouts are pulled to what was measured [s], so that errors do not pile up:
+                residuals then are prediction errors over that time; None for free rollouts.
         """
         self.parameters = parameters
         self.experiments = tuple(experiments)
@@ -46,6 +49,7 @@ class Problem:
         self.pool = pool
         self._prior_mean = parameters.unit()
         self._prior_weight = np.zeros(len(parameters)) if prior is None else 1.0 / prior
+        self.pull_time = pull_time
         self.evaluations = 0
         self.counted = sum(experiment.counted for experiment in self.experiments)
 
@@ -61,7 +65,9 @@ class Problem:
         self.evaluations += 1
         records = self.parameters.records(unit)
         parts = [
-            experiment.residuals(experiment.simulate(records, self.longest_step).signals)
+            experiment.residuals(
+                experiment.simulate(records, self.longest_step, pull_time=self.pull_time).signals
+            )
             for experiment in self.experiments
         ]
         return self.bounded(parts)

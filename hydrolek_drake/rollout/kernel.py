@@ -69,6 +69,9 @@ class Probe(NamedTuple):
 PROBES = Probe._fields
 NO_PROBE = np.zeros((0, len(PROBES)))
 
+PULLED = ("reading", "pressure_a", "pressure_b")
+NOT_PULLED = np.zeros((0, len(PULLED)))
+
 
 @njit
 def _probe_at(time: float, begin: float, spacing: float, values: np.ndarray) -> Probe:
@@ -233,6 +236,18 @@ def _out_of_bounds(x: float, s: State) -> bool:
     )
 
 
+@njit
+def _pulled(s: State, share: float, reading: float, measured: np.ndarray) -> tuple[State, float]:
+    """The state with a share of what was measured beyond it, and by how much its position was moved."""
+    by = share * (measured[0] - reading) if math.isfinite(measured[0]) else 0.0
+    p_a = s.p_a + share * (measured[1] - s.p_a) if math.isfinite(measured[1]) else s.p_a
+    p_b = s.p_b + share * (measured[2] - s.p_b) if math.isfinite(measured[2]) else s.p_b
+    moved = State(
+        max(p_a, 0.0), max(p_b, 0.0), s.q + by, s.w, s.flow, s.tilt, s.tilt_rate, s.lead_q + by, s.lead_w
+    )
+    return moved, by
+
+
 @njit(cache=True, nogil=True)
 def integrate(
     joints: np.ndarray,
@@ -244,6 +259,8 @@ def integrate(
     spool_steps: int,
     probe_spacing: float,
     probe_values: np.ndarray,
+    pull_time: float,
+    measured: np.ndarray,
     out: np.ndarray,
 ) -> int:
     """Integrate one joint through a command and write its signals at `times`.
@@ -258,7 +275,10 @@ def integrate(
         spool_steps: spool steps within one step.
         probe_spacing: of the samples of the probes, which begin at the first of `times` [s].
         probe_values: `PROBES` over time, shape (k, 7); no rows for none.
-        out: `SIGNALS`, shape (n, 8).
+        pull_time: with this time constant reading and pressures are pulled to what was measured, as in an
+            observer [s]; zero or less for a free rollout.
+        measured: `PULLED` at `times`, NaN where there is no value, shape (n, 3); no rows for a free rollout.
+        out: `SIGNALS`, before the pull, shape (n, 8).
 
     Returns:
         Number of rows written; less than n if the simulation diverged at that row.
@@ -319,6 +339,10 @@ def integrate(
         out[row, 5] = x
         out[row, 6] = p_supply
         out[row, 7] = force
+        if pull_time > 0.0 and row + 1 < len(times):
+            share = 1.0 - math.exp((t - times[row + 1]) / pull_time)
+            s, by = _pulled(s, share, out[row, 0], measured[row])
+            play += by
     if not playing:
         s = State(s.p_a, s.p_b, s.q, s.w, s.flow, s.tilt, s.tilt_rate, s.q, s.w)
     if not rocking:

@@ -100,6 +100,7 @@ def roll_out(
     longest_step: float,
     spool_steps: int = 1,
     probes: tuple[float, np.ndarray] | None = None,
+    pull: tuple[float, np.ndarray] | None = None,
 ) -> Outcome:
     """Drive one joint with a recorded command.
 
@@ -113,6 +114,8 @@ def roll_out(
         spool_steps: steps of the spool within one step of the rest.
         probes: unknown inputs `kernel.PROBES`: spacing of their samples [s], and the samples, shape (k, 7),
             the first at the first of `times`; None for none.
+        pull: reading and pressures are pulled to what was measured, as in an observer: time constant [s], and
+            `kernel.PULLED` at `times`, NaN where there is no value, shape (n, 3); None for a free rollout.
 
     Raises:
         InputError: times that do not rise, or not as many command values as command times.
@@ -122,6 +125,7 @@ def roll_out(
     times = np.ascontiguousarray(times, dtype=float)
     start = np.full(STATE_SIZE, np.nan) if state is None else state.copy()
     probe_spacing, probe_values = probes or (1.0, kernel.NO_PROBE)
+    pull_time, measured = pull or (0.0, kernel.NOT_PULLED)
     diverged = _missing_number(joint)
     if diverged is None:
         try:
@@ -136,6 +140,8 @@ def roll_out(
                 spool_steps,
                 probe_spacing,
                 np.ascontiguousarray(probe_values, dtype=float),
+                pull_time,
+                np.ascontiguousarray(measured, dtype=float),
                 out,
             )
             if rows < len(times):
