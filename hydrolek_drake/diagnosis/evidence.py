@@ -93,12 +93,12 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
         lambda h: bench.refit(h, finer, FINISH) if _decides(h, found) else h,
         chosen,
     )
-    paying = [h for h in refitted if _pays(h, refitted)]
+    paying = [h for h in refitted if pays(h, refitted)]
     judged = bench.side_by_side(lambda h: Judged(h, bench.residuals(h, held_out, finer), counted), paying)
     return with_probabilities(judged)
 
 
-def _pays(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
+def pays(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
     """Whether every further effect also lowers the error of the training data by what chance could not.
 
     Two fits of nearly the same model end in slightly different places; on held-out data that can look like

@@ -220,7 +220,7 @@ def _grow(
     looks = bench.side_by_side(lambda h: bench.refit(h, step, LOOK, tolerance=1e-4), followed)
     looks.sort(key=lambda h: h.fit.objective)
     if looks[0].fit.over_noise > NEARLY:
-        looks = _unstuck(bench, glances[:TRIED_PULLED], looks, step)
+        looks = unstuck(bench, glances[:TRIED_PULLED], looks, step)
     found.given_up.update((h.ids, h) for h in looks)
     nearest = looks[0].fit.over_noise
     near = [h for h in looks if h.fit.over_noise < max(1.5 * nearest, AT_NOISE)][:BEAM]
@@ -229,7 +229,7 @@ def _grow(
     return [*polished, *looks[len(near) :]][: max(len(polished), 3)]
 
 
-def _unstuck(
+def unstuck(
     bench: Workbench, glances: Sequence[Hypothesis], looks: Sequence[Hypothesis], step: float
 ) -> list[Hypothesis]:
     """Fits that got stuck, begun again where rollouts that are pulled to the measurements fit best.

@@ -18,12 +18,19 @@ def bench() -> Rig:
 
 @pytest.fixture(scope="session")
 def recorded() -> Callable[..., list[Experiment]]:
-    """(rig that plays the machine, rig that is fitted, seed, noise in deg) -> experiments of 12 s."""
+    """(machine that is recorded, rig that is fitted, seed, noise, largest volts, pressures) -> 12 s of it."""
 
-    def make(machine: Rig, model: Rig, seed: int = 1, noise_deg: float = 0.05) -> list[Experiment]:
+    def make(
+        machine: Rig,
+        model: Rig,
+        seed: int = 1,
+        noise_deg: float = 0.05,
+        largest_V: float = 9.0,
+        pressure_noise_Pa: float | None = None,
+    ) -> list[Experiment]:
         rng = np.random.default_rng(seed)
         time = np.arange(0.0, 12.0, 0.01)
-        levels = np.repeat(rng.uniform(-9.0, 9.0, 24), 50)
+        levels = np.repeat(rng.uniform(-largest_V, largest_V, 24), 50)
         levels[:50] = 0.0
         blank = Recording(
             "made",
@@ -31,9 +38,13 @@ def recorded() -> Callable[..., list[Experiment]]:
             {"joint.command": levels, "joint.angle": rng.normal(0.4, 0.1, time.size)},
             Path("made.csv"),
         )
-        played = experiments_of(machine, blank)[0].simulate(machine.records(), 1e-4).signals.reading
-        angle = played + np.radians(noise_deg) * rng.standard_normal(time.size)
-        made = Recording("made", time, {"joint.command": levels, "joint.angle": angle}, Path("made.csv"))
-        return experiments_of(model, made)
+        played = experiments_of(machine, blank)[0].simulate(machine.records(), 1e-4).signals
+        angle = played.reading + np.radians(noise_deg) * rng.standard_normal(time.size)
+        signals = {"joint.command": levels, "joint.angle": angle}
+        if pressure_noise_Pa is not None:
+            for side in ("pressure_a", "pressure_b"):
+                noise = pressure_noise_Pa * rng.standard_normal(time.size)
+                signals[f"joint.{side}"] = getattr(played, side) + noise
+        return experiments_of(model, Recording("made", time, signals, Path("made.csv")))
 
     return make

@@ -5,7 +5,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import conclude
-from hydrolek_drake.diagnosis.evidence import Judged, dispersion, probability_of, with_probabilities
+from hydrolek_drake.diagnosis.evidence import Judged, dispersion, pays, probability_of, with_probabilities
 from hydrolek_drake.diagnosis.workbench import Hypothesis
 from hydrolek_drake.identification.least_squares import Fit
 
@@ -79,3 +79,14 @@ def test_one_more_effect_must_pay_for_itself(effect) -> None:
     leak, drift = effect["cylinder.cross_port_leakage"], effect["sensor.drift"]
     judged = with_probabilities([_judged((leak,), 1.0), _judged((leak, drift), 0.9995)])
     assert len(judged[0].hypothesis.effects) == 1
+
+
+def test_an_effect_that_gains_nothing_on_the_training_data_is_not_judged(effect) -> None:
+    leak, drift = effect["cylinder.cross_port_leakage"], effect["sensor.drift"]
+    nominal, alone = _judged((), 5.0).hypothesis, _judged((leak,), 1.0).hypothesis
+    # chi squared of 4000 values falls by 4 in the one case, by 40 in the other
+    idle = _judged((leak, drift), (1.0 - 4.0 / COUNTED) ** 0.5).hypothesis
+    needed = _judged((leak, drift), (1.0 - 40.0 / COUNTED) ** 0.5).hypothesis
+    assert pays(alone, [nominal, alone, idle])
+    assert not pays(idle, [nominal, alone, idle])
+    assert pays(needed, [nominal, alone, needed])
