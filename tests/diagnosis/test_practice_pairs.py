@@ -11,6 +11,9 @@ from hydrolek_drake.cli.app import run
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.replay import compare, replay
 from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.station.simulation import command_source
+from hydrolek_drake.station.simulation import run as run_diagram
+from hydrolek_drake.station.station import make_station
 
 DATA = Path(__file__).parents[1] / "data" / "bench"
 LABELS = {label["id"]: label for label in json.loads((DATA / "practice_labels.json").read_text())}
@@ -102,3 +105,21 @@ def test_the_same_recording_cannot_decide_on_itself(capsys) -> None:
 def test_workers_must_be_positive(capsys) -> None:
     assert run(["diagnose", "joint_bench", str(DATA / "practice_01" / "train.csv"), "--workers", "0"]) == 2
     assert "--workers 0" in capsys.readouterr().err
+
+
+def test_the_drake_diagram_reproduces_the_improvement(diagnosed) -> None:
+    seconds = 8.0
+    rig = load_rig(diagnosed("practice_04") / "rig_fitted.yaml", {})
+    nominal = load_rig("joint_bench", {})
+    recording = read_recording(DATA / "practice_04" / "holdout.csv", rig.columns)
+    count = int(np.searchsorted(recording.time, seconds, side="right"))
+    volts = np.asarray(recording.signal("joint.command"))[:count, None]
+    measured = np.degrees(np.asarray(recording.signal("joint.angle"))[:count])
+    error = {}
+    for name, model in (("nominal", nominal), ("fitted", rig)):
+        station = make_station(model, command=command_source(recording.time[:count], volts))
+        reading = np.degrees(run_diagram(station, seconds).signals["reading"][:count, 0])
+        error[name] = float(np.sqrt(np.mean((reading - measured[: len(reading)]) ** 2)))
+    noise = json.loads((diagnosed("practice_04") / "report.json").read_text())["fit"]["noise_floor"]
+    assert error["fitted"] <= ALLOWED * noise
+    assert error["nominal"] > 2.0 * error["fitted"]
