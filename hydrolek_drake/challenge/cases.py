@@ -40,6 +40,8 @@ SIZING_STEP_S = 5e-5
 """Integration step while an effect's size is sought, which need not be exact."""
 
 SCALINGS = 3
+LARGEST_SCALING = 20.0
+"""Sizes stay within this factor of those in sizes.yaml: beyond, a worn joint would have been scrapped."""
 
 
 @dataclass(frozen=True)
@@ -120,10 +122,22 @@ def _case(
     drive = "closed" if rng.random() < 0.5 else "open"
     pressures = bool(rng.random() < 0.5)
     seed = int(rng.integers(2**31))
-    effects = {name: _scaled(machine, sizes["listed"][name], level, drive, seed, rng, name) for name in names}
-    unlisted = {
-        name: _scaled(machine, sizes["unlisted"][name], level, drive, seed, rng, None) for name in strange
-    }
+    concealed: list[tuple[str, Any, str | None]] = [(name, sizes["listed"][name], name) for name in names]
+    concealed += [(name, sizes["unlisted"][name], None) for name in strange]
+    scaled: dict[str, dict[str, float]] = {}
+    for tried in dict.fromkeys((drive, "open")):
+        found = {
+            name: _scaled(machine, entry, level, tried, seed, rng, listed)
+            for name, entry, listed in concealed
+        }
+        drive = tried
+        scaled = {name: parameters for name, (parameters, _) in found.items()}
+        if all(
+            shows for _, shows in found.values()
+        ):  # a controller may keep a joint from where an effect shows
+            break
+    effects = {name: scaled[name] for name in names}
+    unlisted = {name: scaled[name] for name in strange}
     stages = [name.split(".")[0] for name in names] + [sizes["unlisted"][name]["stage"] for name in strange]
     return Case(
         f"case_{number:03d}", kind, level, drive, pressures, effects, unlisted, tuple(stages), own, seed
@@ -145,12 +159,13 @@ def _scaled(
     seed: int,
     rng: np.random.Generator,
     name: str | None,
-) -> dict[str, float]:
-    """Parameters of an effect, scaled until it shows as much as wanted."""
+) -> tuple[dict[str, float], bool]:
+    """Parameters of an effect, scaled until it shows as much as wanted, and whether it does."""
     drawn = {p: float(math.exp(rng.uniform(*np.log(ends)))) for p, ends in entry.get("draw", {}).items()}
     sign = -1.0 if entry.get("signed") and rng.random() < 0.5 else 1.0
     factor = 1.0
     parameters: dict[str, float] = {}
+    shown = 0.0
     for _ in range(SCALINGS):
         parameters = {p: sign * v * factor for p, v in entry["size"].items()} | drawn
         changed = with_effects(machine, {name: parameters}) if name else machine._replace(**parameters)
@@ -158,9 +173,9 @@ def _scaled(
         if not math.isfinite(shown):
             shown = 10.0 * SHOWS["large"]
         ratio = SHOWS[level] / max(shown, 0.02)
-        step = min(max(ratio, 0.05), 20.0)
-        factor *= 1.0 / step if entry.get("weakens") else step
-    return parameters
+        factor *= 1.0 / ratio if entry.get("weakens") else ratio
+        factor = min(max(factor, 1.0 / LARGEST_SCALING), LARGEST_SCALING)
+    return parameters, shown > 0.5 * SHOWS[level]
 
 
 def _mismatch(plain: Machine, changed: Machine, drive: str, seed: int) -> float:
