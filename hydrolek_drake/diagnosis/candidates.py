@@ -42,14 +42,14 @@ def candidates_of(rig: Rig, joint: str, scales: Scales) -> tuple[Candidate, ...]
     """Every effect that can act on this joint and is not switched on in the rig yet.
 
     The range of a parameter is the rig's own if it states one, else the effect's multiple of the machine's
-    natural scale.
+    natural scale. Effects on the supply, which all joints share, carry the name of the rig's first joint.
     """
     on = rig.effects_on(joint)
     found = []
     for effect in EFFECTS.values():
         if effect.id in on or not effect.search or not _acts(effect, rig, joint):
             continue
-        candidate = _candidate(effect, rig, joint, scales)
+        candidate = _candidate(effect, rig, rig.owner(effect, joint), scales)
         if candidate is not None:
             found.append(candidate)
     return tuple(found)

@@ -130,11 +130,11 @@ def diagnose(
         return _refused(rig, reasons, clock.perf_counter() - begun)
     nominal = _nominal(rig, training)
     bench = Workbench(rig, nominal, training, pool)
-    candidates: list[Candidate] = []
     joints = tuple(dict.fromkeys(experiment.joint for experiment in training))
     scales = {joint: natural_scales(rig, joint, training) for joint in joints}
-    for joint in joints:
-        candidates += candidates_of(rig, joint, scales[joint])
+    candidates = list(
+        {c.size_path: c for joint in joints for c in candidates_of(rig, joint, scales[joint])}.values()
+    )
     known = _attempt(bench, candidates, held_out, say)
     remarks = [INTERRUPTED] if known.interrupted else []
     if holdout and not known.interrupted and _unexcited(known.conclusion):
@@ -151,7 +151,7 @@ def diagnose(
     law = None
     if interrupted and conclusion.verdict == "unlisted_physics":  # not every known effect has been tried
         conclusion = replace(conclusion, verdict="ambiguous")
-    if conclusion.verdict == "unlisted_physics":
+    if conclusion.verdict == "unlisted_physics" and len(joints) == 1:
         say("searching a law for physics that is in no list")
         law = find_law(bench, conclusion.best, held_out, scales[joints[0]])
     places = locate(bench, best, found.baseline, bench.training)

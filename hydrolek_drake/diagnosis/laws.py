@@ -116,7 +116,7 @@ def variables_of(signals: Signals, pressure: float) -> dict[str, np.ndarray]:
 
 
 def probe_rows(stage: str, values: np.ndarray) -> np.ndarray:
-    """One input over time as rows of `kernel.PROBES`. # (n, 7)."""
+    """One input over time as rows of `kernel.PROBES`. # (n, 8)."""
     rows = np.zeros((values.size, len(PROBES)))
     rows[:, PROBES.index(stage)] = values
     return rows

@@ -102,20 +102,17 @@ def locate(
             f"joints.{candidate.joint}.effects.{candidate.id}.{p.name}": float(p.neutral or 0.0)
             for p in candidate.effect.parameters
         }
-        own = [e for e in experiments if e.joint == candidate.joint]
         rig = bench.rig.with_values(best.values)
         without = rig.with_values(neutral)
-        experiment = own[0]
+        shown = [_difference(e, rig, without) for e in experiments]
+        experiment, present, difference = max(shown, key=lambda s: _weight(s[0], s[2]))
         channel = experiment.channels[0]
-        present = experiment.simulate(rig.records()).signals
-        absent = experiment.simulate(without.records()).signals
-        difference = present.reading - absent.reading
-        weights.append(float(np.nanmean((difference / channel.noise) ** 2)))
+        weights.append(_weight(experiment, difference))
         holds = conditions_for(rig, experiment, present)
         found.append(
             Location(
                 stage=candidate.effect.stage,
-                joint=candidate.joint,
+                joint=experiment.joint,
                 share=0.0,
                 when=growing_spans(experiment.time, difference, channel.noise),
                 condition=told_condition(experiment.time, difference, holds),
@@ -127,6 +124,17 @@ def locate(
         for place, share in zip(found, shares_, strict=True)
     ]
     return tuple(sorted(located, key=lambda place: -place.share))
+
+
+def _difference(experiment: Experiment, rig: Rig, without: Rig) -> tuple[Experiment, Signals, np.ndarray]:
+    """An experiment, what the model does with an effect, and by how much its reading is another without it."""
+    present = experiment.simulate(rig.records()).signals
+    absent = experiment.simulate(without.records()).signals
+    return experiment, present, present.reading - absent.reading
+
+
+def _weight(experiment: Experiment, difference: np.ndarray) -> float:
+    return float(np.nanmean((difference / experiment.channels[0].noise) ** 2))
 
 
 def locate_law(bench: Workbench, best: Hypothesis, baseline: Hypothesis, law: FoundLaw) -> Location:

@@ -168,6 +168,9 @@ class LawProblem(Problem):
             [e.residuals(s) for e, s in zip(self.experiments, self.signals(unit), strict=True)]
         )
 
+    def _keep(self, unit: np.ndarray, base: np.ndarray) -> None:
+        """Nothing is kept: a law's own parameters change every rollout."""
+
 
 def _grid(experiment: Experiment) -> np.ndarray:
     """Times since the start at which an input is given [s]."""

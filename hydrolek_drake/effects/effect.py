@@ -91,6 +91,13 @@ class Effect:
         return self.id.split(".")[0]
 
     @property
+    def neutral_size(self) -> float:
+        """The size at which it is not there."""
+        neutral = next(p.neutral for p in self.parameters if p.name == self.size)
+        assert neutral is not None  # every parameter of an effect has one
+        return neutral
+
+    @property
     def key(self) -> str:
         """Its field in the joint's record."""
         return self.id.replace(".", "_")

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.identification.neighbours import effects_of_others, rows_at
 from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import measured_position, position_key
@@ -68,6 +69,8 @@ class Experiment:
         longest_step: of the rollout [s].
         spool_steps: of the rollout.
         used: samples that count in a fit. # (n,)
+        others: what joints that move at the same time do to this one, as probes of the rollout; None if it moves
+            alone.
     """
 
     name: str
@@ -81,6 +84,7 @@ class Experiment:
     longest_step: float
     spool_steps: int
     used: np.ndarray
+    others: tuple[float, np.ndarray] | None = None
 
     def simulate(
         self,
@@ -108,9 +112,16 @@ class Experiment:
             state=state,
             longest_step=longest_step or self.longest_step,
             spool_steps=self.spool_steps,
-            probes=probes,
+            probes=self._with_others(probes),
             pull=None if pull_time is None else (pull_time, self._to_follow()),
         )
+
+    def _with_others(self, probes: tuple[float, np.ndarray] | None) -> tuple[float, np.ndarray] | None:
+        """Probes with what the other joints do added."""
+        if self.others is None or probes is None:
+            return probes or self.others
+        spacing, rows = probes
+        return spacing, rows + rows_at(self.others, spacing, len(rows))
 
     def _to_follow(self) -> np.ndarray:
         """What was measured of `PULLED`; NaN where nothing was. # (n, 3)."""
@@ -168,7 +179,15 @@ def experiments_of(
     driven = [joint for joint in rig.joints if f"{joint}.command" in recording.signals]
     if not driven:
         require(recording, [f"{rig.joints[0]}.command"])
-    return [_experiment(rig, joint, recording, signals) for joint in driven]
+    experiments = [_experiment(rig, joint, recording, signals) for joint in driven]
+    others = effects_of_others(
+        rig,
+        {
+            e.joint: (e.time, np.asarray(measured_position(rig, e.joint, recording), dtype=float))
+            for e in experiments
+        },
+    )
+    return [replace(e, others=others.get(e.joint)) for e in experiments]
 
 
 def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, ...]) -> Experiment:

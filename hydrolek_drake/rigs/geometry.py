@@ -4,6 +4,7 @@ import functools
 import math
 from typing import TYPE_CHECKING
 
+from hydrolek_drake.effects.catalogue import EFFECTS
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs.entries import Entry
 
@@ -37,6 +38,20 @@ def check(rig: "Rig") -> None:
         _check_triangle(rig, where, lower, upper)
         _check_valve(rig, where)
         _check_sensor(rig, where)
+    _check_supply(rig)
+
+
+def _check_supply(rig: "Rig") -> None:
+    """Effects on the pump, which all joints share, stand at the first joint alone."""
+    first = rig.joints[0]
+    for joint in rig.joints[1:]:
+        for effect in EFFECTS.values():
+            path = f"joints.{joint}.effects.{effect.id}.{effect.size}"
+            if rig.owner(effect, joint) != joint and rig.value(path) != effect.neutral_size:
+                raise InputError(
+                    f"{rig.path}: {path}: all joints share one pump; set it at the first joint, "
+                    f"joints.{first}.effects.{effect.id}.{effect.size}"
+                )
 
 
 def _check_signs(rig: "Rig", where: str) -> None:

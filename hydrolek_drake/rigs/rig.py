@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.effects.catalogue import EFFECTS, effect_named
+from hydrolek_drake.effects.effect import Effect
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.physics import supply
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.records import JOINT, JOINT_STAGES, SHARED_STAGES
 from hydrolek_drake.rigs import geometry
@@ -166,13 +168,17 @@ class Rig:
             values[full] = parse_quantity(text, declaration(self, full), f"--set {path}={text}")
         return self.with_values(values)
 
+    def owner(self, effect: Effect, joint: str) -> str:
+        """The joint whose parameters of an effect act on `joint`: all share the pump, so the first joint has those."""
+        return self.joints[0] if effect.stage == supply.STAGE.name else joint
+
     def effects_on(self, joint: str) -> tuple[str, ...]:
         """Ids of the effects that are switched on at a joint."""
         return tuple(
             effect.id
             for effect in EFFECTS.values()
-            if self.value(f"joints.{joint}.effects.{effect.id}.{effect.size}")
-            != _neutral(effect.parameters, effect.size)
+            if self.value(f"joints.{self.owner(effect, joint)}.effects.{effect.id}.{effect.size}")
+            != effect.neutral_size
         )
 
     def free_parameters(self) -> dict[str, Entry]:
@@ -184,16 +190,20 @@ class Rig:
         }
 
     def records(self) -> np.ndarray:
-        """The joints' parameter records, shape (n joints,), dtype `physics.records.JOINT`."""
+        """The joints' parameter records, shape (n joints,), dtype `physics.records.JOINT`.
+
+        Effects on the supply, which all joints share, are the first joint's.
+        """
         records = np.zeros(len(self.joints), JOINT)
         for i, joint in enumerate(self.joints):
             for name, stage in {**SHARED_STAGES, **JOINT_STAGES}.items():
                 where = name if name in SHARED_STAGES else f"joints.{joint}.{name}"
                 _fill(records[i][name], stage, where, self)
             for effect in EFFECTS.values():
+                owner = self.owner(effect, joint)
                 for p in effect.parameters:
                     records[i]["effects"][effect.key][p.name] = self.value(
-                        f"joints.{joint}.effects.{effect.id}.{p.name}"
+                        f"joints.{owner}.effects.{effect.id}.{p.name}"
                     )
         return records
 
@@ -212,12 +222,6 @@ def declaration(rig: Rig, full_path: str) -> Parameter:
         return next(p for p in effect.parameters if p.name == name)
     stage = {**SHARED_STAGES, **JOINT_STAGES}[section.split(".")[-1]]
     return next(p for p in stage.parameters(rig.variants[section]) if p.name == name)
-
-
-def _neutral(parameters: tuple[Parameter, ...], name: str) -> float:
-    neutral = next(p.neutral for p in parameters if p.name == name)
-    assert neutral is not None  # every parameter of an effect has one
-    return neutral
 
 
 def _check_keys(section: Any, allowed: tuple[str, ...], where: str, path: Path) -> None:

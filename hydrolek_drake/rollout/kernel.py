@@ -55,7 +55,10 @@ class Slopes(NamedTuple):
 
 
 class Probe(NamedTuple):
-    """Unknown inputs, one a stage, with which a diagnosis asks where physics is missing; all zero otherwise."""
+    """Inputs from outside the model, all zero otherwise.
+
+    Unknown ones, one a stage, with which a diagnosis asks where physics is missing; and what other joints do.
+    """
 
     command: float  # added to the command [V]
     amplifier: float  # relative change of the coil currents
@@ -64,6 +67,7 @@ class Probe(NamedTuple):
     cylinder: float  # force added at the rod [N]
     load: float  # moment added at the joint [N m]
     sensor: float  # added to the reading [rad or m]
+    flow: float  # that other joints draw from the supply [m^3/s]
 
 
 PROBES = Probe._fields
@@ -77,7 +81,7 @@ NOT_PULLED = np.zeros((0, len(PULLED)))
 def _probe_at(time: float, begin: float, spacing: float, values: np.ndarray) -> Probe:
     """Probes at a time, on straight lines between samples of uniform spacing."""
     if len(values) == 0:
-        return Probe(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return Probe(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     place = min(max((time - begin) / spacing, 0.0), len(values) - 1.0)
     i = min(int(place), len(values) - 2)
     f = place - i
@@ -90,6 +94,7 @@ def _probe_at(time: float, begin: float, spacing: float, values: np.ndarray) -> 
         a[4] + f * (b[4] - a[4]),
         a[5] + f * (b[5] - a[5]),
         a[6] + f * (b[6] - a[6]),
+        a[7] + f * (b[7] - a[7]),
     )
 
 
@@ -116,7 +121,7 @@ def rates(
     else:
         stroke, lever = linkage.stroke_and_lever(side_q, joint)
         v = lever * side_w
-        p_supply = supply.supply_pressure(s.flow, joint) + probe.supply
+        p_supply = supply.supply_pressure(s.flow + probe.flow, joint) + probe.supply
         open_a, open_b = valve.openings(x, joint)
         open_a *= 1.0 + probe.valve
         open_b *= 1.0 + probe.valve
@@ -274,7 +279,7 @@ def integrate(
         longest_step: [s].
         spool_steps: spool steps within one step.
         probe_spacing: of the samples of the probes, which begin at the first of `times` [s].
-        probe_values: `PROBES` over time, shape (k, 7); no rows for none.
+        probe_values: `PROBES` over time, shape (k, 8); no rows for none.
         pull_time: with this time constant reading and pressures are pulled to what was measured, as in an
             observer [s]; zero or less for a free rollout.
         measured: `PULLED` at `times`, NaN where there is no value, shape (n, 3); no rows for a free rollout.

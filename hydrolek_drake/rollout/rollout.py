@@ -112,8 +112,8 @@ def roll_out(
         state: where to start; None for rest at the rig's initial position.
         longest_step: upper bound of the integration step [s].
         spool_steps: steps of the spool within one step of the rest.
-        probes: unknown inputs `kernel.PROBES`: spacing of their samples [s], and the samples, shape (k, 7),
-            the first at the first of `times`; None for none.
+        probes: inputs from outside the model, `kernel.PROBES`: spacing of their samples [s], and the samples,
+            shape (k, 8), the first at the first of `times`; None for none.
         pull: reading and pressures are pulled to what was measured, as in an observer: time constant [s], and
             `kernel.PULLED` at `times`, NaN where there is no value, shape (n, 3); None for a free rollout.
 

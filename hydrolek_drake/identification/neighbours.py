@@ -1,0 +1,138 @@
+"""What the other joints of a machine do to one joint while all of them move, from what was measured.
+
+A rollout knows one joint. Others that move at the same time draw oil from the same pump and move the arm that the
+joint carries. Both follow from their measured angles, without any model of their valves: the flow into a cylinder is
+its area times the rod's speed, and the load is the inverse dynamics of the whole arm along the measured motion
+(Siciliano et al., Robotics, 2009, section 7.5), less what the joint would carry with the others held.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+from scipy.signal import savgol_filter
+
+from hydrolek_drake.physics import linkage, load
+from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rollout.kernel import PROBES
+
+SPACING_S = 0.01
+"""Spacing of the samples of what the others do [s]."""
+
+WINDOW_S = 0.25
+"""Measured angles are smoothed and differentiated over so long: a joint's fastest change of speed, while the noise of
+an acceleration stays some percent of the accelerations of a move."""
+
+ORDER = 3
+"""Of the polynomial that is fitted within the window."""
+
+
+def motion(
+    time: np.ndarray, angle: np.ndarray, grid: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Smoothed position, velocity and acceleration of a measured angle (Savitzky-Golay).
+
+    Args:
+        time: of the samples [s]. # (n,)
+        angle: [rad or m]; NaN where there is no value. # (n,)
+        grid: uniform times at which they are wanted [s]. # (m,)
+    """
+    known = np.isfinite(angle)
+    uniform = np.interp(grid, time[known], angle[known])
+    spacing = float(grid[1] - grid[0])
+    width = max(2 * round(0.5 * WINDOW_S / spacing) + 1, ORDER + 2)
+    width = min(width, 2 * ((grid.size - 1) // 2) + 1)
+    position, velocity, acceleration = (
+        savgol_filter(uniform, width, ORDER, deriv=order, delta=spacing, mode="interp") for order in range(3)
+    )
+    return position, velocity, acceleration
+
+
+def drawn_flow(record: np.void, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """Flow that a joint draws from the supply [m^3/s]: area of the fed side times the rod's speed. # (n,)."""
+    lever = np.array([linkage.stroke_and_lever(q, record)[1] for q in position])
+    rod_speed = lever * velocity
+    area_a, area_b = float(record["cylinder"]["area_a"]), float(record["cylinder"]["area_b"])
+    return np.where(rod_speed > 0.0, area_a * rod_speed, -area_b * rod_speed)
+
+
+def effects_of_others(
+    rig: Rig, measured: Mapping[str, tuple[np.ndarray, np.ndarray]]
+) -> dict[str, tuple[float, np.ndarray]]:
+    """Probes that make each joint's rollout feel the others.
+
+    Args:
+        rig: the machine.
+        measured: joint -> times [s] and position [rad or m], of every joint that moves.
+
+    Returns:
+        Joint -> spacing [s] and rows of `kernel.PROBES`, from the joint's first sample on; empty if fewer than two
+        joints move or the joints are driven by motors of their own.
+    """
+    hydraulic = [j for j in measured if rig.variant(j, "cylinder") != "electric_motor"]
+    if len(hydraulic) < 2:
+        return {}
+    records = dict(zip(rig.joints, rig.records(), strict=True))
+    begin = min(float(time[0]) for time, _ in measured.values())
+    end = max(float(time[-1]) for time, _ in measured.values())
+    grid = begin + SPACING_S * np.arange(int((end - begin) / SPACING_S) + 2)
+    motions = {joint: motion(*measured[joint], grid) for joint in hydraulic}
+    flows = {joint: drawn_flow(records[joint], *motions[joint][:2]) for joint in hydraulic}
+    moments = _loads_of_others(rig, records, motions)
+    total = np.sum(list(flows.values()), axis=0)
+    found = {}
+    for joint in hydraulic:
+        rows = np.zeros((grid.size, len(PROBES)))
+        rows[:, PROBES.index("flow")] = total - flows[joint]
+        rows[:, PROBES.index("load")] = -moments.get(joint, 0.0)
+        first = round((float(measured[joint][0][0]) - begin) / SPACING_S)
+        found[joint] = (SPACING_S, rows[first:])
+    return found
+
+
+def _loads_of_others(
+    rig: Rig,
+    records: Mapping[str, np.void],
+    motions: Mapping[str, tuple[np.ndarray, np.ndarray, np.ndarray]],
+) -> dict[str, np.ndarray]:
+    """Joint -> moment by which the moving arm resists more than with the other joints held [N m]."""
+    arm = [joint for joint in motions if rig.variant(joint, "load") == "arm"]
+    if not arm:
+        return {}
+    from pydrake.multibody.tree import MultibodyForces
+
+    from hydrolek_drake.kinematics.arms import arm_joint, make_arms_plant
+
+    held = {
+        joint: float(records[joint]["load"]["initial_position"])
+        for joint in rig.joints
+        if rig.variant(joint, "load") == "arm" and joint not in arm
+    }
+    plant = make_arms_plant()
+    context = plant.CreateDefaultContext()
+    for joint, position in held.items():
+        arm_joint(plant, joint).set_angle(context, position)
+    places = {joint: arm_joint(plant, joint).velocity_start() for joint in arm}
+    rest = plant.GetPositions(context).copy()
+    count = len(next(iter(motions.values()))[0])
+    forces = MultibodyForces(plant)
+    more = {joint: np.zeros(count) for joint in arm}
+    for n in range(count):
+        q, w, a = rest.copy(), np.zeros(plant.num_velocities()), np.zeros(plant.num_velocities())
+        for joint, place in places.items():
+            q[place], w[place], a[place] = (series[n] for series in motions[joint])
+        plant.SetPositions(context, q)
+        plant.SetVelocities(context, w)
+        plant.CalcForceElementsContribution(context, forces)
+        needed = plant.CalcInverseDynamics(context, a, forces)
+        for joint, place in places.items():
+            record = records[joint]
+            alone = load.moving_inertia(0.0, record) * a[place] + load.gravity_load(q[place], 0.0, record)
+            more[joint][n] = needed[place] - alone
+    return more
+
+
+def rows_at(probes: tuple[float, np.ndarray], spacing: float, count: int) -> np.ndarray:
+    """Rows of probes at another spacing, on straight lines between their samples. # (count, probes)."""
+    own_spacing, rows = probes
+    own, wanted = own_spacing * np.arange(len(rows)), spacing * np.arange(count)
+    return np.stack([np.interp(wanted, own, column) for column in rows.T], axis=1)
