@@ -21,6 +21,7 @@ from hydrolek_drake.control.controlled_station import run_controlled
 from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.diagnosis.diagnosis import diagnose
 from hydrolek_drake.diagnosis.report_json import as_json
+from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.files import write_whole
 from hydrolek_drake.identification.parameter_set import free_parameters
 from hydrolek_drake.recordings import read_recording, write_signals
@@ -34,22 +35,34 @@ PARTS = {"train": 30.0, "holdout": 20.0}
 SAMPLE_S = 0.01
 
 
+def joints_of(riddle: dict[str, Any]) -> list[str]:
+    """The joints that move."""
+    return [riddle["joint"]] if "joint" in riddle else riddle["joints"]
+
+
+def rig_of(riddle: dict[str, Any]) -> Rig:
+    """One joint with the others held, or the whole machine if several move."""
+    return load_rig(f"hydrolek_{riddle['joint']}" if "joint" in riddle else "hydrolek", {})
+
+
 def machine_of(rig: Rig, riddle: dict[str, Any], generator: np.random.Generator) -> Rig:
-    """The joint with its own numbers and the concealed effect."""
-    own = {
-        free.path: min(
-            max(rig.value(free.path) * generator.uniform(1.0 - SPREAD, 1.0 + SPREAD), free.lower), free.upper
-        )
-        for free in free_parameters(rig)
-    }
-    record = rig.records()[0]
+    """The joints with their own numbers and the concealed effect, which acts on the first of them."""
+    moving = joints_of(riddle)
+    own = {}
+    for free in free_parameters(rig):
+        if free.path.startswith("joints.") and free.path.split(".")[1] not in moving:
+            continue
+        value = rig.value(free.path) * generator.uniform(1.0 - SPREAD, 1.0 + SPREAD)
+        own[free.path] = min(max(value, free.lower), free.upper)
+    record = rig.records()[rig.joints.index(moving[0])]
     full_force = float(record["cylinder"]["area_a"] * record["supply"]["pressure"])
     for effect, parameters in riddle["effects"].items():
+        joint = rig.owner(EFFECTS[effect], moving[0])
         for name, value in parameters.items():
-            path = f"effects.{effect}.{name}"
             if name == "force_share":
-                path, value = f"effects.{effect}.coulomb_N", value * full_force
-            own[path] = value
+                own[f"joints.{joint}.effects.{effect}.coulomb_N"] = value * full_force
+            else:
+                own[f"joints.{joint}.effects.{effect}.{name}"] = value
     return rig.with_values(own)
 
 
@@ -68,18 +81,35 @@ def record(rig: Rig, riddle: dict[str, Any], folder: Path, seed: int) -> None:
     """Write `train.csv` and `holdout.csv`."""
     generator = np.random.default_rng(seed)
     machine = machine_of(rig, riddle, generator)
-    joint = riddle["joint"]
+    moving = joints_of(riddle)
     folder.mkdir(parents=True, exist_ok=True)
     for part, seconds in PARTS.items():
         if "controller" in riddle:
             time, volts, angle = _controlled(rig, machine, riddle, seconds, generator)
         else:
-            time, volts = random_voltage(seconds, generator)
-            station = make_station(machine, command=command_source(time, volts[:, None]), noise=generator)
-            angle = run(station, seconds).signals["measured"][: time.size, 0]
-        signals = {f"{joint}.command": volts[: angle.size], f"{joint}.angle": angle}
-        units = {f"{joint}.command": "V", f"{joint}.angle": "rad"}
-        write_signals(folder / f"{part}.csv", time[: angle.size], signals, units)
+            time, volts, angle = _open(rig, machine, moving, seconds, generator)
+        signals: dict[str, np.ndarray] = {}
+        units: dict[str, str] = {}
+        for i, joint in enumerate(moving):
+            signals |= {f"{joint}.command": volts[:, i], f"{joint}.angle": angle[:, i]}
+            units |= {f"{joint}.command": "V", f"{joint}.angle": "rad"}
+        write_signals(folder / f"{part}.csv", time, signals, units)
+
+
+def _open(
+    rig: Rig, machine: Rig, moving: list[str], seconds: float, generator: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Random voltage on every moving joint; the others' valves stay closed."""
+    places = [rig.joints.index(joint) for joint in moving]
+    series = [random_voltage(seconds, generator) for _ in moving]
+    time = series[0][0]
+    volts = np.zeros((time.size, len(rig.joints)))
+    for place, (_, own) in zip(places, series, strict=True):
+        volts[:, place] = own
+    station = make_station(machine, command=command_source(time, volts), noise=generator)
+    angle = run(station, seconds).signals["measured"]
+    count = min(time.size, len(angle))
+    return time[:count], volts[:count, places], angle[:count, places]
 
 
 def _controlled(
@@ -96,7 +126,7 @@ def _controlled(
         wanted[first:] = start + generator.uniform(-20.0, 20.0)
     done = run_controlled(machine, {joint: law}, wanted[:, None], period, noise=generator)
     noise = np.radians(0.05) * generator.standard_normal(done.time_s.size)
-    return done.time_s, done.voltage_V[:, 0], np.radians(done.angle_deg[:, 0]) + noise
+    return done.time_s, done.voltage_V, np.radians(done.angle_deg) + noise[:, None]
 
 
 def solved(riddle: dict[str, Any], report: dict[str, Any]) -> bool:
@@ -128,12 +158,17 @@ def markdown(riddles: list[dict[str, Any]], reports: list[dict[str, Any]]) -> st
         )
         hidden = "; ".join(_told(name, values) for name, values in riddle["effects"].items())
         fit = report["fit"]
-        lines.append(
-            f"| {riddle['riddle']} ({riddle['thesis']}) | {riddle['joint']}: {hidden} | {report['verdict']} | "
-            f"{named or '-'} | {fit['baseline']['holdout_over_noise']:.2f} -> "
-            f"{fit['with_effects']['holdout_over_noise']:.2f} | {report['seconds']:.0f} | "
-            f"{'yes' if solved(riddle, report) else 'no'} |"
-        )
+        after = fit["with_effects"]["holdout_over_noise"]
+        cells = [
+            f"{riddle['riddle']} ({riddle['thesis']})",
+            f"{', '.join(joints_of(riddle))}: {hidden}",
+            report["verdict"],
+            named or "-",
+            f"{fit['baseline']['holdout_over_noise']:.2f} -> {after:.2f}",
+            f"{report['seconds']:.0f}",
+            "yes" if solved(riddle, report) else "no",
+        ]
+        lines.append(f"| {' | '.join(cells)} |")
     lines += ["", "In the tool's own words:", ""]
     lines += [
         f"- {riddle['riddle']}: {report['sentence']}" for riddle, report in zip(riddles, reports, strict=True)
@@ -163,7 +198,7 @@ def main() -> None:
             folder = arguments.out / f"riddle_{number}"
             kept = folder / "report.json"
             if not kept.exists():
-                rig = load_rig(f"hydrolek_{riddle['joint']}", {})
+                rig = rig_of(riddle)
                 record(rig, riddle, folder, arguments.seed + number)
                 training, holdout = (read_recording(folder / f"{p}.csv", rig.columns) for p in PARTS)
                 report = as_json(diagnose(rig, [training], [holdout], pool, print))

@@ -1,22 +1,28 @@
 """Which hypothesis is right, judged on data that none of them was fitted to.
 
-The log-likelihood of the held-out data under a hypothesis that was fitted to the training data is
--chi^2 / 2, less the cost of its effects and of their parameters, all divided by tau. Fitted parameters that
-are off within their uncertainty add about one to chi^2 each. Where the best model's chi^2 exceeds the noise by
-more, something systematic is left, and tau is that excess for each parameter: differences of that size do not
-decide (quasi-likelihood, McCullagh, Nelder, Generalized Linear Models, 1989, chapter 9). Probabilities are the
-normalised exponentials (Bayes with equal odds for all hypotheses of the same number of effects).
+The training data leave a hypothesis's parameters uncertain by a covariance S. To first order the held-out
+residuals r of a model that is right then have the covariance I + J S J', J their Jacobian, and their
+log-likelihood is
+
+    -1/2 r' (I + J S J')^-1 r - 1/2 log det (I + J S J')
+
+(predictive likelihood; MacKay, Bayesian interpolation, Neural Computation 4, 1992), less the cost of the effects
+and of their parameters, all divided by tau. Where what the best model leaves exceeds the noise even so, something
+systematic is left, and tau is that excess for each parameter: differences of that size do not decide
+(quasi-likelihood, McCullagh, Nelder, Generalized Linear Models, 1989, chapter 9). Probabilities are the normalised
+exponentials (Bayes with equal odds for all hypotheses of the same number of effects).
 """
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from hydrolek_drake.diagnosis.search import FIDELITY, NEARLY, Search, gain_needed
-from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import Fit
 
 EFFECT_COST = 4.5
 """Log-odds against each further effect at least: with some twenty to choose from, chance has to be paid for."""
@@ -36,6 +42,9 @@ FINISH = 4
 CONTENDERS = 8
 """At most so many hypotheses are fitted with the finer step."""
 
+LINEAR_UP_TO = 3.0
+"""Held-out residuals above so many times the noise are no small deviation from a model that is right."""
+
 OUT_OF_REACH = 150.0
 """Half the squared residuals by which a hypothesis is beyond all doubt behind the best."""
 
@@ -49,12 +58,16 @@ class Judged:
         held_out: residuals on the held-out data, in units of the noise. # (values,)
         held_out_counted: how many of them count.
         probability: among all that were judged.
+        chi_squared: r' (I + J S J')^-1 r; None for r' r.
+        spread: log det (I + J S J').
     """
 
     hypothesis: Hypothesis
     held_out: np.ndarray
     held_out_counted: int
     probability: float = math.nan
+    chi_squared: float | None = None
+    spread: float = 0.0
 
     @property
     def over_noise(self) -> float:
@@ -66,11 +79,13 @@ class Judged:
         """Log-likelihood less the cost of its effects and parameters."""
         effect = max(EFFECT_COST, 0.5 * FIDELITY * self.held_out_counted)
         cost = effect * len(self.hypothesis.effects) + PARAMETER_COST * self.hypothesis.extra
-        return -self.half_chi_squared - cost
+        return -self.half_chi_squared - 0.5 * self.spread - cost
 
     @property
     def half_chi_squared(self) -> float:
-        """Half of the held-out squared residuals."""
+        """Half of the held-out squared residuals that the parameters' uncertainty does not account for."""
+        if self.chi_squared is not None:
+            return 0.5 * self.chi_squared
         return 0.5 * float(self.held_out @ self.held_out)
 
 
@@ -94,8 +109,43 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
         chosen,
     )
     paying = [h for h in refitted if pays(h, refitted)]
-    judged = bench.side_by_side(lambda h: Judged(h, bench.residuals(h, held_out, finer), counted), paying)
+    judged = bench.side_by_side(lambda h: _predicted(bench, h, held_out, counted, finer), paying)
     return with_probabilities(judged)
+
+
+def _predicted(
+    bench: Workbench, hypothesis: Hypothesis, held_out: Sequence[Experiment], counted: int, step: float
+) -> Judged:
+    """A hypothesis with the likelihood of the held-out data."""
+    problem = bench.problem(hypothesis.effects, step, held_out)
+    unit = hypothesis.fit.unit
+    residuals = problem.residuals(unit)
+    plain = Judged(hypothesis, residuals, counted)
+    if plain.over_noise > LINEAR_UP_TO:
+        return plain
+    jacobian = problem.jacobian(unit, residuals)
+    bench.evaluations += problem.evaluations
+    chi_squared, spread = predictive(residuals, jacobian, hypothesis.fit)
+    return replace(plain, chi_squared=chi_squared, spread=spread)
+
+
+def predictive(residuals: np.ndarray, jacobian: np.ndarray, fit: Fit) -> tuple[float, float]:
+    """Squared residuals r' (I + J S J')^-1 r and spread log det (I + J S J') of held-out data.
+
+    Args:
+        residuals: r. # (values,)
+        jacobian: J. # (values, n)
+        fit: to the training data; S is the inverse of its information, with a range's variance for a parameter of
+            which nothing else is known.
+    """
+    known = fit.jacobian.T @ fit.jacobian + fit.prior_jacobian.T @ fit.prior_jacobian
+    free = np.diag(fit.prior_jacobian) == 0.0
+    known[free, free] += 1.0 / SPREAD**2
+    both = known + jacobian.T @ jacobian
+    pulled = jacobian.T @ residuals
+    chi_squared = float(residuals @ residuals - pulled @ np.linalg.solve(both, pulled))
+    spread = float(np.linalg.slogdet(both)[1] - np.linalg.slogdet(known)[1])
+    return chi_squared, spread
 
 
 def pays(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
@@ -146,7 +196,7 @@ def with_probabilities(judged: Sequence[Judged]) -> list[Judged]:
     weight = np.exp(support - support.max())
     weight /= weight.sum()
     ranked = sorted(zip(weight.tolist(), judged, strict=True), key=lambda pair: -pair[0])
-    return [Judged(j.hypothesis, j.held_out, j.held_out_counted, w) for w, j in ranked]
+    return [replace(j, probability=w) for w, j in ranked]
 
 
 def dispersion(best: Judged) -> float:

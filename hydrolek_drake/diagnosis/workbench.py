@@ -23,6 +23,10 @@ Used as a weak prior about the rig's own values: what a recording does not tell 
 instead of wandering off to make up for physics that is missing.
 """
 
+OTHERS_UNKNOWN = 0.1
+"""What other joints do to one is known to this share: their areas and masses are the rig's own, unfitted, and their
+speeds come from smoothed angles."""
+
 
 @dataclass(frozen=True)
 class Hypothesis:
@@ -57,7 +61,11 @@ def key_of(effects: Iterable[Candidate]) -> frozenset[str]:
 
 
 class Workbench:
-    """Recordings for training, the rig's nominal parameters, and fits of any set of effects."""
+    """Recordings for training, the rig's nominal parameters, and fits of any set of effects.
+
+    Attributes:
+        telling: seconds of each training recording that a first fit should see at least.
+    """
 
     def __init__(
         self,
@@ -78,6 +86,7 @@ class Workbench:
         self.nominal = tuple(nominal)
         self.training = tuple(training)
         self.pool = pool
+        self.telling = [0.0] * len(self.training)
         self._stopped = threading.Event()
         self.evaluations = 0
         self._sets: dict[frozenset[str], ParameterSet] = {}
@@ -180,7 +189,8 @@ class Workbench:
 
         A recorded signal's own movement passes for noise where it is fast; most of it is gone in the residual.
         The error of the integration is told from a second rollout with half the step: the method is of second
-        order, so the coarser one is wrong by 4/3 of their difference.
+        order, so the coarser one is wrong by 4/3 of their difference. What joints that move at the same time do
+        is known to `OTHERS_UNKNOWN`.
         """
         problem = self.problem(hypothesis.effects, self.fine, experiments)
         records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
@@ -188,11 +198,16 @@ class Workbench:
         for experiment in experiments:
             coarse = experiment.simulate(records, self.fine).signals
             fine = experiment.simulate(records, 0.5 * self.fine).signals
+            alone = None
+            if experiment.others is not None:
+                alone = replace(experiment, others=None).simulate(records, 0.5 * self.fine).signals
             channels = []
             for channel in experiment.channels:
                 model = getattr(fine, channel.model)
                 level = noise_level(channel.measured - model)
                 error = 4.0 / 3.0 * np.abs(getattr(coarse, channel.model) - model)
+                if alone is not None:
+                    error = np.hypot(error, OTHERS_UNKNOWN * (model - getattr(alone, channel.model)))
                 channels.append(
                     replace(
                         channel,
