@@ -14,7 +14,6 @@ import numpy as np
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.score import Score, scores_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
-from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
 
 COARSE = 4.0
@@ -24,9 +23,11 @@ FAR, NEAR = 3.0, 1.3
 """A model this many times above the noise is searched with the coarse step, or with twice the rig's own: the
 error of the step must stay far below what is to be explained."""
 
-GLANCE_S, GLANCE_SHARE = 20.0, 0.25
-"""First fits see so many seconds of each recording, and at least this share of what the nominal model leaves: errors
-that grow with time are smaller, and so is the work, but what is missing must show."""
+GLANCE_S = 20.0
+"""First fits see so many seconds of a recording: errors that grow with time are smaller, and so is the work."""
+
+UNDECIDED = 2.0
+"""First fits whose squared residuals are within this factor of the best one's are not told apart by so short a part."""
 
 GAIN_NEEDED = 12.0
 """Smallest gain (fall of the squared residuals) that is followed up: 3.5 standard deviations of one size."""
@@ -128,7 +129,6 @@ def search(
     baseline = fit_baseline(bench)
     bench.training = tuple(bench.weighted_by(baseline, bench.training))
     baseline = bench.refit(baseline, bench.fine, POLISH if baseline.fit.over_noise < FAR else 1)
-    bench.telling = telling_seconds(baseline, bench.training)
     found.keep(baseline)
     say("trying what could explain the rest")
     found.scores = scores_of(bench, baseline, candidates, bench.fine)
@@ -217,6 +217,10 @@ def _grow(
         lambda item: _glance(bench, item[0], [start for _, start in item[1]], step), list(work.values())
     )
     glances.sort(key=lambda h: h.fit.objective)
+    undecided = [h for h in glances if h.fit.objective < UNDECIDED * glances[0].fit.objective]
+    if len(undecided) > FOLLOWED:
+        whole = bench.side_by_side(lambda h: bench.refit(h, step, GLANCE, tolerance=1e-3), undecided)
+        glances = [*sorted(whole, key=lambda h: h.fit.objective), *glances[len(undecided) :]]
     found.given_up.update((h.ids, h) for h in glances)
     bound = HOPELESS * glances[0].fit.objective
     followed = [h for h in glances if h.fit.objective < bound][:FOLLOWED]
@@ -242,7 +246,7 @@ def unstuck(
     prediction errors of an observer do (Ljung, System Identification, 1999, chapter 7), so that the same fit goes
     its way from far off; what drifts slowly they do not see, and so the free fits stand beside them.
     """
-    part = glanced_at(bench)
+    part = [experiment.until(GLANCE_S) for experiment in bench.training]
 
     def pulled(glance: Hypothesis) -> Hypothesis:
         starts = [{}, *_starts_of(glance.effects)]
@@ -279,31 +283,12 @@ def _glance(
     bench: Workbench, effects: Sequence[Candidate], starts: Sequence[dict[str, float]], step: float
 ) -> Hypothesis:
     """A few steps from each start."""
-    part = glanced_at(bench)
+    part = [experiment.until(GLANCE_S) for experiment in bench.training]
     fits = [
         bench.fit(effects, start, step, GLANCE, tolerance=1e-3, experiments=part)
         for start in _different(starts)
     ]
     return min(fits, key=lambda h: h.fit.objective)
-
-
-def glanced_at(bench: Workbench) -> list[Experiment]:
-    """The beginning of each recording that first fits see."""
-    return [
-        experiment.until(max(GLANCE_S, seconds))
-        for experiment, seconds in zip(bench.training, bench.telling, strict=True)
-    ]
-
-
-def telling_seconds(baseline: Hypothesis, experiments: Sequence[Experiment]) -> list[float]:
-    """By when `GLANCE_SHARE` of what the nominal model leaves has come up, in each recording [s]."""
-    sizes = np.cumsum([len(e.channels) * e.time.size for e in experiments])
-    seconds = []
-    for experiment, part in zip(experiments, np.split(baseline.fit.residuals, sizes[:-1]), strict=True):
-        grown = np.cumsum(np.sum(part.reshape(len(experiment.channels), -1) ** 2, axis=0))
-        place = int(np.searchsorted(grown, GLANCE_SHARE * grown[-1]))
-        seconds.append(float(experiment.time[min(place, experiment.time.size - 1)] - experiment.time[0]))
-    return seconds
 
 
 def _different(starts: Sequence[dict[str, float]]) -> list[dict[str, float]]:

@@ -61,11 +61,7 @@ def key_of(effects: Iterable[Candidate]) -> frozenset[str]:
 
 
 class Workbench:
-    """Recordings for training, the rig's nominal parameters, and fits of any set of effects.
-
-    Attributes:
-        telling: seconds of each training recording that a first fit should see at least.
-    """
+    """Recordings for training, the rig's nominal parameters, and fits of any set of effects."""
 
     def __init__(
         self,
@@ -86,7 +82,6 @@ class Workbench:
         self.nominal = tuple(nominal)
         self.training = tuple(training)
         self.pool = pool
-        self.telling = [0.0] * len(self.training)
         self._stopped = threading.Event()
         self.evaluations = 0
         self._sets: dict[frozenset[str], ParameterSet] = {}
