@@ -102,7 +102,7 @@ def _loads_of_others(
 
     from hydrolek_drake.kinematics.arms import arm_joint, make_arms_plant
 
-    held = {
+    held = dict(rig.held) | {
         joint: float(records[joint]["load"]["initial_position"])
         for joint in rig.joints
         if rig.variant(joint, "load") == "arm" and joint not in arm
