@@ -6,11 +6,12 @@ log-likelihood is
 
     -1/2 r' (I + J S J')^-1 r - 1/2 log det (I + J S J')
 
-(predictive likelihood; MacKay, Bayesian interpolation, Neural Computation 4, 1992), less the cost of the effects
-and of their parameters, all divided by tau. Where what the best model leaves exceeds the noise even so, something
-systematic is left, and tau is that excess for each parameter: differences of that size do not decide
-(quasi-likelihood, McCullagh, Nelder, Generalized Linear Models, 1989, chapter 9). Probabilities are the normalised
-exponentials (Bayes with equal odds for all hypotheses of the same number of effects).
+(predictive likelihood; MacKay, Bayesian interpolation, Neural Computation 4, 1992). To it comes the likelihood of
+the training data at the optimum; both pay a cost for every effect and parameter, and all is divided by tau. Where
+what the best model leaves exceeds the noise even so, something systematic is left, and tau is that excess for each
+parameter: differences of that size do not decide (quasi-likelihood, McCullagh, Nelder, Generalized Linear Models,
+1989, chapter 9). Probabilities are the normalised exponentials (Bayes with equal odds for all hypotheses of the same
+number of effects).
 """
 
 import math
@@ -19,7 +20,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.search import FIDELITY, NEARLY, Search, gain_needed
+from hydrolek_drake.diagnosis.search import FIDELITY, NEARLY, Search, cost_of, gain_needed
 from hydrolek_drake.diagnosis.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
@@ -42,8 +43,13 @@ FINISH = 4
 CONTENDERS = 8
 """At most so many hypotheses are fitted with the finer step."""
 
-LINEAR_UP_TO = 3.0
+SMALL = 3.0
 """Held-out residuals above so many times the noise are no small deviation from a model that is right."""
+
+NEARBY = 100.0
+"""If uncertain parameters account for more than this of the held-out squared residuals, they have to move so far that
+the first order may not hold: r' (I + J S J')^-1 r is then what both data leave, fitted together, beyond what the
+training data leave alone."""
 
 OUT_OF_REACH = 150.0
 """Half the squared residuals by which a hypothesis is beyond all doubt behind the best."""
@@ -76,10 +82,10 @@ class Judged:
 
     @property
     def support(self) -> float:
-        """Log-likelihood less the cost of its effects and parameters."""
+        """Log-likelihood of held-out and training data, less the cost of its effects and parameters in each."""
         effect = max(EFFECT_COST, 0.5 * FIDELITY * self.held_out_counted)
         cost = effect * len(self.hypothesis.effects) + PARAMETER_COST * self.hypothesis.extra
-        return -self.half_chi_squared - 0.5 * self.spread - cost
+        return -self.half_chi_squared - 0.5 * self.spread - cost - 0.5 * cost_of(self.hypothesis)
 
     @property
     def half_chi_squared(self) -> float:
@@ -121,11 +127,21 @@ def _predicted(
     unit = hypothesis.fit.unit
     residuals = problem.residuals(unit)
     plain = Judged(hypothesis, residuals, counted)
-    if plain.over_noise > LINEAR_UP_TO:
+    if plain.over_noise > SMALL:
         return plain
     jacobian = problem.jacobian(unit, residuals)
     bench.evaluations += problem.evaluations
     chi_squared, spread = predictive(residuals, jacobian, hypothesis.fit)
+    if 2.0 * plain.half_chi_squared - chi_squared > NEARBY:
+        both = bench.fit(
+            hypothesis.effects,
+            hypothesis.values,
+            step,
+            FINISH,
+            tolerance=1e-4,
+            experiments=[*bench.training, *held_out],
+        )
+        chi_squared = max(both.fit.objective - hypothesis.fit.objective, 0.0)
     return replace(plain, chi_squared=chi_squared, spread=spread)
 
 
@@ -201,8 +217,10 @@ def with_probabilities(judged: Sequence[Judged]) -> list[Judged]:
 
 def dispersion(best: Judged) -> float:
     """How much flatter than for pure noise the likelihood is: tau, from the best model's excess."""
-    excess = 2.0 * best.half_chi_squared - (1.0 + NOISE_KNOWN) ** 2 * best.held_out_counted
-    return max(1.0, excess / len(best.hypothesis.fit.unit))
+    fit = best.hypothesis.fit
+    counted = best.held_out_counted + fit.counted
+    excess = 2.0 * best.half_chi_squared + fit.chi_squared - (1.0 + NOISE_KNOWN) ** 2 * counted
+    return max(1.0, excess / len(fit.unit))
 
 
 def probability_of(effect_path: str, judged: Sequence[Judged]) -> float:
