@@ -56,7 +56,7 @@ def _write_residuals(diagnosis: Diagnosis, folder: Path) -> None:
         for number, experiment in enumerate(experiments, start=1):
             before = simulated(diagnosis, diagnosis.baseline.hypothesis, experiment)
             after = simulated(diagnosis, diagnosis.best.hypothesis, experiment)
-            signals: dict[str, np.ndarray] = {f"{experiment.joint}.command": experiment.command}
+            signals: dict[str, np.ndarray] = {f"{experiment.joint}.command": experiment.command_at_samples}
             units = {f"{experiment.joint}.command": "V"}
             for channel in experiment.channels:
                 told = {
