@@ -6,6 +6,7 @@ from hydrolek_drake.diagnosis.intervals import Interval
 from hydrolek_drake.diagnosis.unlisted import FoundLaw
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.replay.display import shown
+from hydrolek_drake.rigs.rig import declaration
 
 
 def quantity(value: float, unit: str) -> str:
@@ -49,6 +50,21 @@ def effect_sentence(candidate: Candidate, diagnosis: Diagnosis) -> str:
         f"{candidate.joint}, {candidate.effect.stage}: {candidate.effect.title}: "
         f"{sizes(candidate, diagnosis.intervals)}.{where}"
     )
+
+
+def off_zero_sentences(diagnosis: Diagnosis) -> list[str]:
+    """Parameters that the rig has at zero and the recordings have not: physics that it knows but leaves out."""
+    told = []
+    for path, known in diagnosis.intervals.items():
+        if ".effects." in path or diagnosis.rig.value(path) != 0.0 or known.low <= 0.0 <= known.high:
+            continue
+        declared = declaration(diagnosis.rig, path)
+        told.append(
+            f"{path.removeprefix('joints.')} is zero in the rig and {quantity(known.value, declared.unit)} by the "
+            f"recordings (95 %: {number(known.low, declared.unit)} to {quantity(known.high, declared.unit)}): "
+            f"{declared.meaning}."
+        )
+    return told
 
 
 def headline(diagnosis: Diagnosis) -> str:

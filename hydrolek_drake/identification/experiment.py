@@ -185,7 +185,9 @@ class Experiment:
 
 
 def experiments_of(
-    rig: Rig, recording: Recording, signals: tuple[str, ...] = ("position", "pressure_a", "pressure_b")
+    rig: Rig,
+    recording: Recording,
+    signals: tuple[str, ...] = ("position", "pressure_a", "pressure_b", "supply_pressure"),
 ) -> list[Experiment]:
     """One experiment for each joint of the rig that has a command in the recording.
 
@@ -194,7 +196,8 @@ def experiments_of(
     Args:
         rig: the machine.
         recording: read with the rig's `columns`.
-        signals: which of position, pressure_a, pressure_b are to be followed, where recorded.
+        signals: which of position, pressure_a, pressure_b, supply_pressure are to be followed, where recorded; the
+            last for a rig of one joint only, since all joints draw from the supply and a rollout knows one.
 
     Raises:
         InputError: no command, no position, a command that never changes, or a signal without noise level.
@@ -230,6 +233,10 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
                 measured = np.asarray(recording.signal(name), dtype=float)
                 noise = _noise(measured, rig, joint, "pressure_noise")
                 channels.append(Channel(name, "Pa", quantity, measured, noise))
+        if "supply_pressure" in wanted and "supply.pressure" in recording.signals and len(rig.joints) == 1:
+            measured = np.asarray(recording.signal("supply.pressure"), dtype=float)
+            noise = _noise(measured, rig, joint, "pressure_noise")
+            channels.append(Channel("supply.pressure", "Pa", "supply_pressure", measured, noise))
     start = None
     if rig.initial_position == "recording":
         start = _resting_position(position, command)
