@@ -36,7 +36,7 @@ SHORT_BLOCKS = 18
 """A held-out recording that shows what the training data do not is cut into so many blocks, of which every third
 stays held out: short ones, so that what it shows is in both parts."""
 
-FAR_AHEAD = 2.0
+FAR_AHEAD = 3.0
 """A model that leaves this many times more on held-out data than on training data was not told by these what matters
 there."""
 
@@ -144,7 +144,9 @@ def diagnose(
         candidates += candidates_of(rig, joint, scales[joint])
     known = _attempt(bench, candidates, held_out, say)
     remarks = [INTERRUPTED] if known.interrupted else []
-    ahead = bool(holdout) or between is not None  # the held-out data are of another kind, not blocks among the rest
+    ahead = (
+        bool(holdout) or between is not None
+    )  # the held-out data are of another kind, not blocks among the rest
     if ahead and not known.interrupted and _unexcited(known.conclusion):
         say("the held-out recording shows more than the training data: fitting parts of both")
         mixed, kept = _mixed(bench.training, known.held_out)
