@@ -38,7 +38,7 @@ stays held out: short ones, so that what it shows is in both parts."""
 
 FAR_AHEAD = 3.0
 """A model that leaves this many times more on held-out data than on training data was not told by these what matters
-there."""
+there. Chosen with EMPS (2 to 3) and the Festo cylinder (3 and more) in view, not derived."""
 
 INTERRUPTED = "interrupted: this is what was known by then; run it again for the whole answer"
 
@@ -151,7 +151,9 @@ def diagnose(
         say("the held-out recording shows more than the training data: fitting parts of both")
         mixed, kept = _mixed(bench.training, known.held_out)
         second = _attempt(Workbench(rig, nominal, mixed, pool), candidates, kept, say)
-        if not second.interrupted:
+        if second.interrupted:
+            remarks = [INTERRUPTED]
+        else:
             known = second
             remarks = [MIXED]
     bench, held_out, found, judged = known.bench, known.held_out, known.found, known.judged
@@ -221,8 +223,10 @@ def _attempt(
 
 
 def _unexcited(conclusion: Conclusion) -> bool:
-    """Whether the held-out data show what the training data do not: a model explains these or, where no model
-    reaches the noise, does far better on these."""
+    """Whether the held-out data show what the training data do not.
+
+    A model explains the training data or, where no model reaches the noise, does far better on them.
+    """
     best = conclusion.best
     enough = max(EXPLAINED, best.over_noise / FAR_AHEAD)
     return conclusion.verdict == "unlisted_physics" and best.hypothesis.fit.over_noise <= enough

@@ -23,7 +23,7 @@ EFFECT = Effect(
     },
     # where gravity loads the joint, it and the lever pass for a difference between the directions
     searched_on={"load": ("sliding",)},
-    source="ingxfm, Festo TP511 recordings (2020): 65 N out, 75 N in; the part of load.friction_asymmetry without speed",
+    source="ingxfm, Festo TP511 recordings (2020): 65 N out, 75 N in; as load.friction_asymmetry without speed",
     confused_with={
         "cylinder.coulomb_friction": "Coulomb friction is the part that both directions share",
         "load.offset_force": "an offset acts at rest too",

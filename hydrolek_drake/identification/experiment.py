@@ -59,11 +59,8 @@ class Channel:
 
     def until(self, count: int) -> "Channel":
         """Its first so many samples."""
-        cut = {
-            name: None if values is None else values[:count]
-            for name, values in (("model_error", self.model_error), ("blur", self.blur))
-        }
-        return replace(self, measured=self.measured[:count], **cut)
+        error, blur = (None if v is None else v[:count] for v in (self.model_error, self.blur))
+        return replace(self, measured=self.measured[:count], model_error=error, blur=blur)
 
     def averaged(self, blocks: Blocks, floor: float) -> "Channel":
         """The same signal averaged over blocks; its noise is estimated anew and is `floor` at least."""
