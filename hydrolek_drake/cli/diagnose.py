@@ -17,6 +17,13 @@ def diagnose(
         list[Path] | None,
         typer.Option(metavar="RECORDING", help="recording that decides and is not fitted (repeatable)"),
     ] = None,
+    between: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            metavar="START END",
+            help="fit this part of the recordings only [s]; without --holdout the rest of them is held out",
+        ),
+    ] = None,
     workers: Annotated[
         int | None, typer.Option(help="threads; as many as there are cores by default")
     ] = None,
@@ -56,7 +63,9 @@ def diagnose(
         prepare_folder(out)
     count = workers or os.cpu_count() or 1
     with progress.status("starting") as status, ThreadPoolExecutor(count) as pool:
-        done = run_diagnosis(loaded, train, held, pool, say=lambda text: status.update(f"{text} ..."))
+        done = run_diagnosis(
+            loaded, train, held, pool, say=lambda text: status.update(f"{text} ..."), between=between
+        )
         if out is not None:
             status.update("writing the report ...")
             page = write_report(done, out)

@@ -51,7 +51,7 @@ class Location:
 
 def conditions_for(rig: Rig, experiment: Experiment, signals: Signals) -> dict[str, np.ndarray]:
     """Condition in words -> when it holds; those of a replay, and those of the hydraulics. # (n,) each."""
-    holds = conditions_of(rig, experiment.joint, experiment.command, signals)
+    holds = conditions_of(rig, experiment.joint, experiment.command_at_samples, signals)
     speed = np.abs(np.nan_to_num(signals.velocity))
     fastest = float(speed.max()) or 1.0
     holds["while the joint is slow"] = (speed < SLOW * fastest) & ~holds["at rest"]

@@ -113,7 +113,8 @@ def _names(hypothesis: Hypothesis) -> str:
 def _with_command(template: Experiment, command: np.ndarray) -> Experiment:
     time = np.arange(command.size) * SAMPLE_S
     channels = tuple(
-        replace(channel, measured=np.zeros(command.size), model_error=None) for channel in template.channels
+        replace(channel, measured=np.zeros(command.size), model_error=None, blur=None)
+        for channel in template.channels
     )
     return replace(
         template, name="proposal", time=time, command_times=time, command=command, channels=channels,

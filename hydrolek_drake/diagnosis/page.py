@@ -4,11 +4,14 @@ import html
 import math
 from collections.abc import Iterable
 
+import numpy as np
+
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.evidence import FINER
 from hydrolek_drake.diagnosis.panels import columns
 from hydrolek_drake.diagnosis.report_json import MOST_LISTED, detectable, effects_json, fit_json
-from hydrolek_drake.diagnosis.words import headline, number, quantity
+from hydrolek_drake.diagnosis.words import headline, number, off_zero_sentences, quantity
+from hydrolek_drake.identification.thinning import STEPS
 from hydrolek_drake.replay.page import STYLE
 from hydrolek_drake.replay.plots_html import plots_html
 from hydrolek_drake.rigs.rig import declaration
@@ -89,14 +92,29 @@ def _table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 def _effects(diagnosis: Diagnosis) -> str:
     told = effects_json(diagnosis)
-    if not told:
+    zeros = "".join(f"<li>{html.escape(sentence)}</li>" for sentence in off_zero_sentences(diagnosis))
+    if not told and not zeros:
         return ""
     rows = "".join(
         f"<li><b>{html.escape(e['id'])}</b> (probability {e['probability']:.2f}): "
         f"{html.escape(e['sentence'])}</li>"
         for e in told
     )
-    return f"<ul>{rows}</ul>"
+    return f"<ul>{rows}{zeros}</ul>"
+
+
+def _thinned(diagnosis: Diagnosis) -> str:
+    """Which recordings were averaged over blocks, and why."""
+    assert diagnosis.bench is not None
+    blocks = {e.name: e for e in (*diagnosis.bench.training, *diagnosis.held_out) if e.block > 1}
+    if not blocks:
+        return ""
+    told = {(e.block, round(1e3 * float(np.median(np.diff(e.time))), 3)) for e in blocks.values()}
+    sizes = " and ".join(f"{size} samples ({span:g} ms)" for size, span in sorted(told))
+    return (
+        f"Recordings were sampled far faster than the model is integrated, and averaged over blocks of {sizes}, at "
+        f"most {STEPS} integration steps; their noise falls accordingly, and the command keeps its edges. "
+    )
 
 
 def _fit(diagnosis: Diagnosis) -> str:
@@ -199,7 +217,8 @@ def _visible(diagnosis: Diagnosis) -> str:
 def _method(diagnosis: Diagnosis) -> str:
     assert diagnosis.bench is not None and diagnosis.search is not None
     return (
-        "<p class='other'>The nominal model was refitted first, by bounded least squares within the rig's ranges. "
+        f"<p class='other'>{_thinned(diagnosis)}The nominal model was refitted first, by bounded least squares "
+        "within the rig's ranges. "
         "Every effect that can act on this machine was then held against what was left, alone and, where one was "
         "not enough, together with others; each model was fitted to the training data only. Models are compared "
         "by the likelihood of the held-out data less a cost for every effect and parameter. "

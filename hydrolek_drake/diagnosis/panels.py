@@ -78,6 +78,8 @@ def _stack(
         for name, residual, colour in told:
             line = Line(name, *thinned(time, factor * residual), colour)
             stack.append(Panel(f"{name} [{unit}]", (line,), shaded, band, 1.0, 2.0 * band))
-    command = Line("command", *thinned(time, experiment.command), COMMAND_COLOUR, stepped=True)
+    command = Line(
+        "command", *thinned(experiment.command_times, experiment.command), COMMAND_COLOUR, stepped=True
+    )
     stack.append(Panel("command [V]", (command,), shaded, None, 0.8))
     return stack

@@ -8,15 +8,17 @@ import yaml
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.page import page
-from hydrolek_drake.diagnosis.panels import simulated
+from hydrolek_drake.diagnosis.panels import columns, simulated
 from hydrolek_drake.diagnosis.report_json import as_json
+from hydrolek_drake.diagnosis.words import headline
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.files import write_whole
 from hydrolek_drake.recordings import write_signals
+from hydrolek_drake.replay.picture import plots_png
 
 
 def write_report(diagnosis: Diagnosis, folder: Path) -> Path:
-    """Write `report.json`, `report.html`, `rig_fitted.yaml` and `residuals_*.parquet`, each when complete.
+    """Write `report.json`, `.html`, `.png`, `rig_fitted.yaml` and `residuals_*.parquet`, each when complete.
 
     Bad data leave only the first two. `next_experiment.csv` is the command of a proposed recording.
 
@@ -33,6 +35,8 @@ def write_report(diagnosis: Diagnosis, folder: Path) -> Path:
             rig = diagnosis.fitted_rig().as_tree()
             write_whole(folder / "rig_fitted.yaml", yaml.safe_dump(rig, sort_keys=False, allow_unicode=True))
             _write_residuals(diagnosis, folder)
+            title = f"Diagnosis of {diagnosis.rig.name}"
+            write_whole(folder / "report.png", plots_png(columns(diagnosis), title, headline(diagnosis)))
         if diagnosis.proposal is not None:
             joint = diagnosis.bench.training[0].joint if diagnosis.bench else "joint"
             write_signals(
@@ -56,7 +60,7 @@ def _write_residuals(diagnosis: Diagnosis, folder: Path) -> None:
         for number, experiment in enumerate(experiments, start=1):
             before = simulated(diagnosis, diagnosis.baseline.hypothesis, experiment)
             after = simulated(diagnosis, diagnosis.best.hypothesis, experiment)
-            signals: dict[str, np.ndarray] = {f"{experiment.joint}.command": experiment.command}
+            signals: dict[str, np.ndarray] = {f"{experiment.joint}.command": experiment.command_at_samples}
             units = {f"{experiment.joint}.command": "V"}
             for channel in experiment.channels:
                 told = {

@@ -7,7 +7,14 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis, smallest_visible
 from hydrolek_drake.diagnosis.unlisted import FoundLaw
-from hydrolek_drake.diagnosis.words import effect_sentence, headline, law_sentence, path_of, quantity
+from hydrolek_drake.diagnosis.words import (
+    effect_sentence,
+    headline,
+    law_sentence,
+    off_zero_sentences,
+    path_of,
+    quantity,
+)
 from hydrolek_drake.identification.experiment import Channel, Experiment
 from hydrolek_drake.replay.display import display_factor, display_unit
 
@@ -32,6 +39,7 @@ def as_json(diagnosis: Diagnosis) -> dict[str, Any]:
             for place in diagnosis.locations
         ],
         "effects": effects_json(diagnosis),
+        "not_zero": off_zero_sentences(diagnosis),
         "not_distinguishable": [list(g) for g in diagnosis.conclusion.groups] if diagnosis.conclusion else [],
         "next_experiment": diagnosis.proposal.sentence if diagnosis.proposal else None,
         "detectable_from": detectable(diagnosis),

@@ -43,7 +43,10 @@ MOST_EFFECTS = 3
 """At most so many effects are searched together."""
 
 NEARLY = 1.5
-"""A third effect is looked for only if two leave at most this many times the noise: it would be a small one."""
+"""A third effect is looked for only if two leave at most this many times the noise: it would be a small one ..."""
+
+MATERIAL_GAIN = 0.3
+"""... or if one promises to take this share of the squared residuals: far from the noise, as on real machines."""
 
 BEAM = 3
 """So many hypotheses are extended by a further effect, and only the best once it is near the noise."""
@@ -158,9 +161,12 @@ def _worth_going_on(found: Search) -> bool:
     best = found.best
     if found.rounds and len(best.effects) < found.rounds:
         return False  # one effect more did not pay
-    if found.rounds >= 2 and best.fit.over_noise > NEARLY:
+    if not found.left:
         return False
-    return bool(found.left) and found.left[0].gain > gain_needed(best.fit)
+    promised = found.left[0].gain
+    if found.rounds >= 2 and best.fit.over_noise > NEARLY and promised < MATERIAL_GAIN * best.fit.objective:
+        return False
+    return promised > gain_needed(best.fit)
 
 
 def fit_baseline(bench: Workbench) -> Hypothesis:

@@ -7,7 +7,7 @@ from rich.table import Table
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.report_json import effects_json, fit_json
-from hydrolek_drake.diagnosis.words import headline
+from hydrolek_drake.diagnosis.words import headline, off_zero_sentences
 
 SHOWN = 5
 """So many models are shown."""
@@ -20,6 +20,8 @@ def summary(diagnosis: Diagnosis) -> Iterator[str | Table]:
         yield escape(f"- {reason}")
     for told in effects_json(diagnosis):
         yield escape(f"- {told['id']} (probability {told['probability']:.2f}): {told['sentence']}")
+    for sentence in off_zero_sentences(diagnosis):
+        yield escape(f"- {sentence}")
     fit = fit_json(diagnosis)
     if fit is None:
         return

@@ -2,10 +2,11 @@
 
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
-from hydrolek_drake.diagnosis.intervals import Interval
 from hydrolek_drake.diagnosis.unlisted import FoundLaw
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.replay.display import shown
+from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rigs.rig import declaration
 
 
 def quantity(value: float, unit: str) -> str:
@@ -19,16 +20,23 @@ def number(value: float, unit: str) -> str:
     return quantity(value, unit).partition(" ")[0]
 
 
-def sizes(candidate: Candidate, intervals: dict[str, Interval]) -> str:
+def unit_at(rig: Rig, joint: str, unit: str) -> str:
+    """The unit of an effect's parameter at a joint: what is an angle elsewhere is a length where the load slides."""
+    sliding = rig.variant(joint, "load") == "sliding"
+    return unit.replace("rad", "m") if sliding else unit
+
+
+def sizes(candidate: Candidate, diagnosis: Diagnosis) -> str:
     """Every parameter of an effect with its interval."""
     told = []
     for parameter in candidate.effect.parameters:
-        known = intervals.get(path_of(candidate, parameter))
+        known = diagnosis.intervals.get(path_of(candidate, parameter))
         if known is None:
             continue
+        unit = unit_at(diagnosis.rig, candidate.joint, parameter.unit)
         told.append(
-            f"{parameter.meaning} {quantity(known.value, parameter.unit)} "
-            f"(95 %: {number(known.low, parameter.unit)} to {number(known.high, parameter.unit)})"
+            f"{parameter.meaning} {quantity(known.value, unit)} "
+            f"(95 %: {number(known.low, unit)} to {number(known.high, unit)})"
         )
     return ", ".join(told)
 
@@ -47,8 +55,23 @@ def effect_sentence(candidate: Candidate, diagnosis: Diagnosis) -> str:
     where = f" It shows {place.condition}." if place else ""
     return (
         f"{candidate.joint}, {candidate.effect.stage}: {candidate.effect.title}: "
-        f"{sizes(candidate, diagnosis.intervals)}.{where}"
+        f"{sizes(candidate, diagnosis)}.{where}"
     )
+
+
+def off_zero_sentences(diagnosis: Diagnosis) -> list[str]:
+    """Parameters that the rig has at zero and the recordings have not: physics that it knows but leaves out."""
+    told = []
+    for path, known in diagnosis.intervals.items():
+        if ".effects." in path or diagnosis.rig.value(path) != 0.0 or known.low <= 0.0 <= known.high:
+            continue
+        declared = declaration(diagnosis.rig, path)
+        told.append(
+            f"{path.removeprefix('joints.')} is zero in the rig and {quantity(known.value, declared.unit)} by the "
+            f"recordings (95 %: {number(known.low, declared.unit)} to {quantity(known.high, declared.unit)}): "
+            f"{declared.meaning}."
+        )
+    return told
 
 
 def headline(diagnosis: Diagnosis) -> str:

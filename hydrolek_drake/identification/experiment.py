@@ -6,6 +6,7 @@ import numpy as np
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.neighbours import effects_of_others, rows_at
+from hydrolek_drake.identification.thinning import Blocks, block_size
 from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import measured_position, position_key
@@ -36,6 +37,8 @@ class Channel:
         noise: standard deviation of its noise.
         model_error: standard deviation of what the model's integration adds, sample by sample; None for
             nothing. # (n,)
+        blur: what averaging over blocks of samples adds, sample by sample; None for a recording that is kept as
+            it is. # (n,)
     """
 
     key: str
@@ -44,13 +47,27 @@ class Channel:
     measured: np.ndarray
     noise: float
     model_error: np.ndarray | None = None
+    blur: np.ndarray | None = None
 
     @property
     def deviation(self) -> np.ndarray | float:
         """Standard deviation that the residual of a perfect model would have."""
-        if self.model_error is None:
-            return self.noise
-        return np.sqrt(self.noise**2 + self.model_error**2)
+        variance: np.ndarray | float = self.noise**2
+        for error in (self.model_error, self.blur):
+            if error is not None:
+                variance = variance + error**2
+        return self.noise if isinstance(variance, float) else np.sqrt(variance)
+
+    def until(self, count: int) -> "Channel":
+        """Its first so many samples."""
+        error, blur = (None if v is None else v[:count] for v in (self.model_error, self.blur))
+        return replace(self, measured=self.measured[:count], model_error=error, blur=blur)
+
+    def averaged(self, blocks: Blocks, floor: float) -> "Channel":
+        """The same signal averaged over blocks; its noise is estimated anew and is `floor` at least."""
+        means = blocks.mean(self.measured)
+        noise = min(self.noise, max(noise_level(means), floor))
+        return replace(self, measured=means, noise=noise, blur=blocks.blur(means))
 
 
 @dataclass(frozen=True)
@@ -69,6 +86,7 @@ class Experiment:
         longest_step: of the rollout [s].
         spool_steps: of the rollout.
         used: samples that count in a fit. # (n,)
+        block: so many samples of the recording were averaged to one; 1 for none.
         others: what joints that move at the same time do to this one, as probes of the rollout; None if it moves
             alone.
     """
@@ -84,7 +102,14 @@ class Experiment:
     longest_step: float
     spool_steps: int
     used: np.ndarray
+    block: int = 1
     others: tuple[float, np.ndarray] | None = None
+
+    @property
+    def command_at_samples(self) -> np.ndarray:
+        """The command in force at each sample [V]. # (n,)."""
+        held = np.searchsorted(self.command_times, self.time, side="right") - 1
+        return self.command[np.maximum(held, 0)]
 
     def simulate(
         self,
@@ -143,14 +168,7 @@ class Experiment:
     def until(self, seconds: float) -> "Experiment":
         """The beginning of the experiment, up to so many seconds after its first sample."""
         count = int(np.searchsorted(self.time, self.time[0] + seconds, side="right"))
-        channels = tuple(
-            replace(
-                channel,
-                measured=channel.measured[:count],
-                model_error=None if channel.model_error is None else channel.model_error[:count],
-            )
-            for channel in self.channels
-        )
+        channels = tuple(channel.until(count) for channel in self.channels)
         return replace(self, time=self.time[:count], channels=channels, used=self.used[:count])
 
     @property
@@ -162,16 +180,32 @@ class Experiment:
         """The same experiment with other samples that count, a truth value each."""
         return replace(self, used=used)
 
+    def thinned(self) -> "Experiment":
+        """Averaged over blocks if it is sampled far faster than the model needs, see `thinning`; else itself."""
+        size = block_size(self.time, self.longest_step)
+        if size == 1:
+            return self
+        blocks = Blocks(self.time, size)
+        channels = tuple(c.averaged(blocks, faithful(c.measured)) for c in self.channels)
+        used = np.ones(blocks.time.size, dtype=bool)
+        used[0] = False  # a single sample, with which the rollout begins
+        return replace(self, time=blocks.time, channels=channels, used=used, block=size)
+
 
 def experiments_of(
-    rig: Rig, recording: Recording, signals: tuple[str, ...] = ("position", "pressure_a", "pressure_b")
+    rig: Rig,
+    recording: Recording,
+    signals: tuple[str, ...] = ("position", "pressure_a", "pressure_b", "supply_pressure"),
 ) -> list[Experiment]:
     """One experiment for each joint of the rig that has a command in the recording.
+
+    A recording that is sampled far faster than the rig is integrated is averaged over blocks (`thinning`).
 
     Args:
         rig: the machine.
         recording: read with the rig's `columns`.
-        signals: which of position, pressure_a, pressure_b are to be followed, where recorded.
+        signals: which of position, pressure_a, pressure_b, supply_pressure are to be followed, where recorded; the
+            last for a rig of one joint only, since all joints draw from the supply and a rollout knows one.
 
     Raises:
         InputError: no command, no position, a command that never changes, or a signal without noise level.
@@ -179,15 +213,17 @@ def experiments_of(
     driven = [joint for joint in rig.joints if f"{joint}.command" in recording.signals]
     if not driven:
         require(recording, [f"{rig.joints[0]}.command"])
-    experiments = [_experiment(rig, joint, recording, signals) for joint in driven]
-    others = effects_of_others(
-        rig,
-        {
-            e.joint: (e.time, np.asarray(measured_position(rig, e.joint, recording), dtype=float))
-            for e in experiments
-        },
-    )
+    experiments = [_experiment(rig, joint, recording, signals).thinned() for joint in driven]
+    others = effects_of_others(rig, {e.joint: _moved(rig, e, recording) for e in experiments})
     return [replace(e, others=others.get(e.joint)) for e in experiments]
+
+
+def _moved(rig: Rig, experiment: Experiment, recording: Recording) -> tuple[np.ndarray, np.ndarray]:
+    """Times and measured positions of a joint."""
+    for channel in experiment.channels:
+        if channel.model == "reading":
+            return experiment.time, channel.measured
+    return recording.time, np.asarray(measured_position(rig, experiment.joint, recording), dtype=float)
 
 
 def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, ...]) -> Experiment:
@@ -215,6 +251,10 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
                 measured = np.asarray(recording.signal(name), dtype=float)
                 noise = _noise(measured, rig, joint, "pressure_noise")
                 channels.append(Channel(name, "Pa", quantity, measured, noise))
+        if "supply_pressure" in wanted and "supply.pressure" in recording.signals and len(rig.joints) == 1:
+            measured = np.asarray(recording.signal("supply.pressure"), dtype=float)
+            noise = _noise(measured, rig, joint, "pressure_noise")
+            channels.append(Channel("supply.pressure", "Pa", "supply_pressure", measured, noise))
     start = None
     if rig.initial_position == "recording":
         start = _resting_position(position, command)

@@ -125,6 +125,9 @@ def roll_out(
     times = np.ascontiguousarray(times, dtype=float)
     start = np.full(STATE_SIZE, np.nan) if state is None else state.copy()
     probe_spacing, probe_values = probes or (1.0, kernel.NO_PROBE)
+    changes = np.concatenate(
+        [[True], np.diff(command_values) != 0.0]
+    )  # what only repeats the command says nothing
     pull_time, measured = pull or (0.0, kernel.NOT_PULLED)
     diverged = _missing_number(joint)
     if diverged is None:
@@ -133,8 +136,8 @@ def roll_out(
             rows = kernel.integrate(
                 joint,
                 start,
-                np.ascontiguousarray(command_times, dtype=float),
-                np.ascontiguousarray(command_values, dtype=float),
+                np.ascontiguousarray(command_times[changes], dtype=float),
+                np.ascontiguousarray(command_values[changes], dtype=float),
                 times,
                 longest_step,
                 spool_steps,

@@ -59,6 +59,7 @@ ON = {
         "stribeck_N": 400.0,
         "stribeck_velocity_m_per_s": 5e-3,
     },
+    "cylinder.friction_asymmetry": {"coulomb_N": 400.0},
     "cylinder.end_cushion": {"damping_N_s_per_m": 1e5, "length_m": 0.03},
     "linkage.backlash": {"gap_rad": 0.01},
     "base.compliance": {"stiffness_Nm_per_rad": 4e4, "inertia_kg_m2": 60.0},

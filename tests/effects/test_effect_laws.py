@@ -175,6 +175,19 @@ def test_coulomb_and_stribeck_friction_curves(record):
         )
 
 
+def test_friction_asymmetry_is_half_the_difference_between_the_directions(record):
+    joint = record(
+        {
+            "effects.cylinder.coulomb_friction.coulomb_N": 700.0,
+            "effects.cylinder.friction_asymmetry.coulomb_N": -50.0,
+            "cylinder.viscous_friction": 0.0,
+        }
+    )
+    out, back = (cylinder.friction_force(0.1, speed, 0.0, joint)[0] for speed in (0.05, -0.05))
+    assert_allclose((out, back), (650.0, -750.0), rtol=1e-13)
+    assert cylinder.friction_force(0.1, 0.0, 0.0, joint)[0] == 0.0
+
+
 @pytest.mark.parametrize(
     ("stroke", "velocity", "expected"),
     [(0.012, -0.03, -1e5 * 0.03 * 0.6), (0.012, 0.03, 0.0), (0.031, -0.03, 0.0), (0.0, -0.03, -1e5 * 0.03)],

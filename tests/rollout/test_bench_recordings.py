@@ -43,6 +43,7 @@ SIZES = {
         "stribeck_N": 900.0,
         "stribeck_velocity_m_per_s": 5e-3,
     },
+    "cylinder.friction_asymmetry": {"coulomb_N": 500.0},
     "cylinder.end_cushion": {"damping_N_s_per_m": 1e5, "length_m": 0.04},
     "linkage.backlash": {"gap_rad": 0.015},
     "base.compliance": {"stiffness_Nm_per_rad": 3e4, "inertia_kg_m2": 80.0},

@@ -1,0 +1,43 @@
+"""Seal friction that differs between the two directions."""
+
+import math
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="cylinder.friction_asymmetry",
+    title="seal friction depends on direction",
+    equation="coulomb tanh(v / friction_velocity)^2 against extension",
+    parameters=(
+        Parameter(
+            "coulomb_N", "N", "half the difference of Coulomb friction, rod out less rod in", neutral=0.0
+        ),
+    ),
+    size="coulomb_N",
+    search={
+        "coulomb_N": Search("force", 0.2, (0.01, -0.01), lowest=-0.2),
+    },
+    # where gravity loads the joint, it and the lever pass for a difference between the directions
+    searched_on={"load": ("sliding",)},
+    source="ingxfm, Festo TP511 recordings (2020): 65 N out, 75 N in; as load.friction_asymmetry without speed",
+    confused_with={
+        "cylinder.coulomb_friction": "Coulomb friction is the part that both directions share",
+        "load.offset_force": "an offset acts at rest too",
+    },
+    needs={"cylinder": ("cylinder", "vane", "hydraulic_motor")},
+)
+
+
+@EFFECT.hook("rod_friction")
+@njit
+def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, float]:
+    """Force [N] and its secant slope [N s/m], zero since it pushes rather than brakes in one direction."""
+    coulomb = joint.effects.cylinder_friction_asymmetry.coulomb_N
+    if coulomb == 0.0:
+        return 0.0, 0.0
+    share = math.tanh(velocity / joint.cylinder.friction_velocity)
+    return coulomb * share * share, 0.0
