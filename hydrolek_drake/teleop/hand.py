@@ -31,8 +31,7 @@ class Hand:
     def __init__(self) -> None:
         self._hold = teleop_entries("manual")["hold"]
         self._speed = joint_speeds()[0]
-        limits = [joint_limits(side) for side in SIDES]
-        self._lower, self._upper = (np.concatenate([each[i] for each in limits]) for i in (0, 1))
+        self._lower, self._upper = travel()
         self._kind, self._last, self._blocked = "", -np.inf, False
         self.deflection: Array = np.zeros(_JOINTS)
         self.set_point: Array | None = None
@@ -52,7 +51,9 @@ class Hand:
         if self._blocked:
             return
         if deflection is not None:
-            values = _checked(deflection, "deflections", np.full(_JOINTS, -_FULL), np.full(_JOINTS, _FULL), 1.0)
+            values = _checked(
+                deflection, "deflections", np.full(_JOINTS, -_FULL), np.full(_JOINTS, _FULL), 1.0
+            )
             self.deflection, self.set_point, self._kind = values, None, JOYSTICK
         elif towards is not None:
             degree = float(np.radians(1.0))
@@ -85,10 +86,16 @@ class Hand:
         self._blocked = True
 
 
+def travel() -> tuple[Array, Array]:
+    """Lower and upper ends of all joints in rad, each of shape (14,)."""
+    limits = [joint_limits(side) for side in SIDES]
+    lower, upper = (np.concatenate([each[i] for each in limits]) for i in (0, 1))
+    return lower, upper
+
+
 def within_limits(posture: Array) -> Array:
     """A measured posture without what noise puts beyond a stop, in rad, shape (14,)."""
-    limits = [joint_limits(side) for side in SIDES]
-    return np.clip(posture, *(np.concatenate([each[i] for each in limits]) for i in (0, 1)))
+    return np.clip(posture, *travel())
 
 
 def _checked(values: Array, what: str, lower: Array, upper: Array, unit: float) -> Array:

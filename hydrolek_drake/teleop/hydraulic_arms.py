@@ -162,7 +162,9 @@ class HydraulicArms:
         n = len(JOINTS)
         pressure = np.asarray(self._station.diagram.GetOutputPort("pressure_measured").Eval(self._inner))
         supply = self._station.systems["supply"]
-        supply_pressure = supply.GetOutputPort("supply_pressure").Eval(supply.GetMyContextFromRoot(self._root))
+        supply_pressure = supply.GetOutputPort("supply_pressure").Eval(
+            supply.GetMyContextFromRoot(self._root)
+        )
         voltage = np.zeros(n)
         for system in (self._controller, self._joystick):
             voltage += np.asarray(system.command.Eval(system.GetMyContextFromRoot(self._root)))
@@ -217,4 +219,3 @@ def _refuse_beyond_stops(start: Array, settings: dict[str, JointSetting]) -> Non
         low, high = settings[joint].model.lower_deg, settings[joint].model.upper_deg
         if not low - _ROUNDING_DEG <= angle <= high + _ROUNDING_DEG:
             raise InputError(f"posture: {joint} = {angle:.1f} deg lies outside {low:.1f} to {high:.1f} deg")
-

@@ -77,7 +77,9 @@ def decode_rate(line: bytes) -> Array:
     try:
         values = np.array([float(word) for word in line.decode("ascii").strip().split(",")[1:]])
     except ValueError:
-        raise InputError(f"message {line[:40]!r} is not {RATE} and {_JOINTS} deflections in percent") from None
+        raise InputError(
+            f"message {line[:40]!r} is not {RATE} and {_JOINTS} deflections in percent"
+        ) from None
     if values.shape != (_JOINTS,):
         raise InputError(f"message has {len(values)} deflections; {_JOINTS} in percent are needed")
     for joint, value in enumerate(values):

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 from pydrake.systems.analysis import Simulator
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.kinematics.chain import SIDES, joint_limits
 from hydrolek_drake.teleop.configuration import teleop_entries
-from hydrolek_drake.teleop.hand import JOYSTICK, SLIDERS, Hand
+from hydrolek_drake.teleop.hand import JOYSTICK, SLIDERS, Hand, travel
 from hydrolek_drake.teleop.link import SetpointClient, SetpointServer
 from hydrolek_drake.teleop.plan import TaskPlan
 from hydrolek_drake.teleop.plant_process import PlantProcess
@@ -71,8 +70,7 @@ class ArmsEnd:
         self._simulator = Simulator(self._arms)
         self._position = np.array(posture, dtype=float)
         self._driven: Array | None = None
-        limits = [joint_limits(side) for side in SIDES]
-        self._lower, self._upper = (np.concatenate([each[i] for each in limits]) for i in (0, 1))
+        self._lower, self._upper = travel()
 
     def advance(self) -> Array:
         """Let the arms follow for one period; returns the measured joints in rad, shape (14,)."""

@@ -62,7 +62,22 @@ def signals_from_line(line: bytes) -> Signals | None:
     for name, values in vectors.items():
         if values.shape != (_JOINTS,):
             raise InputError(f"link: signals: {name} has {len(values)} values; {_JOINTS} are needed")
-    return Signals(**scalars, **vectors)
+    content_si: dict[str, Any] = {**scalars, **vectors}
+    return Signals(**content_si)
+
+
+def shown(signals: Signals) -> dict[str, Any]:
+    """The same for the page, in V and MPa, rounded to what a chart can show; what is not finite is null."""
+    rounded = {
+        "time": round(signals.time, 3),
+        "pace": round(signals.pace, 2),
+        "supply_MPa": round(signals.supply_pressure / 1e6, 3),
+        "voltage_V": np.round(signals.voltage, 3),
+        "pressure_a_MPa": np.round(signals.pressure_a / 1e6, 3),
+        "pressure_b_MPa": np.round(signals.pressure_b / 1e6, 3),
+        "potentiometer_V": np.round(signals.potentiometer, 3),
+    }
+    return {name: _plain(value) for name, value in rounded.items()}
 
 
 def _plain(value: Any) -> Any:
