@@ -15,10 +15,13 @@ from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.chain import SIDES
 from hydrolek_drake.rigs import Rig, load_rig
+from hydrolek_drake.station.plant import RigPlant
 from hydrolek_drake.station.simulation import initial_context
 from hydrolek_drake.station.station import Station, StepSizes, make_station
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.signals import Signals
+from hydrolek_drake.workcell.grip_contact import GripContact
+from hydrolek_drake.workcell.pipe import Pipe
 
 Array = NDArray[np.float64]
 
@@ -64,6 +67,7 @@ class HydraulicArms:
         rig: The machine; `hydrolek` if not given.
         controller: Name in the catalogue of controllers.
         seed: Of the sensors' noise.
+        pipe: What the grippers may touch; it does not give way. None for nothing.
         visualize: Called while the station is built, see `make_station`.
 
     Raises:
@@ -77,6 +81,7 @@ class HydraulicArms:
         rig: Rig | None = None,
         controller: str = "feedforward",
         seed: int = 1,
+        pipe: Pipe | None = None,
         visualize: Callable[..., None] | None = None,
     ) -> None:
         if controller not in CONTROLLERS:
@@ -92,7 +97,15 @@ class HydraulicArms:
             mount_forces=False,
         )
         noise = np.random.default_rng(seed)
-        self._station = make_station(self.rig, sizes=sizes, noise=noise, visualize=visualize)
+        self._contact: GripContact | None = None
+
+        def add(builder: DiagramBuilder, body: RigPlant, rig: Rig, joints: np.ndarray) -> None:
+            if pipe is not None:
+                self._contact = _add_contact(builder, body, pipe)
+            if visualize is not None:
+                visualize(builder, body, rig, joints)
+
+        self._station = make_station(self.rig, sizes=sizes, noise=noise, visualize=add)
         rest = initial_context(self._station, start)  # while the station is a diagram of its own
         self._controller = Controller(
             [build_law(controller, settings[joint], noisy=True) for joint in self.rig.joints], sample_s()
@@ -175,7 +188,14 @@ class HydraulicArms:
             pressure_b=pressure[n:][self._places],
             potentiometer=self._of("potentiometer_voltage"),
             supply_pressure=float(supply_pressure[0]),
+            grip=self.grip(),
         )
+
+    def grip(self) -> Array:
+        """Force on the moving finger of the right and the left gripper in N, shape (2,)."""
+        if self._contact is None:
+            return np.zeros(len(SIDES))
+        return np.array(self._contact.grip_force.Eval(self._contact.GetMyContextFromRoot(self._root)))
 
     @property
     def _root(self):  # type: ignore[no-untyped-def]
@@ -191,6 +211,14 @@ class HydraulicArms:
             if values is not None:
                 wanted[self._places] = np.asarray(values, dtype=float)
             self._diagram.GetInputPort(name).FixValue(context, wanted)
+
+
+def _add_contact(builder: DiagramBuilder, body: RigPlant, pipe: Pipe) -> GripContact:
+    """Beside the cylinders, which act as moments here and leave the port for forces on bodies free."""
+    contact = builder.AddSystem(GripContact(body.plant, pipe))
+    builder.Connect(body.plant.get_state_output_port(), contact.plant_state)
+    builder.Connect(contact.contact_force, body.plant.get_applied_spatial_force_input_port())
+    return contact
 
 
 def _wired(station: Station, controller: Controller, joystick: Controller) -> Diagram:

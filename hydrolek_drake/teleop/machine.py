@@ -22,6 +22,10 @@ from hydrolek_drake.workcell.trajectory import joint_speeds
 
 Array = NDArray[np.float64]
 
+_WITHDRAWN = (
+    2  # periods without a set point before a task; one may come between two samples of the controllers
+)
+
 
 @dataclass(frozen=True)
 class MachineState:
@@ -115,6 +119,7 @@ class Machine:
     ) -> None:
         self._plant = plant
         self._signals: Signals | None = None
+        self._plant_time = -1.0
         if plant is not None:
             controllers = ("127.0.0.1", plant.port)
         self._arms = ArmsEnd(posture, port=0) if controllers is None else None
@@ -127,7 +132,7 @@ class Machine:
         self._lock = threading.Lock()
         self._measured = self._client.stop() if controllers else np.array(posture, dtype=float)
         self._order, self._lost = Order.NONE, ""
-        self._hand = Hand()
+        self._hand, self._withdrawn = Hand(), 0
         self._running = True
         self._thread = threading.Thread(target=self._run, name="machine", daemon=True)
         self._thread.start()
@@ -142,6 +147,7 @@ class Machine:
             if self._lost:
                 raise InputError(self._lost)
             self._hand.let_go()
+            self._withdrawn = _WITHDRAWN
             self._sequencer.start(self._simulator.get_mutable_context(), plan, self._measured)
 
     def order(self, order: Order) -> None:
@@ -224,18 +230,31 @@ class Machine:
         following = time.monotonic()
         while self._running:
             with self._lock:
-                self._tick(self._order)
+                self._tick(self._order, waiting=self._behind())
             following += self._period
             time.sleep(max(0.0, following - time.monotonic()))
             following = max(following, time.monotonic() - 1.0)  # after a pause, do not run to catch up
 
-    def _tick(self, order: Order) -> None:
-        """One period: measured joints into the sequencer, its set points over the link, the arms follow."""
+    def _behind(self) -> bool:
+        """Whether the plant has not simulated another period yet: on a slow computer the task waits for it."""
+        if self._signals is None:
+            return False
+        before, self._plant_time = self._plant_time, self._signals.time
+        return self._plant_time == before
+
+    def _tick(self, order: Order, *, waiting: bool = False) -> None:
+        """One period: measured joints into the sequencer, its set points over the link, the arms follow.
+
+        Args:
+            order: Of the operator.
+            waiting: Whether the task's time stands still.
+        """
         context: Any = self._simulator.get_mutable_context()
-        self._sequencer.position_measured_input.FixValue(context, self._measured)
-        lost = bool(self._lost) and self._sequencer.mode(context) is Mode.RUNNING
-        self._sequencer.order_input.FixValue(context, [float(Order.STOP if lost else order)])
-        self._simulator.AdvanceTo(context.get_time() + self._step_period)
+        if not waiting:
+            self._sequencer.position_measured_input.FixValue(context, self._measured)
+            lost = bool(self._lost) and self._sequencer.mode(context) is Mode.RUNNING
+            self._sequencer.order_input.FixValue(context, [float(Order.STOP if lost else order)])
+            self._simulator.AdvanceTo(context.get_time() + self._step_period)
         if self._client is None:
             return
         try:
@@ -243,12 +262,15 @@ class Machine:
             if self._plant is not None:
                 self._signals = self._client.signals()
         except InputError as error:
-            self._lost, self._client = str(error), None
+            self._lost, self._client, self._signals = str(error), None, None
         if self._arms is not None:
             self._measured = self._arms.advance()
 
     def _exchange(self, client: SetpointClient, context: Any) -> Array:
         """Send what the arms are to do now; returns the measured joints."""
+        if self._withdrawn > 0:  # a gripper that pushed in vain heeds no set point before it has had none
+            self._withdrawn -= 1
+            return client.stop()
         if self._sequencer.valves_open_output.Eval(context)[0] > 0.5:
             return client.send(self._sequencer.position_desired_output.Eval(context))
         by_hand = self._hand.moving()

@@ -28,7 +28,7 @@ class PlantProcess:
         rig: The machine, a name or a file.
         settings: Parameters of the rig, as `--set` takes them.
         seed: Of the sensors' noise.
-        pipe: Shown in the browser view, if any.
+        pipe: What the grippers may touch, and the browser view shows.
         meshcat: Whether Drake's browser view is served.
         host: Address at which it is.
         realtime_rate: Simulated seconds a second.

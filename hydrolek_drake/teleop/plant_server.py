@@ -81,6 +81,7 @@ def serve(settings: dict[str, Any]) -> None:
         rig=load_rig(settings["rig"], settings["settings"]),
         controller=settings["controller"],
         seed=settings["seed"],
+        pipe=pipe,
         visualize=None if view is None else view.add,
     )
     server = SetpointServer(posture, port=0)

@@ -12,14 +12,13 @@ from hydrolek_drake.errors import InputError
 
 Array = NDArray[np.float64]
 
-_JOINTS = 14
-_VECTORS = ("voltage", "pressure_a", "pressure_b", "potentiometer")
+_VECTORS = {"voltage": 14, "pressure_a": 14, "pressure_b": 14, "potentiometer": 14, "grip": 2}
 _SCALARS = ("time", "supply_pressure", "pace")
 
 
 @dataclass(frozen=True)
 class Signals:
-    """One sample; vectors are of joints `right_j1` ... `left_j7`, shape (14,).
+    """One sample; vectors are of joints `right_j1` ... `left_j7`, shape (14,), if nothing else is said.
 
     Attributes:
         time: Of the plant in s.
@@ -28,6 +27,7 @@ class Signals:
         pressure_b: Of the chambers in Pa.
         potentiometer: As read by the control computer in V; NaN for a joint without one.
         supply_pressure: In Pa.
+        grip: Force on the moving finger of the right and the left gripper in N, shape (2,).
         pace: Simulated seconds a second, lately; below 1 the computer is too slow.
     """
 
@@ -37,6 +37,7 @@ class Signals:
     pressure_b: Array
     potentiometer: Array
     supply_pressure: float
+    grip: Array
     pace: float = 1.0
 
     def to_line(self) -> bytes:
@@ -60,8 +61,8 @@ def signals_from_line(line: bytes) -> Signals | None:
     except (ValueError, KeyError, TypeError):
         raise InputError(f"link: {line[:60]!r} is no line of signals") from None
     for name, values in vectors.items():
-        if values.shape != (_JOINTS,):
-            raise InputError(f"link: signals: {name} has {len(values)} values; {_JOINTS} are needed")
+        if values.shape != (_VECTORS[name],):
+            raise InputError(f"link: signals: {name} has {len(values)} values; {_VECTORS[name]} are needed")
     content_si: dict[str, Any] = {**scalars, **vectors}
     return Signals(**content_si)
 
@@ -75,6 +76,7 @@ def shown(signals: Signals) -> dict[str, Any]:
         "voltage_V": np.round(signals.voltage, 3),
         "pressure_a_MPa": np.round(signals.pressure_a / 1e6, 3),
         "pressure_b_MPa": np.round(signals.pressure_b / 1e6, 3),
+        "grip_N": np.round(signals.grip, 1),
         "potentiometer_V": np.round(signals.potentiometer, 3),
     }
     return {name: _plain(value) for name, value in rounded.items()}

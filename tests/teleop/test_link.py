@@ -168,10 +168,21 @@ def test_signals_are_answered_as_sent_and_open_nothing(server):
     client = SetpointClient(server.port)
     assert client.signals() is None and not server.command()[1]
     vectors = np.arange(14.0)
-    sent = Signals(1.25, vectors, 1e6 + vectors, 2e6 + vectors, np.full(14, np.nan), 1.6e7, 0.98)
+    sent = Signals(
+        1.25, vectors, 1e6 + vectors, 2e6 + vectors, np.full(14, np.nan), 1.6e7, np.array([1.5, 0.0]), 0.98
+    )
     server.report(home_posture(), sent)
     got = client.signals()
-    for name in ("time", "supply_pressure", "pace", "voltage", "pressure_a", "pressure_b", "potentiometer"):
+    for name in (
+        "time",
+        "supply_pressure",
+        "pace",
+        "grip",
+        "voltage",
+        "pressure_a",
+        "pressure_b",
+        "potentiometer",
+    ):
         np.testing.assert_allclose(getattr(got, name), getattr(sent, name), rtol=1e-6)
     assert server.command()[1:] == (False, "no client yet")
     client.close()
