@@ -177,6 +177,7 @@ def measure(name: str, distance: float, side: str, seed: int, make_arms) -> dict
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--distance", type=float, action="append", help=f"m; {DISTANCES} if not given")
     parser.add_argument("--plant", choices=("full", "simple"), default="full")
     parser.add_argument("--controller", default="feedforward", help="of the full plant")
     parser.add_argument("--out", type=Path, default=Path("docs/teleop.json"))
@@ -197,12 +198,13 @@ def main() -> None:
 
     for side in ("right", "left"):
         for name in AXES:
-            for distance in DISTANCES:
+            for distance in arguments.distance or DISTANCES:
                 figures["tasks"].append(measure(name, distance, side, arguments.seed, make_arms))
                 print(figures["tasks"][-1], flush=True)
-    draft = arguments.out.with_suffix(".json.part")
-    draft.write_text(json.dumps(figures, indent=1) + "\n")
-    print(f"figures: {draft.rename(arguments.out)}")
+                draft = arguments.out.with_suffix(".json.part")
+                draft.write_text(json.dumps(figures, indent=1) + "\n")
+                draft.rename(arguments.out)  # what is measured is kept, however it ends
+    print(f"figures: {arguments.out}")
 
 
 if __name__ == "__main__":

@@ -48,11 +48,15 @@ function makeManual(send) {
     [stick(0), -stick(1), -stick(3), stick(2), down(12) - down(13), down(15) - down(14), down(1) - down(0)].forEach((value, i) => { wish[at + i] = value; });
     return wish;
   }
+  function want(message) { // a new wish first says that the last one has ended: after a stop only that counts
+    if (!going) send({do: "let_go"});
+    going = true; send(message);
+  }
   function tell() {
     const pad = gamepad(), full = Number($("deflection").value);
     const wish = held.map((value, j) => full * (value || (pad ? pad[j] : 0)));
-    if (allowed && sliding) { going = true; send({do: "sliders_to", angles_deg: sliders.map(s => Number(s.value))}); }
-    else if (allowed && wish.some(Boolean)) { going = true; send({do: "joystick", deflection: wish}); }
+    if (allowed && sliding) want({do: "sliders_to", angles_deg: sliders.map(s => Number(s.value))});
+    else if (allowed && wish.some(Boolean)) want({do: "joystick", deflection: wish});
     else if (going) { going = false; send({do: "let_go"}); }
   }
   setInterval(tell, HAND_PERIOD);

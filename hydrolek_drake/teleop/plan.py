@@ -97,11 +97,12 @@ def plan_task(
     grasp_point, cut_point = to_frame(targets.grasp, "world"), to_frame(targets.cut, "world")
     values, sizes = workcell_entries()["grasp"], kinect_entries("targets")
     clear = CollisionWorld(pipe)
-    touching = CollisionWorld(pipe, padding=0.0, holding=(grasping,))
+    thinner = make_pipe(pipe.point, pipe.axis, pipe.radius - values["give"], pipe.length)
+    touching = CollisionWorld(thinner, padding=0.0)
     held = CollisionWorld(pipe, holding=(grasping,))
 
     on_step("grasp")
-    distance = pipe.radius + sizes["approach"]
+    distance = pipe.radius + sizes["approach"] + values["farther"]
     grasp = grasp_path(grasp_point, pipe.axis, sight, distance, start, grasping, clear, touching)
     opened = with_jaw(start, grasping, math.radians(values["open_deg"]))
     before, on_pipe = (with_arm(opened, grasping, grasp.angles[i]) for i in (0, -1))

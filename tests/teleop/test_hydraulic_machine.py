@@ -10,11 +10,14 @@ from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.hand import within_limits
 from hydrolek_drake.teleop.link import SetpointClient, encode, encode_rate
 from hydrolek_drake.teleop.machine import Machine
+from hydrolek_drake.teleop.plan import plan_release
 from hydrolek_drake.teleop.plant_process import PlantProcess
 from hydrolek_drake.teleop.sequencer import Mode, Order
+from hydrolek_drake.workcell.pipe import make_pipe
 from hydrolek_drake.workcell.scene import home_posture
 
 STILL = np.radians(1.0)  # tolerance of the task: trapped oil still swings a little, and readings have noise
+PATIENCE = 120.0  # s; on a busy computer the task waits for the plant
 DEAD_TIME = 0.5  # s: joint 4's dead time of 0.24 s, and until its oil is at rest
 
 
@@ -130,8 +133,8 @@ def test_what_the_plant_refuses_is_told_in_one_line():
         PlantProcess(home_posture(), settings={"supply.presure": "12 MPa"})
 
 
-def test_the_task_on_the_hydraulic_plant_with_a_stop_a_hand_and_a_resume(plan):
-    machine = Machine(home_posture(), plant=PlantProcess(home_posture()))
+def test_the_task_with_a_stop_and_a_resume_and_the_release_of_a_gripper_that_holds_a_pipe(plan):
+    machine = Machine(home_posture(), plant=PlantProcess(home_posture(), pipe=make_pipe()))
     try:
         machine.start(plan)
         time.sleep(1.5)
@@ -145,12 +148,19 @@ def test_the_task_on_the_hydraulic_plant_with_a_stop_a_hand_and_a_resume(plan):
         time.sleep(0.5)
         np.testing.assert_allclose(machine.state().position, state.position, atol=STILL)
         machine.order(Order.RESUME)
-        _until(lambda: machine.state().mode is not Mode.RUNNING, 60.0)
+        _until(lambda: machine.state().mode is not Mode.RUNNING, PATIENCE)
         state = machine.state()
         assert state.mode is Mode.DONE
         end = plan.steps[-1].trajectory
         off = np.abs(state.position - end.value(end.end_time())[:, 0])[plan.steps[-1].watched]
         assert off.max() < np.radians(teleop_entries("task")["tolerance_deg"])
+        assert state.signals.grip[0] > 1e3 and np.degrees(state.position[6]) > 10.0
+        machine.start(plan_release(plan, within_limits(state.position), np.random.default_rng(1)))
+        _until(lambda: machine.state().mode is not Mode.RUNNING, PATIENCE)
+        state = machine.state()
+        assert state.mode is Mode.DONE
+        np.testing.assert_allclose(state.position, home_posture(), atol=np.radians(1.3))  # and noise
+        np.testing.assert_array_equal(state.signals.grip, 0.0)
     finally:
         machine.close()
 
