@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hydrolek_drake.cli.settings import SetOption, parse_settings
 from hydrolek_drake.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,6 +23,14 @@ def teleop(
         str | None,
         typer.Option(metavar="HOST:PORT", help="controllers' end of the link; simulated if not given"),
     ] = None,
+    plant: Annotated[
+        str, typer.Option(help="full: both arms with their hydraulics; simple: a stand-in without any")
+    ] = "full",
+    controller: Annotated[
+        str, typer.Option(help="of the full plant, a name of `hydrolek control bench`")
+    ] = "feedforward",
+    settings: SetOption = None,
+    view: Annotated[bool, typer.Option(help="Drake's 3-D view of the full plant beside the pictures")] = True,
     pipe_point: Annotated[
         _Vector | None, typer.Option(metavar="X Y Z", help="simulated pipe, world, m")
     ] = None,
@@ -30,19 +39,44 @@ def teleop(
     ] = None,
     light: Annotated[float, typer.Option(min=0.0, max=1.0, help="of the simulated room")] = 1.0,
     flip: Annotated[bool, typer.Option(help="mirror a live camera's pictures back")] = False,
-    seed: Annotated[int, typer.Option(min=0, help="of the camera's noise and the path planner")] = 1,
+    out: Annotated[
+        Path | None, typer.Option(help="folder for trials.csv: times and NASA-TLX ratings")
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="of camera, sensors and path planner")] = 1,
 ) -> None:
-    """Serve the console: picture and edges, four clicks, confirmation, progress, stop."""
+    """Serve the console: pictures, four clicks, confirmation, progress, stop, charts, joystick."""
     import asyncio
     import logging
 
     from hydrolek_drake.cli.output import console as output
     from hydrolek_drake.teleop.console import Console
     from hydrolek_drake.teleop.machine import Machine
+    from hydrolek_drake.teleop.plant_process import PlantProcess
+    from hydrolek_drake.teleop.trial import TrialLog
+    from hydrolek_drake.workcell.pipe import make_pipe
     from hydrolek_drake.workcell.scene import home_posture
 
     logging.getLogger("drake").setLevel(logging.WARNING)
-    machine = Machine(home_posture(), controllers=_address(controllers))
+    if plant not in ("full", "simple"):
+        raise InputError(f"teleop: --plant {plant} is unknown; choose full or simple")
+    address, trials = _address(controllers), TrialLog(out)
+    if settings and (plant == "simple" or address is not None):
+        raise InputError("teleop: --set is the full plant's; leave it out")
+    _check_camera(camera, pipe_point, pipe_axis)
+    pipe = make_pipe(pipe_point, pipe_axis) if camera == "sim" else None
+    process = None
+    if plant == "full" and address is None:
+        with output().status("starting the hydraulic plant: step tests of all joints"):
+            process = PlantProcess(
+                home_posture(),
+                controller=controller,
+                settings=parse_settings(settings),
+                seed=seed,
+                pipe=pipe,
+                meshcat=view,
+                host=host,
+            )
+    machine = Machine(home_posture(), controllers=address, plant=process)
     try:
         session = _session(camera, machine, pipe_point, pipe_axis, light, flip, seed)
     except BaseException:
@@ -50,7 +84,13 @@ def teleop(
         raise
 
     async def serve() -> None:
-        console = Console(session, port=port, host=host)
+        console = Console(
+            session,
+            port=port,
+            host=host,
+            view_port=None if process is None else process.view_port,
+            trials=trials,
+        )
         try:
             output().print(
                 f"open http://{host}:{console.port} in a browser; Ctrl-C ends it",
@@ -93,11 +133,19 @@ def _session(
             seed=seed,
             stand=lambda source, angles: source.stand(angles),  # type: ignore[attr-defined]
         )
-    if point is not None or axis is not None:
-        raise InputError("teleop: --pipe-point and --pipe-axis are the simulated camera's; leave them out")
     if camera == "live":
         return OperatorSession(lambda: LiveCamera(flipped=flip), machine, seed=seed)
     return OperatorSession(lambda: FolderSource(Path(camera)), machine, seed=seed)
+
+
+def _check_camera(camera: str, point: _Vector | None, axis: _Vector | None) -> None:
+    """Refuse what would be refused only after the plant has been started."""
+    from hydrolek_drake.vision.frames import FolderSource
+
+    if camera != "sim" and (point is not None or axis is not None):
+        raise InputError("teleop: --pipe-point and --pipe-axis are the simulated camera's; leave them out")
+    if camera not in ("sim", "live"):
+        FolderSource(Path(camera))
 
 
 def _address(text: str | None) -> tuple[str, int] | None:

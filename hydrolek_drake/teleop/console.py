@@ -3,6 +3,7 @@
 import asyncio
 import json
 import math
+import re
 from concurrent.futures import ThreadPoolExecutor
 from importlib.resources import files
 from typing import Any
@@ -15,10 +16,13 @@ import tornado.websocket
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.sequencer import Order
 from hydrolek_drake.teleop.session import OperatorSession
+from hydrolek_drake.teleop.trial import TrialLog
 
 _LONGEST_MESSAGE = 4096  # bytes; the page's own are below 200
-_STATE_PERIOD = 0.15  # s between states
+_STATE_PERIOD = 0.1  # s between states
 _LIVE_PERIOD = 0.4  # s between live pictures
+_JOINTS = 14
+_HOST = re.compile(r"[\w.:\[\]-]+")  # what may stand in a header
 _ORDERS = {"stop": Order.STOP, "resume": Order.RESUME, "abort": Order.ABORT}
 
 
@@ -29,10 +33,21 @@ class Console:
         session: What the operator works at.
         port: TCP port, 0 for any free one.
         host: Address to listen at.
+        view_port: Of Drake's browser view, shown beside the pictures, if there is one.
+        trials: Where timed trials and their ratings are written; a timer alone if not given.
     """
 
-    def __init__(self, session: OperatorSession, *, port: int, host: str = "127.0.0.1") -> None:
-        self.session = session
+    def __init__(
+        self,
+        session: OperatorSession,
+        *,
+        port: int,
+        host: str = "127.0.0.1",
+        view_port: int | None = None,
+        trials: TrialLog | None = None,
+    ) -> None:
+        self.session, self.view_port = session, view_port
+        self.trials = TrialLog(None) if trials is None else trials
         self.clients: list[_Socket] = []
         self.workers = ThreadPoolExecutor(2, thread_name_prefix="console")
         settings = {"console": self}
@@ -40,6 +55,7 @@ class Console:
             [
                 (r"/", _Page, settings),
                 (r"/(colour|edges)\.jpg", _Picture, settings),
+                (r"/(charts|manual|trial)\.js", _Script, settings),
                 (r"/socket", _Socket, settings),
             ],
             websocket_max_message_size=_LONGEST_MESSAGE,
@@ -69,6 +85,7 @@ class Console:
         while True:
             if self.clients:
                 state = await asyncio.get_running_loop().run_in_executor(self.workers, self.session.state)
+                state |= {"view_port": self.view_port, "trial": self.trials.state()}
                 for place, client in enumerate(list(self.clients)):
                     client.tell({"state": state, "in_control": place == 0, "watching": len(self.clients)})
             await asyncio.sleep(_STATE_PERIOD)
@@ -94,14 +111,34 @@ class Console:
             session.set_fill(str(message.get("name")))
         elif what in ("snapshot", "back", "confirm", "release"):
             getattr(session, str(what))()
+        elif what == "joystick":
+            session.move_by_hand(deflection=_numbers(message, "deflection"))
+        elif what == "sliders_to":
+            session.move_by_hand(towards_deg=_numbers(message, "angles_deg"))
+        elif what == "let_go":
+            session.let_go()
+        elif what == "timer":
+            self.trials.timer(str(message.get("action")))
+        elif what == "ratings":
+            self.trials.save({name: value for name, value in message.items() if name != "do"})
         elif what in _ORDERS:
             session.order(_ORDERS[what])
         else:
             raise InputError(f"the console does not know '{str(what)[:40]}'")
 
 
+def _numbers(message: dict[str, Any], name: str) -> list[float]:
+    values = message.get(name)
+    if not isinstance(values, list) or len(values) != _JOINTS:
+        raise InputError(f"'{name}' must be {_JOINTS} numbers, right_j1 to left_j7")
+    return [_finite(value, name) for value in values]
+
+
 def _number(message: dict[str, Any], name: str) -> float:
-    value = message.get(name)
+    return _finite(message.get(name), name)
+
+
+def _finite(value: Any, name: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
         raise InputError(f"'{name[:40]}' must be a finite number")
     return float(value)
@@ -116,10 +153,18 @@ class _Handler(tornado.web.RequestHandler):
 class _Page(_Handler):
     def get(self) -> None:
         self.set_header("Content-Type", "text/html; charset=utf-8")
-        self.set_header(
-            "Content-Security-Policy", "default-src 'self' 'unsafe-inline'; connect-src 'self' ws:"
-        )
+        policy = "default-src 'self' 'unsafe-inline'; connect-src 'self' ws:"
+        host = self.request.host_name
+        if self.console.view_port is not None and _HOST.fullmatch(host):
+            policy += f"; frame-src http://{host}:{self.console.view_port}"
+        self.set_header("Content-Security-Policy", policy)
         self.finish(files(__package__).joinpath("page.html").read_text(encoding="utf-8"))
+
+
+class _Script(_Handler):
+    def get(self, name: str) -> None:
+        self.set_header("Content-Type", "text/javascript; charset=utf-8")
+        self.finish(files(__package__).joinpath(f"{name}.js").read_text(encoding="utf-8"))
 
 
 class _Picture(_Handler):
@@ -140,6 +185,8 @@ class _Socket(tornado.websocket.WebSocketHandler):
         self.console.clients.append(self)
 
     def on_close(self) -> None:
+        if self.console.clients[:1] == [self]:
+            self.console.session.let_go()  # nobody holds the joystick any more
         if self in self.console.clients:
             self.console.clients.remove(self)
 
@@ -159,6 +206,6 @@ class _Socket(tornado.websocket.WebSocketHandler):
 
     def tell(self, what: dict[str, Any]) -> None:
         try:
-            self.write_message(json.dumps(what))
+            self.write_message(json.dumps(what, allow_nan=False))
         except tornado.websocket.WebSocketClosedError:
             self.on_close()

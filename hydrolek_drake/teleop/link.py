@@ -1,15 +1,17 @@
 """Set points over TCP, in the form of thesis section 5.2.6: the console on one computer, the controllers on another.
 
-A message is one line of ASCII text: 14 joint angles in degrees, `right_j1` ... `left_j7`, separated by commas; or
-`STOP`, which closes the valves. The answer is one line of the same form with the measured angles. The controllers'
-end closes the valves when a message is malformed or too long, when the client leaves or falls silent, and on STOP;
-set points open them again.
+A message is one line of ASCII text: 14 joint angles in degrees, `right_j1` ... `left_j7`, separated by commas;
+`RATE` and 14 joystick deflections in percent, separated by commas; or `STOP`, which closes the valves. The answer is
+one line with the measured angles in degrees. The controllers' end closes the valves when a message is malformed or
+too long, when the client leaves or falls silent, and on STOP; set points and deflections open them again. `SIGNALS`
+asks for voltages and pressures (`teleop/signals.py`); it opens nothing and does not count as a sign of life.
 """
 
 import math
 import socket
 import threading
 import time
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,10 +19,12 @@ from numpy.typing import ArrayLike, NDArray
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.chain import SIDES, joint_limits
 from hydrolek_drake.teleop.configuration import teleop_entries
+from hydrolek_drake.teleop.signals import Signals, signals_from_line
 
 Array = NDArray[np.float64]
 
-STOP = "STOP"
+STOP, RATE, SIGNALS = "STOP", "RATE", "SIGNALS"
+_FULL = 100.0  # percent
 _JOINTS = 14
 _ROUNDING_DEG = 1e-3  # of angles as text
 
@@ -59,6 +63,49 @@ def decode(line: bytes) -> Array | None:
     return np.radians(degrees)
 
 
+def encode_rate(deflection: ArrayLike) -> bytes:
+    """The line for 14 joystick deflections in percent."""
+    return (",".join([RATE, *(f"{value:.1f}" for value in np.asarray(deflection))]) + "\n").encode("ascii")
+
+
+def decode_rate(line: bytes) -> Array:
+    """Deflections in percent, shape (14,), from a line that begins with `RATE`.
+
+    Raises:
+        InputError: Not 14 numbers from -100 to 100.
+    """
+    try:
+        values = np.array([float(word) for word in line.decode("ascii").strip().split(",")[1:]])
+    except ValueError:
+        raise InputError(
+            f"message {line[:40]!r} is not {RATE} and {_JOINTS} deflections in percent"
+        ) from None
+    if values.shape != (_JOINTS,):
+        raise InputError(f"message has {len(values)} deflections; {_JOINTS} in percent are needed")
+    for joint, value in enumerate(values):
+        if not abs(value) <= _FULL:
+            name = f"{SIDES[joint // 7]}_j{joint % 7 + 1}"
+            raise InputError(f"deflection of {name} = {value:g} % is outside -100 to 100 %")
+    return values
+
+
+@dataclass(frozen=True)
+class LinkOrder:
+    """What the client wants now.
+
+    Attributes:
+        desired: Set point in rad, shape (14,).
+        deflection: Of the joysticks in percent, shape (14,), if they lead; None if the set point does.
+        valves_open: Whether the valves may be open.
+        reason: If not, why.
+    """
+
+    desired: Array
+    deflection: Array | None
+    valves_open: bool
+    reason: str
+
+
 class SetpointServer:
     """The controllers' end. One client at a time; a second one is refused.
 
@@ -74,6 +121,9 @@ class SetpointServer:
         self._lock = threading.Lock()
         self._desired = np.array(posture, dtype=float)
         self._measured = np.array(posture, dtype=float)
+        self._deflection: Array | None = None
+        self._signals: Signals | None = None
+        self.message_came = threading.Event()
         self._open, self._reason, self._last = False, "no client yet", time.monotonic()
         wanted = int(values["port"]) if port is None else port
         try:
@@ -90,15 +140,21 @@ class SetpointServer:
 
     def command(self) -> tuple[Array, bool, str]:
         """Set point in rad, whether the valves may be open, and if not, why."""
+        order = self.order()
+        return order.desired, order.valves_open, order.reason
+
+    def order(self) -> LinkOrder:
+        """What the client wants now; after silence, closed valves."""
         with self._lock:
             if self._open and time.monotonic() - self._last > self._silence:
                 self._shut(f"no message for {self._silence:g} s")
-            return self._desired.copy(), self._open, self._reason
+            deflection = None if self._deflection is None or not self._open else self._deflection.copy()
+            return LinkOrder(self._desired.copy(), deflection, self._open, self._reason)
 
-    def report(self, measured: ArrayLike) -> None:
-        """Tell the client with the next answer where the joints are, in rad, shape (14,)."""
+    def report(self, measured: ArrayLike, signals: Signals | None = None) -> None:
+        """Tell the client with the next answers where the joints are, in rad, shape (14,), and other signals."""
         with self._lock:
-            self._measured = np.array(measured, dtype=float)
+            self._measured, self._signals = np.array(measured, dtype=float), signals
 
     def close(self) -> None:
         """Close the valves, the client's connection and the port."""
@@ -115,7 +171,7 @@ class SetpointServer:
                 each.close()
 
     def _shut(self, reason: str) -> None:
-        self._open, self._reason = False, reason
+        self._open, self._reason, self._deflection = False, reason, None
 
     def _accept(self) -> None:
         while not self._closing:
@@ -145,10 +201,7 @@ class SetpointServer:
                     pending += received
                     *lines, pending = pending.split(b"\n")
                     for line in lines:
-                        self._take(line)
-                        with self._lock:
-                            answer = encode(self._measured)
-                        client.sendall(answer)
+                        client.sendall(self._take(line))
                     if len(pending) > self._longest:
                         raise InputError(f"a message is longer than {self._longest} bytes")
         except InputError as error:
@@ -159,16 +212,26 @@ class SetpointServer:
             self._client = None
             self._shut(reason)
 
-    def _take(self, line: bytes) -> None:
+    def _take(self, line: bytes) -> bytes:
+        """Act on a message; returns the answer."""
         if len(line) > self._longest:
             raise InputError(f"a message is longer than {self._longest} bytes")
-        angles = decode(line)
+        if line.strip() == SIGNALS.encode():
+            with self._lock:
+                return b"{}\n" if self._signals is None else self._signals.to_line()
+        deflection = decode_rate(line) if line.startswith(RATE.encode()) else None
+        angles = decode(line) if deflection is None else None
         with self._lock:
             self._last = time.monotonic()
-            if angles is None:
+            if deflection is not None:
+                self._deflection, self._open, self._reason = deflection, True, ""
+            elif angles is None:
                 self._shut("stopped by the operator")
             else:
-                self._desired, self._open, self._reason = angles, True, ""
+                self._desired, self._deflection, self._open, self._reason = angles, None, True, ""
+            answer = encode(self._measured)
+        self.message_came.set()
+        return answer
 
 
 class SetpointClient:
@@ -197,6 +260,22 @@ class SetpointClient:
         """
         return self._exchange(encode(angles))
 
+    def rate(self, deflection: ArrayLike) -> Array:
+        """Send joystick deflections in percent and return the measured angles in rad, each of shape (14,).
+
+        Raises:
+            InputError: The link is lost.
+        """
+        return self._exchange(encode_rate(deflection))
+
+    def signals(self) -> Signals | None:
+        """Voltages and pressures, or None from a machine that has none.
+
+        Raises:
+            InputError: The link is lost, or the controllers' end does not know the question.
+        """
+        return signals_from_line(self._ask(f"{SIGNALS}\n".encode("ascii")))
+
     def stop(self) -> Array:
         """Have the valves closed; returns the measured angles in rad.
 
@@ -210,6 +289,13 @@ class SetpointClient:
         self._socket.close()
 
     def _exchange(self, message: bytes) -> Array:
+        line = self._ask(message)
+        try:
+            return np.radians([float(word) for word in line.decode("ascii").split(",")])
+        except ValueError:
+            raise InputError(f"link: the controllers answered {line[:60]!r}") from None
+
+    def _ask(self, message: bytes) -> bytes:
         try:
             self._socket.sendall(message)
             while b"\n" not in self._pending:
@@ -220,7 +306,4 @@ class SetpointClient:
         except OSError as error:
             raise InputError(f"link: lost, {error}; the valves are closed") from None
         line, self._pending = self._pending.split(b"\n", 1)
-        try:
-            return np.radians([float(word) for word in line.decode("ascii").split(",")])
-        except ValueError:
-            raise InputError(f"link: the controllers answered {line[:60]!r}") from None
+        return line

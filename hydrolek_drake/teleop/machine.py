@@ -11,12 +11,20 @@ from pydrake.systems.analysis import Simulator
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.configuration import teleop_entries
+from hydrolek_drake.teleop.hand import JOYSTICK, SLIDERS, Hand, travel
 from hydrolek_drake.teleop.link import SetpointClient, SetpointServer
 from hydrolek_drake.teleop.plan import TaskPlan
+from hydrolek_drake.teleop.plant_process import PlantProcess
 from hydrolek_drake.teleop.sequencer import Mode, Order, TaskSequencer
+from hydrolek_drake.teleop.signals import Signals
 from hydrolek_drake.teleop.simulated_arms import SimulatedArms
+from hydrolek_drake.workcell.trajectory import joint_speeds
 
 Array = NDArray[np.float64]
+
+_WITHDRAWN = (
+    2  # periods without a set point before a task; one may come between two samples of the controllers
+)
 
 
 @dataclass(frozen=True)
@@ -32,7 +40,9 @@ class MachineState:
         position: Measured joints in rad, shape (14,).
         desired: Set points in rad, shape (14,).
         valves_open: Whether the arms may move.
-        reason: Why the valves are closed, or empty.
+        reason: Why the link is lost, or empty.
+        manual: `joystick` or `sliders` while the operator moves joints by hand, else empty.
+        signals: Voltages and pressures, of a machine that has them.
     """
 
     mode: Mode
@@ -44,10 +54,12 @@ class MachineState:
     desired: Array
     valves_open: bool
     reason: str
+    manual: str = ""
+    signals: Signals | None = None
 
 
 class ArmsEnd:
-    """The controllers' end with simulated arms: a link server whose set points the arms follow.
+    """The controllers' end with the simple simulated arms: a link server whose set points the arms follow.
 
     Args:
         posture: Joints at first, in rad, shape (14,).
@@ -60,31 +72,56 @@ class ArmsEnd:
         self._period = teleop_entries("task")["period"]
         self._arms = SimulatedArms(posture, self._period)
         self._simulator = Simulator(self._arms)
+        self._position = np.array(posture, dtype=float)
+        self._driven: Array | None = None
+        self._lower, self._upper = travel()
 
     def advance(self) -> Array:
         """Let the arms follow for one period; returns the measured joints in rad, shape (14,)."""
         context = self._simulator.get_mutable_context()
-        desired, valves_open, _ = self.server.command()
+        order = self.server.order()
+        desired = order.desired
+        if order.deflection is None:
+            self._driven = None
+        else:  # deflection 100 %: the planner's speed
+            begin = self._position if self._driven is None else self._driven
+            step = order.deflection / 100.0 * joint_speeds()[0] * self._period
+            self._driven = desired = np.clip(begin + step, self._lower, self._upper)
         self._arms.position_desired_input.FixValue(context, desired)
-        self._arms.valves_open_input.FixValue(context, [float(valves_open)])
+        self._arms.valves_open_input.FixValue(context, [float(order.valves_open)])
         self._simulator.AdvanceTo(context.get_time() + self._period)
-        position = np.array(self._arms.position_measured_output.Eval(context))
-        self.server.report(position)
-        return position
+        self._position = np.array(self._arms.position_measured_output.Eval(context))
+        self.server.report(self._position)
+        return self._position
 
 
 class Machine:
     """Runs tasks: the sequencer here, the set points over the link, the arms at its other end.
 
+    The operator may also move joints by hand, by joystick or sliders. Whoever does so must say it again and again:
+    a joystick that is silent for `manual.hold` of teleop.yaml counts as let go, and the valves close. After a stop
+    nothing moves by hand before everything has been let go.
+
     Args:
         posture: Joints at first, in rad, shape (14,).
-        controllers: Host and port of the controllers' end; a simulated one on the loopback if not given.
+        controllers: Host and port of the controllers' end.
+        plant: The hydraulic plant instead; it ends with the machine. With neither, the simple simulated arms.
         realtime_rate: Simulated seconds a second; tests run faster.
     """
 
     def __init__(
-        self, posture: Array, *, controllers: tuple[str, int] | None = None, realtime_rate: float = 1.0
+        self,
+        posture: Array,
+        *,
+        controllers: tuple[str, int] | None = None,
+        plant: PlantProcess | None = None,
+        realtime_rate: float = 1.0,
     ) -> None:
+        self._plant = plant
+        self._signals: Signals | None = None
+        self._plant_time = -1.0
+        if plant is not None:
+            controllers = ("127.0.0.1", plant.port)
         self._arms = ArmsEnd(posture, port=0) if controllers is None else None
         host, port = controllers or ("127.0.0.1", self._arms.server.port if self._arms else 0)
         self._client: SetpointClient | None = SetpointClient(port, host)
@@ -95,6 +132,7 @@ class Machine:
         self._lock = threading.Lock()
         self._measured = self._client.stop() if controllers else np.array(posture, dtype=float)
         self._order, self._lost = Order.NONE, ""
+        self._hand, self._withdrawn = Hand(), 0
         self._running = True
         self._thread = threading.Thread(target=self._run, name="machine", daemon=True)
         self._thread.start()
@@ -108,22 +146,61 @@ class Machine:
         with self._lock:
             if self._lost:
                 raise InputError(self._lost)
+            self._hand.let_go()
+            self._withdrawn = _WITHDRAWN
             self._sequencer.start(self._simulator.get_mutable_context(), plan, self._measured)
 
     def order(self, order: Order) -> None:
         """Stop at once, resume, or abort."""
         with self._lock:
+            if order in (Order.STOP, Order.ABORT):
+                self._hand.block()
             if order is self._order:  # the same again: let the sequencer see a change
                 self._tick(Order.NONE)
             self._order = order
             self._tick(order)
+
+    def move_by_hand(self, *, deflection: Array | None = None, towards: Array | None = None) -> None:
+        """Move joints by joystick or towards the sliders' angles, until `let_go`, silence, or a stop.
+
+        Args:
+            deflection: In percent, shape (14,).
+            towards: Angles in rad, shape (14,), instead; the joints go there at the planner's speed.
+
+        Raises:
+            InputError: A task is running or halted, or the link is lost.
+        """
+        with self._lock:
+            if self._lost:
+                raise InputError(self._lost)
+            context: Any = self._simulator.get_mutable_context()
+            mode = self._sequencer.mode(context)
+            if mode in (Mode.RUNNING, Mode.STOPPED, Mode.TIMED_OUT):
+                raise InputError("a task is under way; abort it before you move joints by hand")
+            if mode is Mode.DONE:  # what it holds must not be held against the hand
+                self._order = Order.NONE
+                self._tick(Order.NONE)
+                self._order = Order.ABORT
+                self._tick(Order.ABORT)
+            self._hand.move(self._measured, deflection, towards)
+
+    def let_go(self) -> None:
+        """Joystick and sliders are let go: the valves close."""
+        with self._lock:
+            self._hand.let_go()
 
     def state(self) -> MachineState:
         """What the console shows now."""
         with self._lock:
             context = self._simulator.get_context()
             mode, number, seconds, planned = self._sequencer.progress_output.Eval(context)
-            open_ = bool(self._sequencer.valves_open_output.Eval(context)[0]) and not self._lost
+            by_hand = self._hand.moving()
+            open_ = bool(self._sequencer.valves_open_output.Eval(context)[0]) or bool(by_hand)
+            desired = np.array(self._sequencer.position_desired_output.Eval(context))
+            if self._hand.set_point is not None:
+                desired = self._hand.set_point.copy()
+            elif Mode(int(mode)) in (Mode.IDLE, Mode.ABORTED):  # nothing is wanted
+                desired = self._measured.copy()
             return MachineState(
                 Mode(int(mode)),
                 self._sequencer.step_name(context),
@@ -131,9 +208,11 @@ class Machine:
                 float(seconds),
                 float(planned),
                 self._measured.copy(),
-                np.array(self._sequencer.position_desired_output.Eval(context)),
-                open_,
+                desired,
+                open_ and not self._lost,
                 self._lost,
+                by_hand,
+                self._signals,
             )
 
     def close(self) -> None:
@@ -144,31 +223,59 @@ class Machine:
             self._client.close()
         if self._arms is not None:
             self._arms.server.close()
+        if self._plant is not None:
+            self._plant.close()
 
     def _run(self) -> None:
         following = time.monotonic()
         while self._running:
             with self._lock:
-                self._tick(self._order)
+                self._tick(self._order, waiting=self._behind())
             following += self._period
             time.sleep(max(0.0, following - time.monotonic()))
             following = max(following, time.monotonic() - 1.0)  # after a pause, do not run to catch up
 
-    def _tick(self, order: Order) -> None:
-        """One period: measured joints into the sequencer, its set points over the link, the arms follow."""
+    def _behind(self) -> bool:
+        """Whether the plant has not simulated another period yet: on a slow computer the task waits for it."""
+        if self._signals is None:
+            return False
+        before, self._plant_time = self._plant_time, self._signals.time
+        return self._plant_time == before
+
+    def _tick(self, order: Order, *, waiting: bool = False) -> None:
+        """One period: measured joints into the sequencer, its set points over the link, the arms follow.
+
+        Args:
+            order: Of the operator.
+            waiting: Whether the task's time stands still.
+        """
         context: Any = self._simulator.get_mutable_context()
-        self._sequencer.position_measured_input.FixValue(context, self._measured)
-        lost = bool(self._lost) and self._sequencer.mode(context) is Mode.RUNNING
-        self._sequencer.order_input.FixValue(context, [float(Order.STOP if lost else order)])
-        self._simulator.AdvanceTo(context.get_time() + self._step_period)
+        if not waiting:
+            self._sequencer.position_measured_input.FixValue(context, self._measured)
+            lost = bool(self._lost) and self._sequencer.mode(context) is Mode.RUNNING
+            self._sequencer.order_input.FixValue(context, [float(Order.STOP if lost else order)])
+            self._simulator.AdvanceTo(context.get_time() + self._step_period)
         if self._client is None:
             return
         try:
-            if self._sequencer.valves_open_output.Eval(context)[0] > 0.5:
-                self._measured = self._client.send(self._sequencer.position_desired_output.Eval(context))
-            else:
-                self._measured = self._client.stop()
+            self._measured = self._exchange(self._client, context)
+            if self._plant is not None:
+                self._signals = self._client.signals()
         except InputError as error:
-            self._lost, self._client = str(error), None
+            self._lost, self._client, self._signals = str(error), None, None
         if self._arms is not None:
             self._measured = self._arms.advance()
+
+    def _exchange(self, client: SetpointClient, context: Any) -> Array:
+        """Send what the arms are to do now; returns the measured joints."""
+        if self._withdrawn > 0:  # a gripper that pushed in vain heeds no set point before it has had none
+            self._withdrawn -= 1
+            return client.stop()
+        if self._sequencer.valves_open_output.Eval(context)[0] > 0.5:
+            return client.send(self._sequencer.position_desired_output.Eval(context))
+        by_hand = self._hand.moving()
+        if by_hand == JOYSTICK:
+            return client.rate(self._hand.deflection)
+        if by_hand == SLIDERS:
+            return client.send(self._hand.step(self._step_period))
+        return client.stop()

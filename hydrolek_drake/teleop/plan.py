@@ -97,11 +97,12 @@ def plan_task(
     grasp_point, cut_point = to_frame(targets.grasp, "world"), to_frame(targets.cut, "world")
     values, sizes = workcell_entries()["grasp"], kinect_entries("targets")
     clear = CollisionWorld(pipe)
-    touching = CollisionWorld(pipe, padding=0.0, holding=(grasping,))
+    thinner = make_pipe(pipe.point, pipe.axis, pipe.radius - values["give"], pipe.length)
+    touching = CollisionWorld(thinner, padding=0.0)
     held = CollisionWorld(pipe, holding=(grasping,))
 
     on_step("grasp")
-    distance = pipe.radius + sizes["approach"]
+    distance = pipe.radius + sizes["approach"] + values["farther"]
     grasp = grasp_path(grasp_point, pipe.axis, sight, distance, start, grasping, clear, touching)
     opened = with_jaw(start, grasping, math.radians(values["open_deg"]))
     before, on_pipe = (with_arm(opened, grasping, grasp.angles[i]) for i in (0, -1))
@@ -129,8 +130,15 @@ def plan_task(
     }
     jaw = _of(grasping).start + 6
     # a gripper that closes on a pipe cannot reach its set point
+    feed = float(np.linalg.norm(cut.points[-1] - cut.points[0])) / teleop_entries("task")["cut_speed"]
     steps = [
-        _step(name, paths[name], None if STEPS.index(name) < STEPS.index("close") else jaw) for name in STEPS
+        _step(
+            name,
+            paths[name],
+            None if STEPS.index(name) < STEPS.index("close") else jaw,
+            least=feed if name == "cut" else 0.0,
+        )
+        for name in STEPS
     ]
     return TaskPlan(tuple(steps), pipe, grasp, cut)
 
@@ -167,9 +175,12 @@ def plan_release(plan: TaskPlan, posture: ArrayLike, generator: np.random.Genera
     return TaskPlan(steps, plan.pipe, plan.grasp, plan.cut)
 
 
-def _step(name: str, path: Array, unwatched: int | None) -> Step:
+def _step(name: str, path: Array, unwatched: int | None, *, least: float = 0.0) -> Step:
+    """A path in time, which takes `least` seconds at least."""
     along_a_line = name in ("grasp", "cut", "back off")
     trajectory = smooth_trajectory(path) if along_a_line else time_parametrised(path)
+    if trajectory.end_time() < least:
+        trajectory.ScaleTime(least / trajectory.end_time())
     watched = np.ones(14, bool)
     if unwatched is not None:
         watched[unwatched] = False

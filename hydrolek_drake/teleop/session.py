@@ -13,9 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.teleop.hand import travel, within_limits
 from hydrolek_drake.teleop.machine import Machine, MachineState
 from hydrolek_drake.teleop.plan import STEPS, TaskPlan, plan_release, plan_task
 from hydrolek_drake.teleop.sequencer import Mode, Order
+from hydrolek_drake.teleop.signals import shown
 from hydrolek_drake.vision.edges import EdgeSettings, default_settings
 from hydrolek_drake.vision.frames import Frame, FrameSource
 from hydrolek_drake.vision.selection import Fill, Mask, Snapshot, overlay, select_object
@@ -24,6 +26,11 @@ from hydrolek_drake.vision.targets import PipeTargets, PixelTargets, pipe_target
 
 _GREEN, _MAGENTA, _YELLOW = (80, 220, 80), (255, 0, 255), (0, 220, 255)  # blue, green, red
 _QUALITY = [cv2.IMWRITE_JPEG_QUALITY, 85]
+
+_HALF_TURN_DEG = 180.0  # shown of a joint that turns without end
+_SLIDERS_DEG = [
+    np.clip(np.degrees(ends), -_HALF_TURN_DEG, _HALF_TURN_DEG).round(2).tolist() for ends in travel()
+]
 
 
 class Stage(Enum):
@@ -239,6 +246,26 @@ class OperatorSession:
                 self._message = "Stopped before the arms moved."
         self._machine.order(order)
 
+    def move_by_hand(self, *, deflection: Any = None, towards_deg: Any = None) -> None:
+        """Move joints by joystick or to the sliders' angles; must be repeated, see `Machine.move_by_hand`.
+
+        Args:
+            deflection: 14 numbers in percent.
+            towards_deg: 14 angles in degrees, instead.
+
+        Raises:
+            InputError: A task is planned or under way, or the numbers are wrong.
+        """
+        self._not_while_moving()
+        if towards_deg is not None:
+            self._machine.move_by_hand(towards=np.radians(towards_deg))
+        else:
+            self._machine.move_by_hand(deflection=np.asarray(deflection, dtype=float))
+
+    def let_go(self) -> None:
+        """Joystick and sliders are let go."""
+        self._machine.let_go()
+
     def state(self) -> dict[str, Any]:
         """All that the console shows, as plain values."""
         machine = self._machine.state()
@@ -267,6 +294,9 @@ class OperatorSession:
                 "angles_deg": np.degrees(machine.position).round(2).tolist(),
                 "desired_deg": np.degrees(machine.desired).round(2).tolist(),
                 "seconds": self._seconds(),
+                "manual": machine.manual,
+                "limits_deg": _SLIDERS_DEG,
+                "signals": None if machine.signals is None else shown(machine.signals),
             }
 
     def picture(self, name: str) -> bytes:
@@ -327,13 +357,14 @@ class OperatorSession:
                 self._message = f"Planning: {name}."
 
         assert choice.targets is not None and choice.frame is not None
-        targets, camera, posture = choice.targets, choice.frame.camera, self._machine.state().position
+        targets, camera = choice.targets, choice.frame.camera
+        posture = within_limits(self._machine.state().position)
         self._go(
             choice, lambda: plan_task(targets, camera, posture, self._generator, on_step=told), Stage.CONFIRM
         )
 
     def _release_and_go(self, choice: _Choice, done: TaskPlan) -> None:
-        posture = self._machine.state().position
+        posture = within_limits(self._machine.state().position)
         self._go(choice, lambda: plan_release(done, posture, self._generator), Stage.LIVE)
 
     def _go(self, choice: _Choice, make: Callable[[], TaskPlan], otherwise: Stage) -> None:

@@ -112,7 +112,7 @@ def grasp_path(
     clear: CollisionWorld,
     holding: CollisionWorld,
 ) -> ToolPath:
-    """From in front of the pipe onto it, with the jaws open.
+    """From in front of the pipe onto it, with the jaws open, past the bent tips of the fixed fingers.
 
     Args:
         point: To grasp, on the pipe's axis, world frame, in m.
@@ -122,7 +122,7 @@ def grasp_path(
         posture: Both arms as they stand, shape (14,).
         side: Arm that grasps.
         clear: Collisions where nothing may touch.
-        holding: Collisions where this gripper may touch the pipe.
+        holding: Collisions on the way, of a pipe that this gripper may touch or that is as much thinner.
 
     Raises:
         InputError: No direction works; says why.
@@ -130,22 +130,27 @@ def grasp_path(
     opened = _with_jaw(posture, side, workcell_entries()["grasp"]["open_deg"])
     point = np.asarray(point, dtype=float)
     blocked = ""
+    enter = math.radians(workcell_entries()["grasp"]["enter_deg"])
     for tilt, direction in directions_onto(axis, sight):
-        start = point - distance * direction
-        angles = straight_path(side, start, point, direction, axis, opened[_arm(side)][:6])
-        if angles is None:
-            continue
-        postures = [with_arm(opened, side, row) for row in angles]
-        if not clear.free(postures[0]):
-            blocked = f"{_pairs(clear, postures[0])} would touch in front of it"
-            continue
-        if not all(holding.free(each) for each in postures):
-            blocked = (
-                f"{_pairs(holding, next(p for p in postures if not holding.free(p)))} would touch on the way"
-            )
-            continue
-        points = start + np.linspace(0, 1, len(angles))[:, np.newaxis] * (point - start)
-        return ToolPath(side, angles, direction, points, tilt)
+        across = np.cross(np.asarray(axis, dtype=float), direction)
+        across /= np.linalg.norm(across)
+        for turned, way in ((0.0, 1.0), (0.0, -1.0), (math.pi, 1.0), (math.pi, -1.0)):  # either way round
+            start = point - distance * (math.cos(enter) * direction + way * math.sin(enter) * across)
+            near = np.array(opened[_arm(side)][:6])
+            near[5] += turned
+            angles = straight_path(side, start, point, direction, axis, near)
+            if angles is None:
+                continue
+            postures = [with_arm(opened, side, row) for row in angles]
+            if not clear.free(postures[0]):
+                blocked = f"{_pairs(clear, postures[0])} would touch in front of it"
+                continue
+            stuck = next((each for each in postures if not holding.free(each)), None)
+            if stuck is not None:
+                blocked = f"{_pairs(holding, stuck)} would touch on the way"
+                continue
+            points = start + np.linspace(0, 1, len(angles))[:, np.newaxis] * (point - start)
+            return ToolPath(side, angles, direction, points, tilt)
     raise InputError(_why(side, point, blocked, "grasp"))
 
 

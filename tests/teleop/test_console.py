@@ -12,6 +12,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.console import Console
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.session import OperatorSession
+from hydrolek_drake.teleop.trial import SCALES, TrialLog
 from hydrolek_drake.workcell.pipe import make_pipe
 from hydrolek_drake.workcell.scene import home_posture
 from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
@@ -117,6 +118,12 @@ def test_of_two_browsers_the_second_watches_and_may_stop():
         ({"do": "sliders", "sensitivity": 9}, "between 0 and 1"),
         ({"do": "fill", "name": "x"}, "choose from"),
         ({"do": "confirm"}, "must be clicked"),
+        ({"do": "joystick"}, "14 numbers"),
+        ({"do": "joystick", "deflection": [0] * 13 + ["x"]}, "finite number"),
+        ({"do": "joystick", "deflection": [0] * 13 + [200]}, "left_j7 = 200 is outside"),
+        ({"do": "sliders_to", "angles_deg": [90] * 14}, "right_j1 = 90 is outside"),
+        ({"do": "timer", "action": "x"}, "choose start"),
+        ({"do": "ratings", "operator": "x"}, "control must be one of"),
         ("x" * 5000, None),
         (b"\xff\xfe", None),  # no text: the connection is closed
     ],
@@ -138,5 +145,58 @@ def test_a_taken_port_is_refused():
     async def work(console):
         with pytest.raises(InputError, match="choose another --port"):
             Console(console.session, port=console.port)
+
+    _served(work)
+
+
+def test_a_joystick_over_the_socket_stops_with_the_browser_that_holds_it():
+    async def work(console):
+        first, second = await _open(console), await _open(console)
+        await _state(first)
+        right = {"do": "joystick", "deflection": [40] + [0] * 13}
+        assert "in control" in await _ask(second, right)
+        assert await _ask(first, right) == ""
+        assert await _ask(first, {"do": "sliders_to", "angles_deg": [50] + [0] * 13}) != ""
+        while (await _state(first))["state"]["manual"] != "joystick":
+            assert await _ask(first, right) == ""
+        first.close()
+        while (await _state(second))["state"]["manual"]:
+            pass
+        state = (await _state(second))["state"]
+        assert not state["valves_open"] and state["angles_deg"][0] > np.degrees(home_posture()[0])
+        await asyncio.sleep(0.2)
+        np.testing.assert_array_equal((await _state(second))["state"]["angles_deg"], state["angles_deg"])
+
+    _served(work)
+
+
+def test_trials_over_the_socket(tmp_path):
+    async def work(console):
+        console.trials = TrialLog(tmp_path)
+        socket = await _open(console)
+        ratings = {"do": "ratings", "operator": "7", "control": "assisted", **dict.fromkeys(SCALES, 25)}
+        assert "no time to save" in await _ask(socket, ratings)
+        assert await _ask(socket, {"do": "timer", "action": "start"}) == ""
+        assert (await _state(socket))["state"]["trial"]["running"]
+        assert await _ask(socket, {"do": "timer", "action": "stop"}) == ""
+        assert await _ask(socket, ratings) == ""
+        assert (tmp_path / "trials.csv").read_text().splitlines()[1].endswith("25.00,")
+
+    _served(work)
+
+
+def test_the_page_s_scripts_and_its_policy():
+    async def work(console):
+        def get(name):
+            return urllib.request.urlopen(f"http://127.0.0.1:{console.port}/{name}")
+
+        loop = asyncio.get_running_loop()
+        for name in ("charts.js", "manual.js", "trial.js"):
+            assert "use strict" in (await loop.run_in_executor(None, get, name)).read().decode()
+        page = await loop.run_in_executor(None, get, "")
+        assert "frame-src" not in page.headers["Content-Security-Policy"]
+        console.view_port = 7123
+        page = await loop.run_in_executor(None, get, "")
+        assert page.headers["Content-Security-Policy"].endswith("frame-src http://127.0.0.1:7123")
 
     _served(work)

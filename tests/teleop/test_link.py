@@ -9,6 +9,7 @@ import pytest
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.link import SetpointClient, SetpointServer, decode, encode
+from hydrolek_drake.teleop.signals import Signals, signals_from_line
 from hydrolek_drake.workcell.scene import home_posture
 
 
@@ -129,3 +130,65 @@ def test_encoding_is_in_degrees_and_exact_to_a_ten_thousandth():
     np.testing.assert_allclose(decode(encode(home_posture())), home_posture(), atol=1e-6)
     assert encode(home_posture()).startswith(b"-20.0000,20.0000,")
     assert decode(b"STOP") is None
+
+
+def test_deflections_open_the_valves_and_set_points_take_over(server):
+    client = SetpointClient(server.port)
+    client.rate([25.0, *[0.0] * 13])
+    order = server.order()
+    assert order.valves_open and order.deflection[0] == 25.0
+    np.testing.assert_array_equal(order.desired, home_posture())
+    client.send(home_posture())
+    assert server.order().deflection is None and server.order().valves_open
+    client.rate(np.zeros(14))
+    client.stop()
+    assert server.order().deflection is None and not server.order().valves_open
+    client.close()
+
+
+@pytest.mark.parametrize(
+    ("message", "reason"),
+    [
+        (b"RATE,1,2\n", "2 deflections; 14"),
+        (b"RATE" + b",0" * 13 + b",101\n", "deflection of left_j7 = 101 %"),
+        (b"RATE" + b",0" * 13 + b",nan\n", "deflection of left_j7 = nan %"),
+        (b"RATE" + b",x" * 14 + b"\n", "is not RATE and 14"),
+    ],
+)
+def test_a_bad_deflection_closes_the_valves(server, message, reason):
+    with socket.create_connection(("127.0.0.1", server.port)) as raw:
+        raw.sendall(encode(home_posture()))
+        raw.recv(4096)
+        raw.sendall(message)
+        _until(lambda: not server.command()[1])
+    assert reason in server.command()[2]
+
+
+def test_signals_are_answered_as_sent_and_open_nothing(server):
+    client = SetpointClient(server.port)
+    assert client.signals() is None and not server.command()[1]
+    vectors = np.arange(14.0)
+    sent = Signals(
+        1.25, vectors, 1e6 + vectors, 2e6 + vectors, np.full(14, np.nan), 1.6e7, np.array([1.5, 0.0]), 0.98
+    )
+    server.report(home_posture(), sent)
+    got = client.signals()
+    for name in (
+        "time",
+        "supply_pressure",
+        "pace",
+        "grip",
+        "voltage",
+        "pressure_a",
+        "pressure_b",
+        "potentiometer",
+    ):
+        np.testing.assert_allclose(getattr(got, name), getattr(sent, name), rtol=1e-6)
+    assert server.command()[1:] == (False, "no client yet")
+    client.close()
+
+
+@pytest.mark.parametrize("line", [b"[]", b"x", b'{"time": 1}', b"null"])
+def test_what_is_no_signals_is_refused(line):
+    with pytest.raises(InputError, match="no line of signals"):
+        signals_from_line(line)

@@ -1,0 +1,105 @@
+"""Forces between grippers and a pipe, by geometry and by equilibrium."""
+
+import numpy as np
+import pytest
+from pydrake.systems.framework import DiagramBuilder
+
+from hydrolek_drake.kinematics.arms import add_arms, arm_joint_names, position_indices
+from hydrolek_drake.kinematics.forward import tool_pose
+from hydrolek_drake.kinematics.frames import in_frame
+from hydrolek_drake.workcell.grip_contact import GripContact, fingers
+from hydrolek_drake.workcell.pipe import make_pipe, workcell_entries
+from hydrolek_drake.workcell.scene import home_posture
+
+STIFFNESS = workcell_entries()["contact"]["stiffness"]
+
+
+@pytest.fixture(scope="module")
+def plant():
+    builder = DiagramBuilder()
+    arms = add_arms(builder, time_step=0.0)
+    builder.Build()
+    return arms.plant
+
+
+def _state(plant, posture, speed=None):
+    order = position_indices(plant, list(arm_joint_names()))
+    q, v = np.zeros(plant.num_positions()), np.zeros(plant.num_velocities())
+    q[order] = posture
+    if speed is not None:
+        v[order] = speed
+    return np.concatenate([q, v])
+
+
+def _pipe_in_the_gripper(posture, back=0.0):
+    """A pipe along the jaws' axis through the right tool point, or `back` before it."""
+    pose = tool_pose(posture[:6])
+    point = in_frame(pose[:3, 3] + back * pose[:3, 0], given_in="right_base", wanted_in="world")
+    origin = in_frame(pose[:3, 3], given_in="right_base", wanted_in="world")
+    tip = in_frame(pose[:3, 3] + pose[:3, 2], given_in="right_base", wanted_in="world")
+    return make_pipe(point, tip - origin)
+
+
+def test_the_gripper_has_a_hand_two_pairs_of_fixed_fingers_and_a_moving_one_of_two_parts():
+    for side in ("right", "left"):
+        parts = fingers(side)
+        assert [part.link for part in parts] == ["link6"] * 5 + ["jaw"] * 2
+        assert parts[1].radius == pytest.approx(0.013)
+        assert np.linalg.norm(parts[1].ends[1] - parts[1].ends[0]) == pytest.approx(0.143 - 0.026)
+
+
+def test_far_from_the_pipe_there_is_no_force(plant):
+    contact = GripContact(plant, make_pipe())
+    assert not contact.touches(_state(plant, home_posture()))[1].any()
+
+
+def test_an_open_jaw_is_free_and_a_closing_one_is_pushed_open(plant):
+    posture = home_posture()
+    contact = GripContact(plant, _pipe_in_the_gripper(posture))
+    moving = [finger.link == "jaw" and side == "right" for side, finger in contact.fingers]
+    assert not contact.touches(_state(plant, posture))[1][moving].any()
+    sizes = []
+    for degrees in (24.0, 20.0, 16.0):
+        posture[6] = np.radians(degrees)
+        forces = contact.touches(_state(plant, posture))[1][moving]
+        sizes.append(np.linalg.norm(forces, axis=1).sum())
+    assert 0.0 <= sizes[0] < sizes[1] < sizes[2] and sizes[2] > 1e3
+
+
+def test_the_force_is_stiffness_times_depth_square_to_the_pipe_and_grows_while_it_deepens(plant):
+    posture = home_posture()
+    posture[6] = np.radians(18.0)
+    pipe = _pipe_in_the_gripper(posture)
+    contact = GripContact(plant, pipe)
+    points, forces = contact.touches(_state(plant, posture))
+    speed = np.zeros(14)
+    speed[6] = -0.5
+    closing = contact.touches(_state(plant, posture, speed))[1]
+    opening = contact.touches(_state(plant, posture, -speed))[1]
+    context = plant.CreateDefaultContext()
+    plant.SetPositionsAndVelocities(context, _state(plant, posture))
+    touched = 0
+    for i, (side, finger) in enumerate(contact.fingers):
+        if not forces[i].any():
+            continue
+        touched += 1
+        assert side == "right"
+        assert abs(forces[i] @ pipe.axis) < 1e-6 * np.linalg.norm(forces[i])
+        pose = plant.EvalBodyPoseInWorld(context, plant.GetBodyByName(f"{side}_{finger.link}"))
+        offset = pose @ points[i] - pipe.point
+        distance = np.linalg.norm(offset - (offset @ pipe.axis) * pipe.axis)
+        depth = pipe.radius + finger.radius - distance
+        assert np.linalg.norm(forces[i]) == pytest.approx(STIFFNESS * depth, rel=1e-6)
+        if finger.link == "jaw":
+            sizes = [np.linalg.norm(each[i]) for each in (opening, forces, closing)]
+            assert sizes[0] < sizes[1] < sizes[2]
+    assert touched >= 2
+
+
+def test_beyond_the_pipe_s_end_nothing_is_touched(plant):
+    posture = home_posture()
+    posture[6] = np.radians(18.0)
+    pipe = _pipe_in_the_gripper(posture)
+    assert GripContact(plant, pipe).touches(_state(plant, posture))[1].any()
+    beside = make_pipe(pipe.point + 0.8 * pipe.axis, pipe.axis)
+    assert not GripContact(plant, beside).touches(_state(plant, posture))[1].any()
