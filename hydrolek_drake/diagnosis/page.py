@@ -2,7 +2,7 @@
 
 import html
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from hydrolek_drake.diagnosis.report_json import MOST_LISTED, detectable, effect
 from hydrolek_drake.diagnosis.words import headline, number, off_zero_sentences, quantity
 from hydrolek_drake.identification.thinning import STEPS
 from hydrolek_drake.replay.page import STYLE
+from hydrolek_drake.replay.panels import Panel
 from hydrolek_drake.replay.plots_html import plots_html
 from hydrolek_drake.rigs.rig import declaration
 
@@ -48,14 +49,15 @@ def page(diagnosis: Diagnosis) -> str:
             f"<ul>{''.join(f'<li>{html.escape(r)}</li>' for r in diagnosis.reasons)}</ul></body></html>"
         ]
         return "\n".join(parts)
+    pictures = columns(diagnosis)
     if diagnosis.reasons:
         parts.append(f"<ul>{''.join(f'<li>{html.escape(r)}</li>' for r in diagnosis.reasons)}</ul>")
     parts += [
         _effects(diagnosis),
         _fit(diagnosis),
         "<h2>Measured, before and after</h2>",
-        _legend(diagnosis),
-        plots_html(columns(diagnosis)),
+        _legend(pictures),
+        plots_html(pictures),
         "<h2>Where and when</h2>",
         _locations(diagnosis),
         "<h2>What was held against the held-out data</h2>",
@@ -133,13 +135,15 @@ def _fit(diagnosis: Diagnosis) -> str:
     )
 
 
-def _legend(diagnosis: Diagnosis) -> str:
-    if (
-        len({e.name for e in (*diagnosis.held_out, *(diagnosis.bench.training if diagnosis.bench else ()))})
-        > 1
-    ):
-        return "<p class='other'>Left: a recording that was fitted. Right: one that was not.</p>"
-    return "<p class='other'>Shaded: held out, not fitted.</p>"
+def _legend(pictures: Sequence[Sequence[Panel]]) -> str:
+    if len(pictures) == 1:
+        return "<p class='other'>Shaded: held out, not fitted.</p>"
+    if pictures[1][0].spans:
+        return (
+            "<p class='other'>Left: a recording that was fitted. Right: one of which all but the shaded parts was "
+            "fitted too; these were held out.</p>"
+        )
+    return "<p class='other'>Left: a recording that was fitted. Right: one that was not.</p>"
 
 
 def _locations(diagnosis: Diagnosis) -> str:

@@ -28,10 +28,24 @@ def columns(diagnosis: Diagnosis) -> list[list[Panel]]:
     joint = diagnosis.locations[0].joint if diagnosis.locations else diagnosis.bench.training[0].joint
     train = next(e for e in diagnosis.bench.training if e.joint == joint)
     held = next((e for e in diagnosis.held_out if e.joint == joint), train)
-    same = train.name == held.name and np.array_equal(train.time, held.time)
-    if same:
+    if np.array_equal(train.channels[0].measured, held.channels[0].measured, equal_nan=True):
         return [_stack(diagnosis, train, "", held_out_spans(held))]
-    return [_stack(diagnosis, train, "fitted: ", ()), _stack(diagnosis, held, "held out: ", ())]
+    right = (
+        _stack(diagnosis, held, "fitted but for the shaded: ", held_out_spans(held))
+        if partly_fitted(diagnosis, held)
+        else _stack(diagnosis, held, "held out: ", ())
+    )
+    return [_stack(diagnosis, train, "fitted: ", ()), right]
+
+
+def partly_fitted(diagnosis: Diagnosis, held: Experiment) -> bool:
+    """Whether other parts of a held-out experiment's recording were fitted."""
+    assert diagnosis.bench is not None
+    return any(
+        e.joint == held.joint
+        and np.array_equal(e.channels[0].measured, held.channels[0].measured, equal_nan=True)
+        for e in diagnosis.bench.training
+    )
 
 
 def held_out_spans(experiment: Experiment) -> tuple[tuple[float, float], ...]:
