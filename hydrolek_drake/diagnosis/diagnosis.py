@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate, candidates_of
-from hydrolek_drake.diagnosis.conclusion import EXPLAINED, Conclusion, conclude
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED, MATERIAL, Conclusion, conclude
 from hydrolek_drake.diagnosis.data_quality import reasons_against
 from hydrolek_drake.diagnosis.evidence import FINER, Judged, judge, judge_given_up
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
@@ -237,12 +237,13 @@ def _law_and_model(
     """A law for physics that is in no list, and the model that it adds to.
 
     Known effects that were fitted without the law may only have made up for it: the law is searched beside the
-    nominal model too, which is preferred unless the effects make it predict better by `SIMPLER`.
+    nominal model too, which is preferred unless the effects make it predict better by `SIMPLER`. Effects that take
+    no material part of the error are left out from the beginning.
     """
-    law = find_law(bench, best, held_out, scales)
-    if not best.hypothesis.effects:
-        return law, best
     nominal = next(j for j in judged if not j.hypothesis.effects)
+    if best.half_chi_squared > MATERIAL * nominal.half_chi_squared:
+        return find_law(bench, nominal, held_out, scales), nominal
+    law = find_law(bench, best, held_out, scales)
     alone = find_law(bench, nominal, held_out, scales)
     to_beat = SIMPLER * law.held_out_over_noise if law is not None else best.over_noise
     if alone is not None and alone.held_out_over_noise < to_beat:

@@ -57,6 +57,13 @@ GLANCE, LOOK, POLISH = 4, 15, 8
 FOLLOWED = 5
 """So many of the first fits are followed up."""
 
+MOST_UNDECIDED = 15
+"""At most so many of them go on with the whole recording."""
+
+FIRST_SHARE = 0.1
+"""A first effect must take this share of the squared residuals of a nominal model that is far from the noise, or no
+second one is looked for: of two effects, one alone takes much of what both do."""
+
 PULL_S = 0.1
 """Time constant with which rollouts are pulled to what was measured when free ones get stuck: longer than a valve
 takes to open and a chamber to fill, and far shorter than a move, over which errors pile up."""
@@ -163,6 +170,12 @@ def _worth_going_on(found: Search) -> bool:
         return False  # one effect more did not pay
     if not found.left:
         return False
+    if (
+        found.rounds == 1
+        and best.fit.over_noise > FAR
+        and best.fit.objective > (1.0 - FIRST_SHARE) * found.baseline.fit.objective
+    ):
+        return False
     promised = found.left[0].gain
     if found.rounds >= 2 and best.fit.over_noise > NEARLY and promised < MATERIAL_GAIN * best.fit.objective:
         return False
@@ -223,7 +236,9 @@ def _grow(
         lambda item: _glance(bench, item[0], [start for _, start in item[1]], step), list(work.values())
     )
     glances.sort(key=lambda h: h.fit.objective)
-    undecided = [h for h in glances if h.fit.objective < UNDECIDED * glances[0].fit.objective]
+    undecided = [h for h in glances if h.fit.objective < UNDECIDED * glances[0].fit.objective][
+        :MOST_UNDECIDED
+    ]
     if len(undecided) > FOLLOWED:
         whole = bench.side_by_side(lambda h: bench.refit(h, step, GLANCE, tolerance=1e-3), undecided)
         glances = [*sorted(whole, key=lambda h: h.fit.objective), *glances[len(undecided) :]]
