@@ -47,7 +47,8 @@ def _check_supply(rig: "Rig") -> None:
     for joint in rig.joints[1:]:
         for effect in EFFECTS.values():
             path = f"joints.{joint}.effects.{effect.id}.{effect.size}"
-            if rig.owner(effect, joint) != joint and rig.value(path) != effect.neutral_size:
+            common = rig.value(f"joints.{first}.effects.{effect.id}.{effect.size}")
+            if rig.owner(effect, joint) != joint and rig.value(path) not in (effect.neutral_size, common):
                 raise InputError(
                     f"{rig.path}: {path}: all joints share one pump; set it at the first joint, "
                     f"joints.{first}.effects.{effect.id}.{effect.size}"
