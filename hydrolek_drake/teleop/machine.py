@@ -13,7 +13,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.hand import JOYSTICK, SLIDERS, Hand, travel
 from hydrolek_drake.teleop.link import SetpointClient, SetpointServer
-from hydrolek_drake.teleop.plan import TaskPlan
+from hydrolek_drake.teleop.plan import OPENING, TaskPlan
 from hydrolek_drake.teleop.plant_process import PlantProcess
 from hydrolek_drake.teleop.sequencer import Mode, Order, TaskSequencer
 from hydrolek_drake.teleop.signals import Signals
@@ -22,9 +22,9 @@ from hydrolek_drake.workcell.trajectory import joint_speeds
 
 Array = NDArray[np.float64]
 
-_WITHDRAWN = (
-    2  # periods without a set point before a task; one may come between two samples of the controllers
-)
+_WITHDRAWN = 4
+"""Periods without a set point before a task, and before the jaw opens: more than one, since one may come between two
+samples of the controllers, and twice that where the plant falls behind."""
 
 
 @dataclass(frozen=True)
@@ -133,6 +133,7 @@ class Machine:
         self._measured = self._client.stop() if controllers else np.array(posture, dtype=float)
         self._order, self._lost = Order.NONE, ""
         self._hand, self._withdrawn = Hand(), 0
+        self._last_step = ""
         self._running = True
         self._thread = threading.Thread(target=self._run, name="machine", daemon=True)
         self._thread.start()
@@ -255,6 +256,7 @@ class Machine:
             lost = bool(self._lost) and self._sequencer.mode(context) is Mode.RUNNING
             self._sequencer.order_input.FixValue(context, [float(Order.STOP if lost else order)])
             self._simulator.AdvanceTo(context.get_time() + self._step_period)
+            self._free_the_jaw(self._sequencer.step_name(context))
         if self._client is None:
             return
         try:
@@ -265,6 +267,12 @@ class Machine:
             self._lost, self._client, self._signals = str(error), None, None
         if self._arms is not None:
             self._measured = self._arms.advance()
+
+    def _free_the_jaw(self, step: str) -> None:
+        """Withdraw the set points for a moment as the jaw is to open: it may have pushed in vain all the while."""
+        if step != self._last_step and step == OPENING:
+            self._withdrawn = _WITHDRAWN
+        self._last_step = step
 
     def _exchange(self, client: SetpointClient, context: Any) -> Array:
         """Send what the arms are to do now; returns the measured joints."""

@@ -23,7 +23,8 @@ from hydrolek_drake.workcell.trajectory import smooth_trajectory, time_parametri
 Array = NDArray[np.float64]
 
 STEPS = ("approach", "grasp", "close", "cut start", "cut", "retreat")
-RELEASE_STEPS = ("cutter home", "open", "back off", "home")
+OPENING = "open"
+RELEASE_STEPS = ("cutter home", OPENING, "back off", "home")
 
 _ON_THE_WAY = math.radians(5.0)  # of a posture that belongs to the way onto the pipe
 
@@ -162,7 +163,7 @@ def plan_release(plan: TaskPlan, posture: ArrayLike, generator: np.random.Genera
     paths = {"cutter home": plan_path(held, start, away, generator)}
     open_angle = math.radians(workcell_entries()["grasp"]["open_deg"])
     opened = with_jaw(away, plan.grasp.side, open_angle)
-    paths["open"] = np.array([away, opened])
+    paths[OPENING] = np.array([away, opened])
     far = np.max(np.abs(plan.grasp.angles - opened[grasping][:6]), axis=1)
     back = [opened]
     if far.min() < _ON_THE_WAY:

@@ -18,7 +18,10 @@ def test_speed_at_a_constant_opening(slide, run, voltage, load, viscous):
     v^2 (A_feed^3 + A_back^3)/K^2 + c v - (A_feed P_S - A_back P_T - F) = 0, K = C_q A sqrt(2/rho).
     """
     values = {"cylinder.viscous_friction": viscous, "load.gravity_cos": load}
-    values |= {"cylinder.dead_volume_a": 2e-5, "cylinder.dead_volume_b": 2e-5}  # stiff: the speed settles at once
+    values |= {
+        "cylinder.dead_volume_a": 2e-5,
+        "cylinder.dead_volume_b": 2e-5,
+    }  # stiff: the speed settles at once
     out = voltage > 0
     values["load.initial_position"] = 0.02 if out else 0.18
     signals = run(slide, values, voltage, np.linspace(0.0, 0.4, 401)).signals
