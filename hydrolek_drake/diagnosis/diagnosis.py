@@ -13,11 +13,12 @@ from hydrolek_drake.diagnosis.conclusion import EXPLAINED, MATERIAL, Conclusion,
 from hydrolek_drake.diagnosis.data_quality import reasons_against
 from hydrolek_drake.diagnosis.evidence import FINER, Judged, judge, judge_given_up
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
+from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
 from hydrolek_drake.diagnosis.score import Score
 from hydrolek_drake.diagnosis.search import Search, search
-from hydrolek_drake.diagnosis.unlisted import FoundLaw, find_law
+from hydrolek_drake.diagnosis.unlisted import find_law
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.errors import InputError
@@ -173,7 +174,7 @@ def diagnose(
     best = conclusion.best.hypothesis
     places = locate(bench, best, found.baseline, bench.training)
     if law is not None:
-        places = (*places, locate_law(bench, best, found.baseline, law))
+        places = (locate_law(bench, best, found.baseline, law), *places)
     return Diagnosis(
         rig=rig,
         verdict=conclusion.verdict,

@@ -5,7 +5,7 @@ Every law is one term with an amplitude; a periodic one has a frequency and a ph
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,13 +23,15 @@ class Input:
     """One unknown input.
 
     Attributes:
-        stage: where it enters; one of `kernel.PROBES`.
+        stage: where it enters.
+        probe: as what; one of `kernel.PROBES`.
         symbol: how a law names it.
         unit: SI unit, "1" for a relative change.
         scale: a large amplitude for this machine.
     """
 
     stage: str
+    probe: str
     symbol: str
     unit: str
     scale: float
@@ -46,19 +48,25 @@ def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str)
     """
     moment = "N m" if position_unit == "rad" else "N"
     inputs = [
-        Input("command", "voltage added to the command", "V", 0.3 * limit),
-        Input("load", "moment added at the joint" if moment == "N m" else "force added at the load", moment,
+        Input("command", "command", "voltage added to the command", "V", 0.3 * limit),
+        Input("load", "load", "moment added at the joint" if moment == "N m" else "force added at the load", moment,
               0.3 * scales.load_force),
-        Input("sensor", "added to the reading", position_unit, 0.1 * scales.travel),
+        Input("sensor", "sensor", "added to the reading", position_unit, 0.1 * scales.travel),
     ]  # fmt: skip
     if math.isfinite(scales.conductance):
         inputs += [
-            Input("supply", "added to the supply pressure", "Pa", 0.3 * pressure),
-            Input("amplifier", "relative change of the coil currents", "1", 0.3),
-            Input("valve", "relative change of the valve's opening", "1", 0.6),
-            Input("cylinder", "force added at the rod", "N", 0.3 * scales.force),
+            Input("supply", "supply", "added to the supply pressure", "Pa", 0.3 * pressure),
+            Input("amplifier", "amplifier", "relative change of the coil currents", "1", 0.3),
+            Input("valve", "valve", "relative change of the valve's opening", "1", 0.6),
+            Input("cylinder", "cylinder", "force added at the rod", "N", 0.3 * scales.force),
+            Input(
+                "fluid", "capacity_a", "volume taken per pressure on side A, added", "m^3/Pa", scales.capacity
+            ),
+            Input(
+                "fluid", "capacity_b", "volume taken per pressure on side B, added", "m^3/Pa", scales.capacity
+            ),
         ]
-    return tuple(sorted(inputs, key=lambda i: PROBES.index(i.stage)))
+    return tuple(sorted(inputs, key=lambda i: PROBES.index(i.probe)))
 
 
 @dataclass(frozen=True)
@@ -67,15 +75,18 @@ class Term:
 
     Attributes:
         name: as in an equation.
-        values: (time since the start over the duration, signals) -> values. # (n,)
+        values: (time since the start over the span's, variables) -> values. # (n,)
     """
 
     name: str
     values: Callable[[np.ndarray, Mapping[str, np.ndarray]], np.ndarray]
 
 
+CONSTANT = "1"
+"""Name of the term that does not vary."""
+
 TERMS = (
-    Term("1", lambda t, s: np.ones(t.size)),
+    Term(CONSTANT, lambda t, s: np.ones(t.size)),
     Term("t/T", lambda t, s: t),
     Term("(t/T)^2", lambda t, s: t * t),
     Term("sign(v)", lambda t, s: s["sign"]),
@@ -92,31 +103,60 @@ TERMS = (
     Term("x", lambda t, s: s["x"]),
     Term("|x|", lambda t, s: np.abs(s["x"])),
 )
-"""t: time, T: duration, v: speed over its largest, z: position from -1 to 1 over what was recorded, x: spool over
-its largest, p: pressure over the supply's."""
+"""t: time, T: duration of the longest training recording, v: speed over its largest in these, z: position from -1 to 1
+over what they show, x: spool over its largest, p: pressure over the supply's (`Span`)."""
 
 
-def variables_of(signals: Signals, pressure: float) -> dict[str, np.ndarray]:
+@dataclass(frozen=True)
+class Span:
+    """What the variables of the terms are told in, so that a law means the same in every recording.
+
+    Attributes:
+        speed: the largest [rad/s or m/s].
+        low: end of the positions [rad or m].
+        high: the other end.
+        opening: the spool's largest [m].
+        pressure: of the supply [Pa].
+        seconds: of the longest recording.
+    """
+
+    speed: float
+    low: float
+    high: float
+    opening: float
+    pressure: float
+    seconds: float
+
+
+def span_of(signals: Sequence[Signals], pressure: float, seconds: float) -> Span:
+    """The span of some rollouts."""
+    position = np.concatenate([np.nan_to_num(s.position) for s in signals])
+    return Span(
+        speed=max(float(np.abs(np.nan_to_num(s.velocity)).max()) for s in signals) or 1.0,
+        low=float(position.min()),
+        high=float(position.max()),
+        opening=max(float(np.abs(np.nan_to_num(s.spool)).max()) for s in signals) or 1.0,
+        pressure=pressure if pressure > 0.0 else 1.0,
+        seconds=seconds,
+    )
+
+
+def variables_of(signals: Signals, span: Span) -> dict[str, np.ndarray]:
     """The variables of the terms, without units, along a rollout. # (n,) each."""
-    velocity = np.nan_to_num(signals.velocity)
-    fastest = float(np.abs(velocity).max()) or 1.0
+    v = np.nan_to_num(signals.velocity) / span.speed
     position = np.nan_to_num(signals.position)
-    low, high = float(position.min()), float(position.max())
-    spool = np.nan_to_num(signals.spool)
-    v = velocity / fastest
-    scale = pressure if pressure > 0.0 else 1.0
     return {
         "v": v,
         "sign": np.tanh(v / SLOW),
-        "z": 2.0 * (position - low) / max(high - low, np.finfo(float).tiny) - 1.0,
-        "x": spool / (float(np.abs(spool).max()) or 1.0),
-        "pa": np.nan_to_num(signals.pressure_a) / scale,
-        "pb": np.nan_to_num(signals.pressure_b) / scale,
+        "z": 2.0 * (position - span.low) / max(span.high - span.low, np.finfo(float).tiny) - 1.0,
+        "x": np.nan_to_num(signals.spool) / span.opening,
+        "pa": np.nan_to_num(signals.pressure_a) / span.pressure,
+        "pb": np.nan_to_num(signals.pressure_b) / span.pressure,
     }
 
 
-def probe_rows(stage: str, values: np.ndarray) -> np.ndarray:
-    """One input over time as rows of `kernel.PROBES`. # (n, 8)."""
+def probe_rows(probe: str, values: np.ndarray) -> np.ndarray:
+    """One input over time as rows of `kernel.PROBES`. # (n, 10)."""
     rows = np.zeros((values.size, len(PROBES)))
-    rows[:, PROBES.index(stage)] = values
+    rows[:, PROBES.index(probe)] = values
     return rows

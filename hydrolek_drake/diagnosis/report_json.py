@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis, smallest_visible
-from hydrolek_drake.diagnosis.unlisted import FoundLaw
+from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.words import (
     effect_sentence,
     headline,

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import nnls
 
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -32,6 +33,8 @@ class Score:
         start: full path -> value at which its fit should begin.
         left: squared residuals with the effect at its start, after the best change of the fitted parameters.
         visible_from: size of the effect (SI) whose gain would be `VISIBLE`.
+        change: of the residuals across the fitted parameters' columns, at the size of that gain. # (values,)
+        rest: what the model leaves, across these columns. # (values,)
     """
 
     candidate: Candidate
@@ -39,6 +42,8 @@ class Score:
     start: dict[str, float]
     left: float
     visible_from: float
+    change: np.ndarray
+    rest: np.ndarray
 
 
 AT_BOUND = 1e-3
@@ -92,6 +97,7 @@ def _score(
     problem = bench.problem(effects, step)
     left = across(here)
     best_gain, best_left = 0.0, float("inf")
+    best_change = np.zeros_like(left)
     start = candidate.starts[0]
     weakens = candidate.effect.weakens
     visible = 0.0 if weakens else float("inf")
@@ -113,11 +119,18 @@ def _score(
             remaining = float(np.sum((left + e) ** 2))
             if remaining < best_left:
                 best_left, start = remaining, tried
-            best_gain = max(best_gain, gain)
+            if gain > best_gain:
+                best_gain, best_change = gain, e
             root = (VISIBLE / power) ** 0.5
             visible = max(visible, size / root) if weakens else min(visible, abs(size) * root)
     bench.evaluations += problem.evaluations
-    return Score(candidate, best_gain, start, best_left, visible)
+    return Score(candidate, best_gain, start, best_left, visible, best_change, left)
+
+
+def gain_of_pair(first: Score, second: Score) -> float:
+    """Fall of the squared residuals if two effects, held against the same model, took their best multiples at once."""
+    left = nnls(np.stack([first.change, second.change], axis=1), -first.rest)[1]
+    return float(first.rest @ first.rest) - float(left) ** 2
 
 
 def _inside(candidate: Candidate, values: dict[str, float]) -> bool:

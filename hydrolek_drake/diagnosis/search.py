@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.diagnosis.score import Score, scores_of
+from hydrolek_drake.diagnosis.score import Score, gain_of_pair, scores_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
 from hydrolek_drake.identification.least_squares import Fit
 
@@ -153,9 +153,8 @@ def search(
         for hypothesis in grown:
             found.keep(hypothesis)
         _prune(bench, found, found.best)
-        near = found.best.fit.over_noise < NEAR
         beam = [h for h in grown if h.fit.objective < HOPELESS * grown[0].fit.objective][:BEAM]
-        beam = [found.best] if near else beam
+        beam = [found.best] if found.best.fit.over_noise < NEAR else beam
         found.left = scores_of(bench, found.best, candidates, bench.fine)
 
 
@@ -196,6 +195,10 @@ def fit_baseline(bench: Workbench) -> Hypothesis:
     return bench.refit(best, bench.fine, POLISH if best.fit.over_noise < FAR else POLISH // 2)
 
 
+_Start = tuple[tuple[Candidate, ...], list[tuple[float, dict[str, float]]]]
+"""Effects, and where their fit may begin: squared residuals that are promised, and values."""
+
+
 def _grow(
     bench: Workbench, beam: Sequence[Hypothesis], candidates: Sequence[Candidate], found: Search
 ) -> list[Hypothesis]:
@@ -203,13 +206,15 @@ def _grow(
     over = found.best.fit.over_noise
     far = over > FAR
     step = bench.fine * (COARSE if far else 2.0 if over > NEAR else 1.0)
-    work: dict[frozenset[str], tuple[tuple[Candidate, ...], list[tuple[float, dict[str, float]]]]] = {}
+    work: dict[frozenset[str], _Start] = {}
+    scored_by: dict[frozenset[str], Sequence[Score]] = {}
     for parent in beam:
         scored = (
             found.scores
             if not parent.effects and not far
             else scores_of(bench, bench.refit(parent, step, 1) if far else parent, candidates, step)
         )
+        scored_by[parent.ids] = scored
         for score in scored:
             if _redundant(parent, score.candidate) or (
                 not far and score.gain < 0.5 * gain_needed(parent.fit)
@@ -230,6 +235,8 @@ def _grow(
         over < NEAR
     ):  # the parent is right but for something small: Gauss-Newton steps from it go straight there
         items = sorted(work.values(), key=lambda item: min(left for left, _ in item[1]))[:FOLLOWED]
+        if over > AT_NOISE:
+            items += [pair for parent in beam for pair in _pairs(parent, scored_by[parent.ids])]
         fits = bench.side_by_side(lambda i: bench.fit(i[0], min(i[1], key=_first)[1], step, POLISH), items)
         return sorted(fits, key=lambda h: h.fit.objective)
     glances = bench.side_by_side(
@@ -255,6 +262,30 @@ def _grow(
     polished = bench.side_by_side(lambda h: bench.refit(h, bench.fine, POLISH), near)
     polished.sort(key=lambda h: h.fit.objective)
     return [*polished, *looks[len(near) :]][: max(len(polished), 3)]
+
+
+def _pairs(parent: Hypothesis, scored: Sequence[Score]) -> list[_Start]:
+    """Pairs of effects that together promise what neither does alone, the best first.
+
+    Of two small effects each may hide behind a third one, which takes a part of both; taken one at a time, that one
+    comes first and the others never.
+    """
+    if len(parent.effects) + 2 > MOST_EFFECTS:
+        return []
+    free = [s for s in scored if s.gain > 0.0 and not _redundant(parent, s.candidate)]
+    alone = max((s.gain for s in free), default=0.0)
+    promised: list[tuple[float, _Start]] = []
+    for first, second in itertools.combinations(free, 2):
+        candidates = (first.candidate, second.candidate)
+        if _contains(*candidates):
+            continue
+        gain = gain_of_pair(first, second)
+        if gain - alone < gain_needed(parent.fit):
+            continue
+        start = {**parent.values, **first.start, **second.start}
+        promised.append((gain, ((*parent.effects, *candidates), [(parent.fit.objective - gain, start)])))
+    promised.sort(key=lambda item: -item[0])
+    return [start for _, start in promised[:FOLLOWED]]
 
 
 def unstuck(
@@ -321,9 +352,14 @@ def _different(starts: Sequence[dict[str, float]]) -> list[dict[str, float]]:
 
 
 def _redundant(parent: Hypothesis, candidate: Candidate) -> bool:
-    """Whether one of two effects contains the other, so that both together say nothing new."""
-    contains = {other for c in parent.effects for other in c.effect.contains}
-    return candidate.id in contains or any(c.id in candidate.effect.contains for c in parent.effects)
+    """Whether both together say nothing new: the effect, and one that the hypothesis has."""
+    return any(_contains(c, candidate) for c in parent.effects)
+
+
+def _contains(first: Candidate, second: Candidate) -> bool:
+    """Whether one of two effects at the same joint contains the other."""
+    own = first.joint == second.joint
+    return own and (second.id in first.effect.contains or first.id in second.effect.contains)
 
 
 def _prune(bench: Workbench, found: Search, hypothesis: Hypothesis) -> None:

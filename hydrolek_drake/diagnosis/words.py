@@ -2,7 +2,7 @@
 
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
-from hydrolek_drake.diagnosis.unlisted import FoundLaw
+from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.replay.display import shown
 from hydrolek_drake.rigs import Rig

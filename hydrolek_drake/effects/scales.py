@@ -31,6 +31,7 @@ class Scales:
         duration: of the recording [s].
         inertia: of the load [kg m^2 or kg].
         payload: mass whose weight is the load force at the tool [kg]; infinite if payloads have no weight.
+        capacity: volume that a full chamber's travel takes over the supply pressure [m^3/Pa].
     """
 
     force: float
@@ -48,6 +49,7 @@ class Scales:
     duration: float
     inertia: float
     payload: float
+    capacity: float
     unity: float = 1.0
 
     @property
@@ -95,6 +97,7 @@ def motor_scales(force: float, speed: float, inertia: float, travel: float, dura
         duration=duration,
         inertia=inertia,
         payload=inertia,
+        capacity=nothing,
     )
 
 
@@ -135,4 +138,5 @@ def hydraulic_scales(joint: Any, full_flow: float, lever: float, travel: float, 
         duration=duration,
         inertia=float(joint["load"]["inertia"]),
         payload=force * lever / weight if weight > 0.0 else math.inf,
+        capacity=area * travel * lever / pressure,
     )

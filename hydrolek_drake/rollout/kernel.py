@@ -68,10 +68,15 @@ class Probe(NamedTuple):
     load: float  # moment added at the joint [N m]
     sensor: float  # added to the reading [rad or m]
     flow: float  # that other joints draw from the supply [m^3/s]
+    capacity_a: float  # added to the oil's on side A: volume that it takes per pressure [m^3/Pa]
+    capacity_b: float  # the same on side B
 
 
 PROBES = Probe._fields
 NO_PROBE = np.zeros((0, len(PROBES)))
+
+LEAST_CAPACITY = 0.1
+"""A search may ask for less capacity than the oil has, down to this share: none at all has no solution."""
 
 PULLED = ("reading", "pressure_a", "pressure_b")
 NOT_PULLED = np.zeros((0, len(PULLED)))
@@ -81,7 +86,7 @@ NOT_PULLED = np.zeros((0, len(PULLED)))
 def _probe_at(time: float, begin: float, spacing: float, values: np.ndarray) -> Probe:
     """Probes at a time, on straight lines between samples of uniform spacing."""
     if len(values) == 0:
-        return Probe(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return Probe(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     place = min(max((time - begin) / spacing, 0.0), len(values) - 1.0)
     i = min(int(place), len(values) - 2)
     f = place - i
@@ -95,6 +100,8 @@ def _probe_at(time: float, begin: float, spacing: float, values: np.ndarray) -> 
         a[5] + f * (b[5] - a[5]),
         a[6] + f * (b[6] - a[6]),
         a[7] + f * (b[7] - a[7]),
+        a[8] + f * (b[8] - a[8]),
+        a[9] + f * (b[9] - a[9]),
     )
 
 
@@ -131,6 +138,10 @@ def rates(
         rate_a, rate_b, stiff_a, stiff_b = cylinder.pressure_rates(
             s.p_a, s.p_b, flow_a, flow_b, stroke, v, joint
         )
+        softer_a = max(1.0 + probe.capacity_a * stiff_a, LEAST_CAPACITY)
+        softer_b = max(1.0 + probe.capacity_b * stiff_b, LEAST_CAPACITY)
+        rate_a, stiff_a = rate_a / softer_a, stiff_a / softer_a
+        rate_b, stiff_b = rate_b / softer_b, stiff_b / softer_b
         slope_a = -stiff_a * settle_a
         slope_b = -stiff_b * settle_b
         friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
@@ -279,7 +290,7 @@ def integrate(
         longest_step: [s].
         spool_steps: spool steps within one step.
         probe_spacing: of the samples of the probes, which begin at the first of `times` [s].
-        probe_values: `PROBES` over time, shape (k, 8); no rows for none.
+        probe_values: `PROBES` over time, shape (k, 10); no rows for none.
         pull_time: with this time constant reading and pressures are pulled to what was measured, as in an
             observer [s]; zero or less for a free rollout.
         measured: `PULLED` at `times`, NaN where there is no value, shape (n, 3); no rows for a free rollout.

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hydrolek_drake.diagnosis.laws import probe_rows
 from hydrolek_drake.identification.experiment import Experiment, experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig, load_rig
@@ -18,7 +19,7 @@ def bench() -> Rig:
 
 @pytest.fixture(scope="session")
 def recorded() -> Callable[..., list[Experiment]]:
-    """(machine that is recorded, rig that is fitted, seed, noise, largest volts, pressures) -> 12 s of it."""
+    """(recorded machine, fitted rig, seed, noise, largest volts, pressures, unknown input) -> 12 s of it."""
 
     def make(
         machine: Rig,
@@ -27,6 +28,7 @@ def recorded() -> Callable[..., list[Experiment]]:
         noise_deg: float = 0.05,
         largest_V: float = 9.0,
         pressure_noise_Pa: float | None = None,
+        unknown: tuple[str, float] | None = None,
     ) -> list[Experiment]:
         rng = np.random.default_rng(seed)
         time = np.arange(0.0, 12.0, 0.01)
@@ -38,7 +40,8 @@ def recorded() -> Callable[..., list[Experiment]]:
             {"joint.command": levels, "joint.angle": rng.normal(0.4, 0.1, time.size)},
             Path("made.csv"),
         )
-        played = experiments_of(machine, blank)[0].simulate(machine.records(), 1e-4).signals
+        probes = None if unknown is None else (1.0, probe_rows(unknown[0], np.full(13, unknown[1])))
+        played = experiments_of(machine, blank)[0].simulate(machine.records(), 1e-4, probes).signals
         angle = played.reading + np.radians(noise_deg) * rng.standard_normal(time.size)
         signals = {"joint.command": levels, "joint.angle": angle}
         if pressure_noise_Pa is not None:

@@ -70,3 +70,17 @@ def test_cylinder_probe_is_the_load_probe_over_the_lever() -> None:
     )  # the chambers give way: the rod's force balances the load
     start = _run(probe="cylinder", size=500.0).force[0] - _run().force[0]
     assert start == pytest.approx(500.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("side", ["a", "b"])
+def test_capacity_probe_is_more_oil_in_the_chamber(side: str) -> None:
+    """Oil of volume V takes V/B per pressure."""
+    rig = load_rig("joint_bench", {})
+    more = 2e-5
+    dead = {f"cylinder.dead_volume_{s}": rig.value(f"cylinder.dead_volume_{s}") for s in "ab"}
+    dead[f"cylinder.dead_volume_{side}"] += more
+    larger = _run(dead)
+    probed = _run(probe=f"capacity_{side}", size=more / rig.value("fluid.bulk_modulus"))
+    assert probed.pressure_a == pytest.approx(larger.pressure_a, rel=1e-9)
+    assert probed.position == pytest.approx(larger.position, rel=1e-9)
+    assert np.abs(probed.position - _run().position).max() > 1e-4

@@ -1,0 +1,144 @@
+"""Fits of a law for physics in no list, and how well it predicts."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, LawProblem
+from hydrolek_drake.diagnosis.laws import Span
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import Fit, fit_from
+from hydrolek_drake.identification.parameter_set import ParameterSet
+
+STEPS, GLANCE = 15, 4
+"""Trust-region steps of a fit, and of a first one that tells which law is worth it."""
+
+GLANCE_S = 20.0
+"""First fits see so many seconds."""
+
+COARSE, FINER = 4.0, 2.0
+"""Integration steps over the rig's own, of first fits and of the others."""
+
+PHASES = 12
+"""Where a periodic law may stand when a recording begins is first tried at so many places."""
+
+
+def glance(
+    bench: Workbench, left: Hypothesis, law: Law, span: Span
+) -> tuple[float, dict[str, float], np.ndarray]:
+    """A few steps with a law on the first part of the training data.
+
+    Begun at the fitted values of the model that leaves the mismatch and at the rig's own, which were not bent to
+    make up for what is missing.
+
+    Returns:
+        Squared residuals, nominal parameters and the law's values (SI), the best of both.
+    """
+    bench.alive()
+    parameters = bench.parameters(left.effects)
+    part = [experiment.until(GLANCE_S) for experiment in bench.training]
+    own = {path: value for path, value in left.values.items() if ".effects." in path}
+    ended = []
+    for values in (left.values, own):
+        unit = parameters.unit(values)
+        records = parameters.records(unit)
+        step = COARSE * bench.fine
+        trajectories = [e.simulate(records, step).signals for e in part]
+        problem = LawProblem(parameters, part, step, law, trajectories, span)
+        start = problem.start(unit, law.input.scale * np.array(law.amplitudes))
+        fit = fit_from(problem, start, most_steps=GLANCE, tolerance=1e-3)
+        bench.evaluations += problem.evaluations
+        ended.append((fit.objective, fit.unit, problem.law_values(fit.unit)))
+    objective, unit, amplitudes = min(ended, key=lambda end: end[0])
+    return objective, parameters.values(unit[: len(parameters)]), amplitudes
+
+
+def fitted(
+    bench: Workbench,
+    left: Hypothesis,
+    law: Law,
+    held_out: Sequence[Experiment],
+    span: Span,
+    begin: tuple[dict[str, float], np.ndarray],
+) -> FoundLaw:
+    """Fit a law together with the parameters of a model, from where a glance ended.
+
+    Args:
+        bench: training data and rig.
+        left: the model that leaves the mismatch.
+        law: what is added.
+        held_out: data that nothing is fitted to.
+        span: what the law's variables are told in.
+        begin: nominal parameters and the law's values (SI).
+    """
+    parameters = bench.parameters(left.effects)
+    nominal = parameters.unit(begin[0])
+    records = parameters.records(nominal)
+    step = FINER * bench.fine
+    trajectories = [e.simulate(records, step).signals for e in bench.training]
+    best: tuple[LawProblem, Fit] | None = None
+    for _ in range(2):  # the terms follow the trajectory that the law itself bends
+        bench.alive()
+        problem = LawProblem(parameters, bench.training, step, law, trajectories, span)
+        if best is None:
+            own = problem.start(nominal, begin[1])
+            fit = fit_from(problem, own, most_steps=STEPS, tolerance=1e-4)
+        else:
+            fit = fit_from(problem, best[1].unit, most_steps=STEPS, tolerance=1e-4)
+        best = (problem, fit)
+        if law.term is None:
+            break
+        trajectories = problem.signals(fit.unit)
+    assert best is not None
+    problem, fit = best
+    count = len(parameters)
+    values = problem.law_values(fit.unit)
+    without = bench.training[0].simulate(parameters.records(fit.unit[:count]), step).signals
+    difference = problem.signals(fit.unit)[0].reading - without.reading
+    over = _ahead(parameters, fit, problem, held_out, step, span)
+    bench.evaluations += problem.evaluations
+    return FoundLaw(law, values, parameters.values(fit.unit[:count]), fit, over, difference)
+
+
+def _ahead(
+    parameters: ParameterSet,
+    fit: Fit,
+    problem: LawProblem,
+    held_out: Sequence[Experiment],
+    step: float,
+    span: Span,
+) -> float:
+    """Held-out root mean square over the noise; the phase of a periodic law is fitted to each recording."""
+    total, counted = 0.0, 0
+    records = parameters.records(fit.unit[: len(parameters)])
+    for experiment in held_out:
+        trajectories = [experiment.simulate(records, step).signals]
+        own = LawProblem(parameters, [experiment], step, problem.law, trajectories, span)
+        unit = fit.unit.copy()
+        if problem.law.term is None:
+            values = problem.law_values(fit.unit)
+            amplitude = math.hypot(values[0], values[1])
+
+            def at(phase: float, size: float = amplitude, like: LawProblem = own) -> np.ndarray:
+                moved = fit.unit.copy()
+                moved[-3] = 0.5 + 0.5 * size * math.cos(phase) / like.law.input.scale
+                moved[-2] = 0.5 + 0.5 * size * math.sin(phase) / like.law.input.scale
+                return moved
+
+            def misfit(phase: float, like: LawProblem = own) -> float:
+                residual = like.residuals(at(phase))
+                return float(residual @ residual)
+
+            phases = 2.0 * math.pi * np.arange(PHASES) / PHASES
+            first = min(phases.tolist(), key=misfit)
+            width = 2.0 * math.pi / PHASES
+            for _ in range(6):
+                first = min((first - width / 2.0, first, first + width / 2.0), key=misfit)
+                width *= 0.5
+            unit = at(first)
+        residual = own.residuals(unit)
+        total += float(residual @ residual)
+        counted += experiment.counted
+    return math.sqrt(total / max(counted, 1))

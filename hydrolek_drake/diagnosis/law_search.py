@@ -1,0 +1,129 @@
+"""Which laws could explain what a model leaves, from rollouts and linear algebra alone (as in `score`)."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.law_problem import GRID_S, SCAN_S, Law, grid_of, term_on_grid
+from hydrolek_drake.diagnosis.laws import TERMS, Input, Span, probe_rows
+from hydrolek_drake.diagnosis.score import Across
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.problem import Problem
+
+HIGHEST_HZ = 8.0
+"""Frequencies up to this one are looked for; joints hardly follow faster ones."""
+
+TRIED = 1e-3
+"""Amplitude of a trial, as a fraction of the input's scale: small enough to be linear."""
+
+SIZES = (0.3, 0.1, 0.03)
+"""Larger amplitudes, where a law may not act in proportion any more."""
+
+COARSE = 4.0
+"""Integration step over the rig's own while laws are looked for."""
+
+
+def promising(bench: Workbench, left: Hypothesis, inputs: Sequence[Input], span: Span) -> list[Law]:
+    """Every law with the gain that it promises, and the amplitude at which its fit should begin.
+
+    Args:
+        bench: training data and rig.
+        left: the model that leaves the mismatch.
+        inputs: unknown inputs of the joint.
+        span: what the laws' variables are told in.
+    """
+    parameters = bench.parameters(left.effects)
+    records = parameters.records(parameters.unit(left.values))
+    step = COARSE * bench.fine
+    across = Across(left.fit)
+    off = left.fit.off_prior
+
+    def response(experiments: Sequence[Experiment], probe: str, series: Sequence[np.ndarray]) -> np.ndarray:
+        parts = []
+        for experiment, values in zip(experiments, series, strict=True):
+            probes = (GRID_S, probe_rows(probe, values))
+            parts.append(experiment.residuals(experiment.simulate(records, step, probes).signals))
+        return np.nan_to_num(np.concatenate(parts))
+
+    def of_terms(given: Input) -> list[Law]:
+        bench.alive()
+        here = response(bench.training, given.probe, [np.zeros(grid_of(e).size) for e in bench.training])
+        rest = across(np.concatenate([here, off]))
+        trajectories = [e.simulate(records, step).signals for e in bench.training]
+        found = []
+        for term in TERMS:
+            shapes = [
+                given.scale * term_on_grid(term, e, grid_of(e), s, span)
+                for e, s in zip(bench.training, trajectories, strict=True)
+            ]
+
+            def moved(size: float, shapes: Sequence[np.ndarray] = shapes) -> np.ndarray:
+                there = response(bench.training, given.probe, [size * shape for shape in shapes])
+                return across(np.concatenate([there - here, np.zeros(off.size)]))
+
+            gain, amplitudes = _gain(moved(TRIED)[:, None], rest)
+            start, least = amplitudes[0], float(np.sum((rest + moved(amplitudes[0])) ** 2))
+            for size in (sign * s for s in SIZES for sign in (1.0, -1.0)):
+                e = moved(size)
+                remaining = float(np.sum((rest + e) ** 2))
+                gain = max(gain, _along(e, rest))
+                if remaining < least:
+                    least, start = remaining, size
+            found.append(Law(given, term, 0.0, gain, (start,)))
+        return found
+
+    def of_frequencies(given: Input) -> list[Law]:
+        bench.alive()
+        part = [e.until(SCAN_S) for e in bench.training[:1]]
+        zero = np.zeros(grid_of(part[0]).size)
+        here = response(part, given.probe, [zero])
+        own = Problem(parameters, part, step)
+        base = own.residuals(parameters.unit(left.values))
+        nearby = Across(
+            Fit(
+                left.fit.unit,
+                base,
+                off,
+                own.jacobian(left.fit.unit, base),
+                left.fit.prior_jacobian,
+                own.counted,
+                0,
+            )
+        )
+        rest = nearby(np.concatenate([here, off]))
+        grid = grid_of(part[0])
+        spacing = 0.5 / SCAN_S
+        found = []
+        for frequency in np.arange(2.0 * spacing, HIGHEST_HZ, spacing):
+            columns = []
+            for wave in (np.sin, np.cos):
+                series = TRIED * given.scale * wave(2.0 * math.pi * frequency * grid)
+                moved = response(part, given.probe, [series]) - here
+                columns.append(nearby(np.concatenate([moved, np.zeros(off.size)])))
+            found.append(Law(given, None, float(frequency), *_gain(np.stack(columns, axis=1), rest)))
+        whole = sum(e.counted for e in bench.training) / max(own.counted, 1)
+        best = max(found, key=lambda law: law.gain)
+        return [Law(given, None, best.frequency, best.gain * whole, best.amplitudes)]
+
+    work = [(kind, given) for given in inputs for kind in (of_terms, of_frequencies)]
+    return [law for laws in bench.side_by_side(lambda item: item[0](item[1]), work) for law in laws]
+
+
+def _gain(columns: np.ndarray, rest: np.ndarray) -> tuple[float, tuple[float, ...]]:
+    """Fall of the squared residuals if the columns take their best multiples, and these, in scales of the input."""
+    norms = np.linalg.norm(columns, axis=0)
+    if not (norms > 0.0).all():
+        return 0.0, (0.0,) * columns.shape[1]
+    multiples, *_ = np.linalg.lstsq(columns / norms, -rest, rcond=None)
+    fitted = columns / norms @ multiples
+    amplitudes = np.clip(TRIED * multiples / norms, -0.9, 0.9)
+    return float(fitted @ fitted), tuple(amplitudes.tolist())
+
+
+def _along(change: np.ndarray, rest: np.ndarray) -> float:
+    """Fall of the squared residuals if a change takes its best positive multiple."""
+    power, along = float(change @ change), -float(change @ rest)
+    return along * along / power if along > 0.0 and power > 0.0 else 0.0
