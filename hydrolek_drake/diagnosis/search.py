@@ -226,8 +226,8 @@ def _grow(
             if (
                 far and not parent.effects
             ):  # the parent's values may have gone far astray to make up for what is missing
-                own = {c.size_path.rpartition(".")[0] for c in effects}
-                kept = {k: v for k, v in parent.values.items() if k.rpartition(".")[0] in own}
+                joints = {c.joint for c in effects}
+                kept = {k: v for k, v in parent.values.items() if _of_another_joint(k, joints)}
                 starts.append((math.inf, {**kept, **score.start}))
     if not work:
         return []
@@ -247,12 +247,14 @@ def _grow(
         :MOST_UNDECIDED
     ]
     if len(undecided) > FOLLOWED:
-        whole = bench.side_by_side(lambda h: bench.refit(h, step, GLANCE, tolerance=1e-3), undecided)
+        whole = bench.side_by_side(
+            lambda h: bench.refit(h, step, GLANCE, tolerance=1e-3, alone=True), undecided
+        )
         glances = [*sorted(whole, key=lambda h: h.fit.objective), *glances[len(undecided) :]]
     found.given_up.update((h.ids, h) for h in glances)
     bound = HOPELESS * glances[0].fit.objective
     followed = [h for h in glances if h.fit.objective < bound][:FOLLOWED]
-    looks = bench.side_by_side(lambda h: bench.refit(h, step, LOOK, tolerance=1e-4), followed)
+    looks = bench.side_by_side(lambda h: bench.refit(h, step, LOOK, tolerance=1e-4, alone=True), followed)
     looks.sort(key=lambda h: h.fit.objective)
     if looks[0].fit.over_noise > NEARLY:
         looks = unstuck(bench, glances[:TRIED_PULLED], looks, step)
@@ -301,20 +303,31 @@ def unstuck(
     part = [experiment.until(GLANCE_S) for experiment in bench.training]
 
     def pulled(glance: Hypothesis) -> Hypothesis:
-        starts = [{}, *_starts_of(glance.effects)]
+        joints = {c.joint for c in glance.effects}
+        others = {k: v for k, v in glance.values.items() if _of_another_joint(k, joints)}
+        starts = [{**others, **start} for start in ({}, *_starts_of(glance.effects))]
         problem = bench.problem(glance.effects, step, part, PULL_S)
         units = [problem.parameters.unit(start) for start in starts]
         errors = [float(np.sum(problem.residuals(unit) ** 2)) for unit in units]
         start = starts[int(np.argmin(errors))]
         return bench.fit(
-            glance.effects, start, step, PULLED_STEPS, tolerance=1e-3, experiments=part, pull_time=PULL_S
+            glance.effects,
+            start,
+            step,
+            PULLED_STEPS,
+            tolerance=1e-3,
+            experiments=part,
+            pull_time=PULL_S,
+            alone=True,
         )
 
     ahead = sorted(bench.side_by_side(pulled, glances), key=lambda h: h.fit.objective)
 
     def followed(glance: Hypothesis) -> Hypothesis:
-        near = bench.fit(glance.effects, glance.values, step, LOOK, tolerance=1e-4, pull_time=PULL_S)
-        return bench.refit(near, step, LOOK, tolerance=1e-4)
+        near = bench.fit(
+            glance.effects, glance.values, step, LOOK, tolerance=1e-4, pull_time=PULL_S, alone=True
+        )
+        return bench.refit(near, step, LOOK, tolerance=1e-4, alone=True)
 
     again = bench.side_by_side(followed, ahead[:BEAM])
     best = {h.ids: h for h in sorted([*looks, *again], key=lambda h: -h.fit.objective)}
@@ -337,10 +350,15 @@ def _glance(
     """A few steps from each start."""
     part = [experiment.until(GLANCE_S) for experiment in bench.training]
     fits = [
-        bench.fit(effects, start, step, GLANCE, tolerance=1e-3, experiments=part)
+        bench.fit(effects, start, step, GLANCE, tolerance=1e-3, experiments=part, alone=True)
         for start in _different(starts)
     ]
     return min(fits, key=lambda h: h.fit.objective)
+
+
+def _of_another_joint(path: str, joints: set[str]) -> bool:
+    """Whether a parameter belongs to a joint, and to none of these."""
+    return path.startswith("joints.") and path.split(".")[1] not in joints
 
 
 def _different(starts: Sequence[dict[str, float]]) -> list[dict[str, float]]:

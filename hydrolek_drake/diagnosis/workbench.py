@@ -13,6 +13,7 @@ from hydrolek_drake.identification.experiment import Experiment, faithful
 from hydrolek_drake.identification.least_squares import Fit, fit_from
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.physics import supply
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.rigs import Rig
 
@@ -130,6 +131,7 @@ class Workbench:
         tolerance: float = 1e-5,
         experiments: Sequence[Experiment] | None = None,
         pull_time: float | None = None,
+        alone: bool = False,
     ) -> Hypothesis:
         """Fit the nominal model with these effects.
 
@@ -141,6 +143,7 @@ class Workbench:
             tolerance: relative change of the squared residuals at which it ends.
             experiments: to be fitted; None for all training data.
             pull_time: of the rollouts, as in `Problem`; None for free ones.
+            alone: leave joints on which none of the effects acts as they start.
         """
         self.alive()
         effects = tuple(effects)
@@ -152,15 +155,32 @@ class Workbench:
             most_steps=most_steps,
             tolerance=tolerance,
             stop=self._stopped.is_set,
+            moving=self._acted_on(effects, parameters) if alone and effects else None,
         )
         self.evaluations += fit.evaluations
         return Hypothesis(effects, parameters.values(fit.unit), fit, step)
 
+    def _acted_on(self, effects: Sequence[Candidate], parameters: ParameterSet) -> np.ndarray:
+        """Parameters of the joints on which effects act, and those that all joints share. # (n,)."""
+        joints = {candidate.joint for candidate in effects}
+        everywhere = any(candidate.effect.stage == supply.STAGE.name for candidate in effects)
+        return np.array(
+            [
+                everywhere or not path.startswith("joints.") or path.split(".")[1] in joints
+                for path in parameters.paths
+            ]
+        )
+
     def refit(
-        self, hypothesis: Hypothesis, step: float, most_steps: int, tolerance: float = 1e-5
+        self,
+        hypothesis: Hypothesis,
+        step: float,
+        most_steps: int,
+        tolerance: float = 1e-5,
+        alone: bool = False,
     ) -> Hypothesis:
         """Go on from where a fit ended, usually with a finer step."""
-        return self.fit(hypothesis.effects, hypothesis.values, step, most_steps, tolerance)
+        return self.fit(hypothesis.effects, hypothesis.values, step, most_steps, tolerance, alone=alone)
 
     def residuals(self, hypothesis: Hypothesis, experiments: Sequence[Experiment], step: float) -> np.ndarray:
         """Residuals of a fitted model on any recordings, in units of the noise. # (values,)."""

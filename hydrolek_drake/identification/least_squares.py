@@ -23,7 +23,7 @@ class Fit:
         unit: place in the unit cube. # (n,)
         residuals: there, in units of the noise. # (values,)
         off_prior: distance of each parameter from the rig's own value, in standard deviations. # (n,)
-        jacobian: d residuals / d unit there. # (values, n)
+        jacobian: d residuals / d unit there, zero for parameters that were held. # (values, n)
         prior_jacobian: d off_prior / d unit. # (n, n)
         counted: values that count; where a sample does not count its residual is zero.
         evaluations: rollouts of all experiments that it took.
@@ -66,6 +66,7 @@ def fit_from(
     most_steps: int = 50,
     tolerance: float = 1e-6,
     stop: Callable[[], bool] | None = None,
+    moving: np.ndarray | None = None,
 ) -> Fit:
     """Bounded least squares from one start (trust region reflective, scipy).
 
@@ -76,26 +77,37 @@ def fit_from(
         most_steps: of the trust-region method, each with one Jacobian.
         tolerance: relative change of cost and parameters at which it ends.
         stop: asked before each rollout; True ends the search with `KeyboardInterrupt`.
+        moving: which parameters are searched, the others stay where they start; None for all. # (n,)
     """
     before = problem.evaluations
     known: dict[bytes, np.ndarray] = {}
 
-    def residuals(unit: np.ndarray) -> np.ndarray:
+    inside = np.clip(start, EDGE, 1.0 - EDGE)
+    searched = np.flatnonzero(np.ones(inside.size) if moving is None else moving)
+
+    def whole(part: np.ndarray) -> np.ndarray:
+        unit = inside.copy()
+        unit[searched] = part
+        return unit
+
+    def residuals(part: np.ndarray) -> np.ndarray:
         if stop is not None and stop():
             raise KeyboardInterrupt
+        unit = whole(part)
         value = problem.residuals(unit)
         known.clear()
         known[unit.tobytes()] = value
         return np.concatenate([value, problem.prior_residuals(unit)])
 
-    def jacobian(unit: np.ndarray) -> np.ndarray:
-        return np.concatenate([problem.jacobian(unit, known.get(unit.tobytes())), prior_jacobian])
+    def jacobian(part: np.ndarray) -> np.ndarray:
+        unit = whole(part)
+        own = problem.jacobian(unit, known.get(unit.tobytes()), moving)
+        return np.concatenate([own, prior_jacobian])[:, searched]
 
     prior_jacobian = problem.prior_jacobian()
-    inside = np.clip(start, EDGE, 1.0 - EDGE)
     result = least_squares(
         residuals,
-        inside,
+        inside[searched],
         jac=jacobian,
         bounds=(0.0, 1.0),
         loss=loss,
@@ -104,12 +116,14 @@ def fit_from(
         ftol=tolerance,
         gtol=1e-12,
     )
-    values = len(result.fun) - len(result.x)
+    values = len(result.fun) - len(inside)
+    found = np.zeros((values, len(inside)))
+    found[:, searched] = result.jac[:values]
     return Fit(
-        unit=result.x,
+        unit=whole(result.x),
         residuals=result.fun[:values],
         off_prior=result.fun[values:],
-        jacobian=result.jac[:values],
+        jacobian=found,
         prior_jacobian=prior_jacobian,
         counted=problem.counted,
         evaluations=problem.evaluations - before,

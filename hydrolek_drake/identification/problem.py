@@ -90,15 +90,18 @@ class Problem:
         residuals = np.concatenate(parts)
         return np.clip(np.nan_to_num(residuals, nan=DIVERGED), -DIVERGED, DIVERGED)
 
-    def jacobian(self, unit: np.ndarray, at: np.ndarray | None = None) -> np.ndarray:
+    def jacobian(
+        self, unit: np.ndarray, at: np.ndarray | None = None, moving: np.ndarray | None = None
+    ) -> np.ndarray:
         """Jacobian of the residuals by forward differences (backward at the upper end).
 
         Args:
             unit: place in the unit cube. # (n,)
             at: the residuals there, if known.
+            moving: which parameters may move; None for all. # (n,)
 
         Returns:
-            Change of each residual with each parameter's place. # (values, n)
+            Change of each residual with each parameter's place, zero for those that are held. # (values, n)
         """
         base = self.residuals(unit) if at is None else at
         if len(self.experiments) > 1:
@@ -110,9 +113,12 @@ class Problem:
             moved[i] += steps[i]
             return (self.residuals(moved) - base) / steps[i]
 
-        indices = range(len(unit))
+        indices = range(len(unit)) if moving is None else np.flatnonzero(moving).tolist()
         columns = list(map(column, indices)) if self.pool is None else list(self.pool.map(column, indices))
-        return np.stack(columns, axis=1) if columns else np.zeros((base.size, 0))
+        whole = np.zeros((base.size, len(unit)))
+        if columns:
+            whole[:, list(indices)] = np.stack(columns, axis=1)
+        return whole
 
     def prior_residuals(self, unit: np.ndarray) -> np.ndarray:
         """Distance of each parameter from the rig's own value, in standard deviations. # (n,)."""

@@ -82,3 +82,20 @@ def test_a_diverged_simulation_is_scored_not_raised(bench, planted) -> None:
     residuals = Problem.bounded([np.array([1.0, np.nan, -1e30])])
     assert np.isfinite(residuals).all() and abs(residuals).max() == 1e7
     assert np.isfinite(Problem(parameters, experiments, 0.5).residuals(np.full(4, 0.5))).all()
+
+
+def test_held_parameters_stay_and_the_others_end_where_they_would_alone(bench, planted) -> None:
+    _, experiments = planted
+    parameters = ParameterSet(bench, free_parameters(bench, PATHS))
+    problem = Problem(parameters, experiments, 1e-3)
+    start = parameters.unit()
+    moving = np.array([path.endswith(("max_area_a", "delay")) for path in parameters.paths])
+    held = fit_from(problem, start, moving=moving)
+    assert held.unit[~moving] == pytest.approx(start[~moving], abs=1e-12)
+    assert not held.jacobian[:, ~moving].any()
+    fewer = ParameterSet(bench, free_parameters(bench, ["valve.max_area_a", "command.delay"]))
+    alone = fit_from(Problem(fewer, experiments, 1e-3), fewer.unit())
+    assert held.chi_squared == pytest.approx(alone.chi_squared, rel=1e-6)
+    known = dict(zip(fewer.paths, alone.unit, strict=True))
+    found = {p: u for p, u, m in zip(parameters.paths, held.unit, moving, strict=True) if m}
+    assert found == {path: pytest.approx(known[path], abs=1e-4) for path in found}
