@@ -20,7 +20,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.search import FIDELITY, NEARLY, Search, cost_of, gain_needed
+from hydrolek_drake.diagnosis.growing import FIDELITY, NEARLY, gain_needed
+from hydrolek_drake.diagnosis.search import Search, cost_of
 from hydrolek_drake.diagnosis.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.evidence import Judged
+from hydrolek_drake.diagnosis.growing import POLISH
 from hydrolek_drake.diagnosis.laws import TERMS, span_of, variables_of
-from hydrolek_drake.diagnosis.search import POLISH, fit_baseline
+from hydrolek_drake.diagnosis.search import fit_baseline
 from hydrolek_drake.diagnosis.unlisted import find_law
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
