@@ -283,7 +283,8 @@ def integrate(
 
     Args:
         joints: parameter record, shape (1,).
-        state: x, spool velocity, then `State`; shape (11,); holds the final state afterwards.
+        state: x, spool velocity, then `State`, what the sensor's play reads, and the time since switching on [s] at
+            the first of `times`; shape (13,); holds the final state afterwards.
         command_times: when the command changes [s], shape (m,).
         command_values: held from then on [V], shape (m,).
         times: when to write [s], shape (n,); the integration starts at the first.
@@ -309,7 +310,8 @@ def integrate(
     begin = times[0]
     last = len(command_times) - 1
     held = 0
-    play = s.q - s.tilt
+    play = state[11]
+    on = begin - state[12]
     t = begin
     for row in range(len(times)):
         target = times[row]
@@ -328,7 +330,7 @@ def integrate(
             h = (until - t) / steps
             if h > 0.0:
                 for i in range(steps):
-                    time = t + i * h - begin
+                    time = t + i * h - on
                     drive_a, drive_b = amplifier.coil_currents(voltage, time + 0.5 * h, joint)
                     probe_next = _probe_at(t + (i + 1) * h, begin, probe_spacing, probe_values)
                     gain = 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
@@ -345,9 +347,9 @@ def integrate(
             return row
         probe = _probe_at(t, begin, probe_spacing, probe_values)
         voltage = command.drive_voltage(command_values[held] + probe.command, joint)
-        inertia = _inertia_at(t - begin, rod, joint)
-        _, _, p_supply, force = rates(s, x, voltage, t - begin, inertia, probe, joint)
-        out[row, 0] = sensor.reading(play, t - begin, joint) + probe.sensor
+        inertia = _inertia_at(t - on, rod, joint)
+        _, _, p_supply, force = rates(s, x, voltage, t - on, inertia, probe, joint)
+        out[row, 0] = sensor.reading(play, t - on, joint) + probe.sensor
         out[row, 1] = s.q
         out[row, 2] = s.w
         out[row, 3] = s.p_a
@@ -366,4 +368,5 @@ def integrate(
     state[0], state[1] = x, xd
     state[2], state[3], state[4], state[5], state[6] = s.p_a, s.p_b, s.q, s.w, s.flow
     state[7], state[8], state[9], state[10] = s.tilt, s.tilt_rate, s.lead_q, s.lead_w
+    state[11], state[12] = play, times[-1] - on
     return len(times)

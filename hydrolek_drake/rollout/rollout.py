@@ -10,7 +10,7 @@ from hydrolek_drake.physics import cylinder, hooks, linkage, load
 from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, flat, position_of
 from hydrolek_drake.rollout import kernel
 
-STATE_SIZE = 2 + len(kernel.State._fields)
+STATE_SIZE = 2 + len(kernel.State._fields) + 2
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Outcome:
     Attributes:
         signals: rows after the divergence are NaN.
         diverged: None, or where and how it diverged.
-        state: final state, to go on from.
+        state: final state, to go on from: also what the sensor's play reads and how long the machine has been on.
     """
 
     signals: Signals
@@ -49,12 +49,13 @@ def rest_state(joint: np.ndarray, position: float | None = None, time: float = 0
     Args:
         joint: parameter record, shape (1,).
         position: joint position [rad or m]; None for the rig's own.
-        time: [s], for loads that are picked up later.
+        time: since switching on [s], for loads that are picked up later and for what warms up.
     """
     record = joint[0]
     q = float(record["load"]["initial_position"]) if position is None else position
     state = np.zeros(STATE_SIZE)
-    state[4] = q
+    state[4] = state[11] = q
+    state[12] = time
     if record["cylinder"]["variant"] == cylinder.ELECTRIC_MOTOR:
         state[9] = q
         return state
@@ -62,6 +63,7 @@ def rest_state(joint: np.ndarray, position: float | None = None, time: float = 0
     tilt, lead = rest_tilt_and_lead(record, q, needed)
     state[2], state[3] = rest_pressures(record, lead - tilt, needed)
     state[7], state[9] = tilt, lead
+    state[11] = q - tilt
     return state
 
 

@@ -1,6 +1,7 @@
 """Order of the integrator, and independence of the steps."""
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
 from hydrolek_drake.rollout import roll_out
@@ -62,11 +63,25 @@ def test_step_between_changes_of_the_command_hardly_matters(bench):
     assert_allclose(coarse, fine, atol=np.radians(0.02))
 
 
-def test_a_rollout_in_two_parts_is_the_rollout_in_one(bench):
-    records = bench.records()
+@pytest.mark.parametrize(
+    "effect",
+    [
+        {},
+        {"amplifier.gain_fade": {"fraction": 0.3, "time_constant_s": 1.0}},
+        {"fluid.warm_up": {"fraction": 0.3, "time_constant_s": 1.0}},
+        {"sensor.drift": {"rate_rad_per_min": 0.5}},
+        {"sensor.hysteresis": {"half_width_rad": 0.02}},
+    ],
+    ids=lambda effect: next(iter(effect), "none"),
+)
+def test_a_rollout_in_two_parts_is_the_rollout_in_one(bench, effect):
+    """Also what warms up, drifts or plays goes on where it was."""
+    values = {f"effects.{name}.{key}": v for name, own in effect.items() for key, v in own.items()}
+    records = bench.with_values(values).records()
     times = np.arange(0.0, 2.0, 0.01)
     whole = roll_out(records, *_steps(), times, longest_step=5e-4)
     first = roll_out(records, *_steps(), times[:90], longest_step=5e-4)
     second = roll_out(records, *_steps(), times[89:], state=first.state, longest_step=5e-4)
     assert_allclose(second.signals.position, whole.signals.position[89:], rtol=1e-12)
+    assert_allclose(second.signals.reading, whole.signals.reading[89:], rtol=1e-12)
     assert_allclose(second.state, whole.state, rtol=1e-9, atol=1e-15)
