@@ -95,7 +95,7 @@ def draw_cases(rigs: Sequence[Rig], count: int, seed: int) -> list[Case]:
             names[1] = next(possible)
         level = "" if kind == "healthy" else next(levels) if kind == "single" else "middle"
         drafts.append((build, kind, level, names, [next(unlisted)] if kind == "unlisted" else []))
-    rng.shuffle(drafts)  # type: ignore[arg-type]  # a list of anything will do
+    rng.shuffle(drafts)
     return [_case(n, *draft, rng) for n, draft in enumerate(drafts, start=1)]
 
 

@@ -121,7 +121,7 @@ def _cell(value: Any) -> str:
 
 
 def _shows(result: Mapping[str, Any]) -> bool:
-    """Whether an effect shows as a visible one should; the largest size that is sensible may not. Old labels do not say."""
+    """Whether effects show as visible ones should; the largest sensible size may not. Old labels do not tell."""
     return all(shown > 0.5 * SHOWS["middle"] for shown in result["shows"].values())
 
 
@@ -149,8 +149,8 @@ def markdown(results: Sequence[Mapping[str, Any]]) -> str:
     for r in sorted(results, key=lambda r: (r["right"], r["name"])):
         p = "" if r["probability"] is None else f"{r['probability']:.2f}"
         lines.append(
-            f"| {r['name']} | {r['rig']} | {r['kind']} | {r['size']} | {r['drive']} | {'yes' if r['pressures'] else 'no'} | "
-            f"{', '.join(r['truth'])} | {r['verdict']} | {', '.join(r['named'])} | {p} | "
+            f"| {r['name']} | {r['rig']} | {r['kind']} | {r['size']} | {r['drive']} | "
+            f"{'yes' if r['pressures'] else 'no'} | {', '.join(r['truth'])} | {r['verdict']} | {', '.join(r['named'])} | {p} | "
             f"{'yes' if r['right'] else 'NO'} | {r['seconds']:.0f} |"
         )
     return "\n".join(lines) + "\n"
