@@ -150,7 +150,8 @@ def markdown(results: Sequence[Mapping[str, Any]]) -> str:
         p = "" if r["probability"] is None else f"{r['probability']:.2f}"
         lines.append(
             f"| {r['name']} | {r['rig']} | {r['kind']} | {r['size']} | {r['drive']} | "
-            f"{'yes' if r['pressures'] else 'no'} | {', '.join(r['truth'])} | {r['verdict']} | {', '.join(r['named'])} | {p} | "
+            f"{'yes' if r['pressures'] else 'no'} | {', '.join(r['truth'])} | {r['verdict']} | "
+            f"{', '.join(r['named'])} | {p} | "
             f"{'yes' if r['right'] else 'NO'} | {r['seconds']:.0f} |"
         )
     return "\n".join(lines) + "\n"
