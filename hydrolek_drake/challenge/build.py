@@ -9,7 +9,7 @@ import numpy as np
 import yaml
 
 from hydrolek_drake.challenge import arm_machine, bench_machine
-from hydrolek_drake.challenge.driving import Driving, Played, arm_driving, bench_driving
+from hydrolek_drake.challenge.driving import Driving, Played, arm_driving, bench_driving, unhindered
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
 
@@ -61,6 +61,10 @@ class Build:
     ) -> Played:
         """Run a machine; see `bench_machine.play`."""
         return self.run(machine, self.driving, command, set_points, noise, step)
+
+    def replay(self, machine: Any, volts: np.ndarray, step: float = bench_machine.STEP_S) -> Played:
+        """Apply voltages to a machine that were applied to another one."""
+        return self.run(machine, unhindered(self.driving), volts, None, None, step)
 
 
 def rig_names(choice: str) -> tuple[str, ...]:

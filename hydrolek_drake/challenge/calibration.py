@@ -17,34 +17,33 @@ def calibration_png(bins: Sequence[Mapping[str, Any]]) -> bytes:
     Args:
         bins: as from `scoring.summary`; empty ones are left out.
     """
-    figure = Figure(figsize=(5.5, 5.0), layout="constrained")
+    figure = Figure(figsize=(6.0, 4.5), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
-    axes.plot([0.0, 1.0], [0.0, 1.0], color="0.7", label="calibrated")
     filled = [b for b in bins if b["of"]]
-    for b in filled:
+    for place, b in enumerate(filled):
         interval = binomtest(b["count"], b["of"]).proportion_ci(CONFIDENCE, method="wilson")
-        axes.plot([b["mean"]] * 2, [interval.low, interval.high], color="tab:blue", linewidth=1.5)
-        axes.plot(b["mean"], b["share"], "o", color="tab:blue")
-        beside = b["mean"] < 0.5  # text stays inside
-        axes.annotate(
-            f"{b['count']} of {b['of']}",
-            (b["mean"], b["share"]),
-            xytext=(8 if beside else -8, -4),
-            textcoords="offset points",
-            ha="left" if beside else "right",
-            va="top",
+        axes.plot([place] * 2, [interval.low, interval.high], color="tab:blue")
+        axes.plot(place, b["share"], "o", color="tab:blue", label=None if place else "share that was right")
+        axes.plot(
+            [place - 0.3, place + 0.3],
+            [b["mean"]] * 2,
+            color="tab:orange",
+            label=None if place else "mean probability told",
         )
+    axes.set_xticks(
+        range(len(filled)), [f"{b['from']:g} to {b['to']:g}\n{b['count']} of {b['of']}" for b in filled]
+    )
     axes.set(
-        xlim=(-0.03, 1.03),
-        ylim=(-0.03, 1.03),
-        xlabel="probability with which effects were named",
-        ylabel="share of right answers",
+        ylim=(-0.02, 1.02),
+        xlabel="probability with which effects were named; how many were right",
         title=f"{sum(b['of'] for b in filled)} diagnoses that named effects; lines: {CONFIDENCE:.0%} intervals",
     )
     axes.title.set_fontsize("medium")
-    axes.grid(color="0.92")
-    axes.legend(loc="upper left", frameon=False)
+    axes.grid(axis="y", color="0.92")
+    if filled:
+        axes.set_xlim(-0.5, len(filled) - 0.5)
+        axes.legend(loc="lower right", frameon=False)
     data = io.BytesIO()
     figure.savefig(data, format="png", dpi=110)
     return data.getvalue()

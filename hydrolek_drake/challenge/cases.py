@@ -188,7 +188,7 @@ def _scaled(
 def _mismatch(build: Build, plain: Any, changed: Any, drive: str, seed: int) -> float:
     """Root mean square of what the machine without the effect does otherwise in the training data, over the noise."""
     done = _drive(build, changed, drive, TRAIN_S, np.random.default_rng(seed), 0.0, SIZING_STEP_S)
-    without = build.play(plain, done.volts, step=SIZING_STEP_S)
+    without = build.replay(plain, done.volts, SIZING_STEP_S)
     return float(np.sqrt(np.mean((done.reading - without.reading) ** 2))) / build.noise
 
 

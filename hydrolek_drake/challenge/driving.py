@@ -125,6 +125,11 @@ def _voltage(driving: Driving, signal: float) -> float:
     return -driving.least_b + signal * (driving.most_b - driving.least_b)
 
 
+def unhindered(driving: Driving) -> Driving:
+    """The same, but nobody turns back before an end: for voltages that were applied once and are applied again."""
+    return driving._replace(low_deg=-math.inf, high_deg=math.inf)
+
+
 @njit
 def controlled(error: float, driving: Any) -> float:
     """Voltage of a proportional controller that steps over the dead-zone [V]; `error` in rad."""

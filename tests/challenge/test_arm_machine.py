@@ -10,7 +10,7 @@ from scipy.constants import g as GRAVITY
 from hydrolek_drake.challenge.arm_body import turned_body
 from hydrolek_drake.challenge.arm_machine import LISTED
 from hydrolek_drake.challenge.build import ARM_JOINTS, Build, build_of
-from hydrolek_drake.challenge.driving import SAMPLE_S, Played, random_series
+from hydrolek_drake.challenge.driving import SAMPLE_S, Played, random_series, turned_back
 from hydrolek_drake.kinematics.arms import arms_urdf_path
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rollout.rollout import rest_state, roll_out
@@ -114,11 +114,7 @@ def test_an_effect_changes_both_alike(number: int, effect: str) -> None:
     fine = STEP_S if effect == "cylinder.stribeck_friction" else None
     plain, plain_rolled_out = _without(name, fine)
     joint, parameters = build.rig.joints[0], _parameters(build, effect)
-    # the voltages that were applied, again, without anyone turning back
-    anywhere = build.driving._replace(low_deg=-math.inf, high_deg=math.inf)
-    changed = build.run(
-        build.with_effects(build.nominal, {effect: parameters}), anywhere, plain.volts, None, None, STEP_S
-    )
+    changed = build.replay(build.with_effects(build.nominal, {effect: parameters}), plain.volts, STEP_S)
     with_it = build.rig.with_values(
         {f"joints.{joint}.effects.{effect}.{p}": v for p, v in parameters.items()}
     )
@@ -128,3 +124,22 @@ def test_an_effect_changes_both_alike(number: int, effect: str) -> None:
     assert _rms_deg(theirs - ours) < max(0.05 * _rms_deg(ours), 0.1 * ALLOWED_DEG)
     if effect != "cylinder.end_cushion":  # not every joint comes to its end in so short a time
         assert _rms_deg(ours) > ALLOWED_DEG
+
+
+def test_voltages_that_were_applied_are_applied_again_unchanged() -> None:
+    build = _build("hydrolek_left_j3")
+    plain, _ = _without("hydrolek_left_j3", None)
+    weaker = build.nominal._replace(
+        p_s=0.7 * build.nominal.p_s
+    )  # comes elsewhere, so it would be turned back elsewhere
+    assert np.array_equal(build.replay(weaker, plain.volts, STEP_S).volts, plain.volts)
+    assert not np.array_equal(build.play(weaker, plain.volts, step=STEP_S).volts, plain.volts)
+
+
+def test_a_joint_near_its_end_is_turned_back() -> None:
+    driving = _build("hydrolek_left_j3").driving
+    below, above = math.radians(driving.low_deg) - 0.01, math.radians(driving.high_deg) + 0.01
+    assert turned_back(2.0, above, driving) == turned_back(2.0, 0.0, driving) * -1.0 == -2.0
+    assert turned_back(-2.0, above, driving) == -2.0
+    assert turned_back(-2.0, below, driving) == 2.0
+    assert turned_back(2.0, below, driving) == 2.0
