@@ -128,12 +128,12 @@ def test_an_effect_changes_both_alike(number: int, effect: str) -> None:
 
 def test_voltages_that_were_applied_are_applied_again_unchanged() -> None:
     build = _build("hydrolek_left_j3")
-    plain, _ = _without("hydrolek_left_j3", None)
-    weaker = build.nominal._replace(
-        p_s=0.7 * build.nominal.p_s
-    )  # comes elsewhere, so it would be turned back elsewhere
-    assert np.array_equal(build.replay(weaker, plain.volts, STEP_S).volts, plain.volts)
-    assert not np.array_equal(build.play(weaker, plain.volts, step=STEP_S).volts, plain.volts)
+    upwards = np.repeat([0.0, 2.4, 0.0, 2.4], [50, 300, 50, 100])  # the first 3 s lead to the end
+    driven = build.play(build.nominal, upwards, step=STEP_S)
+    assert driven.reading[399] > math.radians(build.driving.high_deg)
+    assert driven.volts[-1] == -2.4  # turned back
+    again = build.replay(build.nominal, upwards, STEP_S)
+    assert np.array_equal(again.volts, upwards)
 
 
 def test_a_joint_near_its_end_is_turned_back() -> None:
