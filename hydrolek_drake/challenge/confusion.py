@@ -58,5 +58,5 @@ def _truth(result: Mapping[str, Any]) -> list[str]:
 def _named(result: Mapping[str, Any]) -> list[str]:
     named = list(result["named"])
     if result["verdict"] == "unlisted_physics":
-        named.append(f"unlisted at {result['stage']}")
+        named.append(f"unlisted at {result['stage']}" if result["stage"] else "unlisted, place unknown")
     return named

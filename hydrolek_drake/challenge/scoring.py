@@ -33,7 +33,7 @@ def score(case: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, Any]:
         "truth": sorted(truth) or sorted(case["unlisted"]),
         "verdict": report["verdict"],
         "named": sorted(named),
-        "shows": case.get("shows", {}),
+        "shows": _shown(case),
         "stage": stages[0] if stages else None,
         "probability": min((e["probability"] for e in report["effects"]), default=None),
         "seconds": report["seconds"],
@@ -53,6 +53,13 @@ def score(case: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, Any]:
         result["right_stage"] = set(case["stages"]) <= set(stages)
         result["parameter_errors"] = _errors(case["effects"], report["effects"])
     return result
+
+
+def _shown(case: Mapping[str, Any]) -> dict[str, float]:
+    """Effect -> how many times the noise it shows; old labels tell only how many were wanted."""
+    told: dict[str, float] = case.get("shows", {})
+    wanted = SHOWS.get(case["size"], 0.0)
+    return told or dict.fromkeys([*case["effects"], *case["unlisted"]], wanted)
 
 
 def _errors(truth: Mapping[str, Mapping[str, float]], told: Sequence[Mapping[str, Any]]) -> list[float]:
@@ -121,7 +128,7 @@ def _cell(value: Any) -> str:
 
 
 def _shows(result: Mapping[str, Any]) -> bool:
-    """Whether effects show as visible ones should; the largest sensible size may not. Old labels do not tell."""
+    """Whether effects show as visible ones should; the largest sensible size may not."""
     return all(shown > 0.5 * SHOWS["middle"] for shown in result["shows"].values())
 
 

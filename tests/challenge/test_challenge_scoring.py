@@ -143,6 +143,8 @@ def test_visibility_parts_found_from_missed_sizes() -> None:
 
     table = visibility_markdown([one(6.2, True), one(1.4, False), one(29.0, True)])
     assert "| a.x | 6.2, 29 | 1.4 | 6.2 | 1.4 |" in table
+    old = score(_case("single", ["a.x"], ["a"], size="middle"), _report("none"))  # tells what was wanted only
+    assert "| a.x |  | 6 |  | 6 |" in visibility_markdown([old])
 
 
 def test_calibration_picture_is_drawn_even_of_nothing() -> None:
