@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
+from hydrolek_drake.challenge.driving import SAMPLE_S, Driving, Played, controlled
 from hydrolek_drake.rigs import Rig
 
 STEP_S = 2e-5
-SAMPLE_S = 0.01
 
 
 class Machine(NamedTuple):
@@ -258,16 +258,16 @@ def _derivative(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) 
 @njit(cache=True, nogil=True)
 def _play(
     g: Any,
-    command: np.ndarray,
-    set_points: np.ndarray,
-    gain: float,
+    driving: Any,
+    closed: bool,
+    series: np.ndarray,
     noise: np.ndarray,
     y: np.ndarray,
     volts: np.ndarray,
     out: np.ndarray,
     inner: int,
 ) -> None:
-    """Run through all samples; with a gain the command is a proportional controller's with dead-zone compensation."""
+    """Run through all samples; `series` is the command, or the set points of a controller."""
     h = SAMPLE_S / inner
     k1, k2, k3, k4 = np.zeros(11), np.zeros(11), np.zeros(11), np.zeros(11)
     shaft = y[4] - y[9]
@@ -278,13 +278,7 @@ def _play(
         out[n, 0] = shaft + g.bow_rad * (1.0 - z * z) + g.drift_rad_per_min * t / 60.0
         out[n, 1] = y[2]
         out[n, 2] = y[3]
-        if gain > 0.0:
-            error = set_points[n] - out[n, 0] - noise[n]
-            volts[n] = 0.0
-            if abs(error) > 0.005:
-                volts[n] = min(max(gain * error + math.copysign(1.2, error), -10.0), 10.0)
-        else:
-            volts[n] = command[n]
+        volts[n] = controlled(series[n] - out[n, 0] - noise[n], driving) if closed else series[n]
         for i in range(inner):
             now = t + i * h
             place = math.floor((now + 0.5 * h - lag) / SAMPLE_S)
@@ -301,38 +295,28 @@ def _play(
             shaft = min(max(shaft, seen - g.play_rad), seen + g.play_rad)
 
 
-class Played(NamedTuple):
-    """What a machine did, without noise: applied voltage, reading [rad], pressures [Pa]. # (n,) each."""
-
-    volts: np.ndarray
-    reading: np.ndarray
-    pressure_a: np.ndarray
-    pressure_b: np.ndarray
-
-
 def play(
     machine: Machine,
+    driving: Driving,
     command: np.ndarray | None,
     set_points: np.ndarray | None = None,
-    gain: float = 0.0,
     noise: np.ndarray | None = None,
     step: float = STEP_S,
 ) -> Played:
-    """Run a machine from rest at 25 deg, by a voltage or by a controller that follows set points.
+    """Run a machine from rest where it is driven from, by a voltage or by a controller that follows set points.
 
     Args:
         machine: its numbers.
+        driving: start and controller.
         command: voltage every 10 ms; None for a controller. # (n,)
         set_points: for the controller [rad]. # (n,)
-        gain: of the controller [V/rad].
         noise: what the controller's measurement adds [rad]. # (n,)
         step: of the Runge-Kutta method [s].
     """
-    given = command if command is not None else set_points
-    assert given is not None
-    count = len(given)
-    nothing = np.zeros(count)
-    start = math.radians(25.0)
+    series = command if command is not None else set_points
+    assert series is not None
+    count = len(series)
+    start = math.radians(driving.start_deg)
     y = np.zeros(11)
     _, lever = _cylinder(machine, start)
     moment = machine.mgl * math.cos(start)
@@ -347,10 +331,10 @@ def play(
     volts, out = np.zeros(count), np.zeros((count, 3))
     _play(
         machine,
-        nothing if command is None else np.asarray(command, dtype=float),
-        nothing if set_points is None else np.asarray(set_points, dtype=float),
-        gain,
-        nothing if noise is None else noise,
+        driving,
+        command is None,
+        np.asarray(series, dtype=float),
+        np.zeros(count) if noise is None else noise,
         y,
         volts,
         out,

@@ -6,6 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from hydrolek_drake.challenge.build import BENCH
+from hydrolek_drake.challenge.cases import SHOWS
+
 BINS = (0.0, 0.5, 0.7, 0.9, 0.99, 1.0 + 1e-9)
 """Edges of the probabilities for the calibration."""
 
@@ -22,6 +25,7 @@ def score(case: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, Any]:
     stages = [place["stage"] for place in report["locations"]]
     result = {
         "name": case["name"],
+        "rig": case.get("rig", BENCH),
         "kind": case["kind"],
         "size": case["size"],
         "drive": case["drive"],
@@ -29,6 +33,8 @@ def score(case: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, Any]:
         "truth": sorted(truth) or sorted(case["unlisted"]),
         "verdict": report["verdict"],
         "named": sorted(named),
+        "shows": _shown(case),
+        "stage": stages[0] if stages else None,
         "probability": min((e["probability"] for e in report["effects"]), default=None),
         "seconds": report["seconds"],
         "holdout_over_noise": (report["fit"] or {}).get("with_effects", {}).get("holdout_over_noise"),
@@ -49,6 +55,13 @@ def score(case: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, Any]:
     return result
 
 
+def _shown(case: Mapping[str, Any]) -> dict[str, float]:
+    """Effect -> how many times the noise it shows; old labels tell only how many were wanted."""
+    told: dict[str, float] = case.get("shows", {})
+    wanted = SHOWS.get(case["size"], 0.0)
+    return told or dict.fromkeys([*case["effects"], *case["unlisted"]], wanted)
+
+
 def _errors(truth: Mapping[str, Mapping[str, float]], told: Sequence[Mapping[str, Any]]) -> list[float]:
     found = {e["id"]: e["parameters"] for e in told}
     return [
@@ -66,7 +79,7 @@ def summary(results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         kind: [r for r in results if r["kind"] == kind]
         for kind in ("healthy", "single", "double", "unlisted")
     }
-    visible = [r for r in of["single"] if r["size"] != "barely"]
+    visible = [r for r in of["single"] if r["size"] != "barely" and _shows(r)]
     errors = [error for r in results for error in r.get("parameter_errors", [])]
     seconds = [r["seconds"] for r in results]
     return {
@@ -74,7 +87,7 @@ def summary(results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         "false_alarms": _told([not r["right"] for r in of["healthy"]]),
         "visible_singles_right": _told([r["right"] for r in visible]),
         "visible_singles_right_stage": _told([r["right_stage"] for r in visible]),
-        "barely_visible_singles_right": _told([r["right"] for r in of["single"] if r["size"] == "barely"]),
+        "barely_visible_singles_right": _told([r["right"] for r in of["single"] if r not in visible]),
         "doubles_right": _told([r["right"] for r in of["double"]]),
         "unlisted_recognised": _told([r["right"] for r in of["unlisted"]]),
         "unlisted_right_stage": _told([r["right_stage"] for r in of["unlisted"]]),
@@ -87,6 +100,38 @@ def summary(results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     }
 
 
+def summaries(results: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
+    """Shares over all cases, over the bench's and the arms', and over each rig's."""
+    groups: dict[str, list[Mapping[str, Any]]] = {"all": list(results)}
+    groups["bench"] = [r for r in results if r["rig"] == BENCH]
+    groups["arms"] = [r for r in results if r["rig"] != BENCH]
+    for name in sorted({r["rig"] for r in groups["arms"]}):
+        groups[name] = [r for r in results if r["rig"] == name]
+    return {name: summary(members) for name, members in groups.items() if members}
+
+
+def summaries_markdown(told_by: Mapping[str, Mapping[str, Any]]) -> str:
+    """One row a share, one column a group of rigs."""
+    rows = [name for name in next(iter(told_by.values())) if name != "calibration"]
+    lines = ["| | " + " | ".join(told_by) + " |", "|---" * (len(told_by) + 1) + "|"]
+    lines += [
+        f"| {row.replace('_', ' ')} | " + " | ".join(_cell(told[row]) for told in told_by.values()) + " |"
+        for row in rows
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return f"{value['count']} of {value['of']}" if value["of"] else "-"
+    return "-" if value is None else f"{value:.3g}"
+
+
+def _shows(result: Mapping[str, Any]) -> bool:
+    """Whether effects show as visible ones should; the largest sensible size may not."""
+    return all(shown > 0.5 * SHOWS["middle"] for shown in result["shows"].values())
+
+
 def _told(right: Sequence[bool]) -> dict[str, Any]:
     return {"count": sum(right), "of": len(right), "share": sum(right) / len(right) if right else None}
 
@@ -97,21 +142,23 @@ def _calibration(results: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     told = []
     for low, high in itertools.pairwise(BINS):
         inside = [r for r in named if low <= r["probability"] < high]
-        told.append({"from": low, "to": min(high, 1.0), **_told([r["right"] for r in inside])})
+        mean = float(np.mean([r["probability"] for r in inside])) if inside else None
+        told.append({"from": low, "to": min(high, 1.0), "mean": mean, **_told([r["right"] for r in inside])})
     return told
 
 
 def markdown(results: Sequence[Mapping[str, Any]]) -> str:
     """Every case in a table, failures first."""
     lines = [
-        "| case | kind | size | drive | pressures | concealed | verdict | named | p | right | s |",
-        "|---" * 11 + "|",
+        "| case | rig | kind | size | drive | pressures | concealed | verdict | named | p | right | s |",
+        "|---" * 12 + "|",
     ]
     for r in sorted(results, key=lambda r: (r["right"], r["name"])):
         p = "" if r["probability"] is None else f"{r['probability']:.2f}"
         lines.append(
-            f"| {r['name']} | {r['kind']} | {r['size']} | {r['drive']} | {'yes' if r['pressures'] else 'no'} | "
-            f"{', '.join(r['truth'])} | {r['verdict']} | {', '.join(r['named'])} | {p} | "
+            f"| {r['name']} | {r['rig']} | {r['kind']} | {r['size']} | {r['drive']} | "
+            f"{'yes' if r['pressures'] else 'no'} | {', '.join(r['truth'])} | {r['verdict']} | "
+            f"{', '.join(r['named'])} | {p} | "
             f"{'yes' if r['right'] else 'NO'} | {r['seconds']:.0f} |"
         )
     return "\n".join(lines) + "\n"

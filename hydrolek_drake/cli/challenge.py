@@ -14,6 +14,13 @@ def challenge(
     cases: Annotated[int, typer.Option(help="how many machines are drawn")] = 200,
     first: Annotated[int | None, typer.Option(help="diagnose only so many of them, a fair sample")] = None,
     seed: Annotated[int, typer.Option(help="of machines, effects, commands and noise")] = 1,
+    rig: Annotated[
+        str,
+        typer.Option(
+            help="whose machines: joint_bench, hydrolek_left_j1 to hydrolek_right_j5, arms (all ten joints), "
+            "or all (the bench too)"
+        ),
+    ] = "joint_bench",
     workers: Annotated[
         int | None, typer.Option(help="threads; as many as there are cores by default")
     ] = None,
@@ -29,8 +36,12 @@ def challenge(
 
     from rich.console import Console
 
-    from hydrolek_drake.challenge.cases import digest, draw_cases, labels_of, record
-    from hydrolek_drake.challenge.scoring import markdown, score, summary
+    from hydrolek_drake.challenge.build import BENCH, rig_names
+    from hydrolek_drake.challenge.calibration import calibration_png
+    from hydrolek_drake.challenge.cases import digest, draw_cases, labels_of, read_case, record
+    from hydrolek_drake.challenge.confusion import confusion_markdown
+    from hydrolek_drake.challenge.scoring import markdown, score, summaries, summaries_markdown
+    from hydrolek_drake.challenge.visibility import visibility_markdown
     from hydrolek_drake.cli.output import console
     from hydrolek_drake.diagnosis.diagnosis import INTERRUPTED, diagnose
     from hydrolek_drake.diagnosis.report_json import as_json
@@ -43,16 +54,16 @@ def challenge(
         if value is not None and value < 1:
             raise InputError(f"{name} {value}: at least 1 is needed")
     output, progress = console(), Console(stderr=True)
+    drawn_of = rig_names(rig)
     prepare_folder(out)
-    rig = load_rig("joint_bench", {})
-    kept = out / f"labels_{cases}_{seed}.json"
+    rigs = {name: load_rig(name, {}) for name in dict.fromkeys(drawn_of)}
+    sample = f"{cases}_{seed}" if rig == BENCH else f"{rig}_{cases}_{seed}"
+    kept = out / f"labels_{sample}.json"
     with progress.status("drawing machines (sizes are found by simulation) ..."):
         if kept.exists():
             labels = kept.read_text()
-            drawn = None
         else:
-            drawn = draw_cases(rig, cases, seed)
-            labels = labels_of(drawn)
+            labels = labels_of(draw_cases([rigs[name] for name in drawn_of], cases, seed))
             write_whole(kept, labels)
     output.print(f"sha256 of the labels: {digest(labels)}")
     told: list[dict[str, Any]] = json.loads(labels)[:first]
@@ -60,25 +71,26 @@ def challenge(
     with progress.status("") as status, ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
         for number, label in enumerate(told, start=1):
             status.update(f"case {number} of {len(told)} ...")
-            folder = out / f"{label['name']}_{cases}_{seed}"
+            folder = out / f"{label['name']}_{sample}"
             report = folder / "report.json"
             if not report.exists():
-                record(rig, _case(label), folder)
+                case = read_case(label)
+                machine = rigs[case.rig]
+                record(machine, case, folder)
                 recordings = [
-                    read_recording(folder / f"{side}.csv", rig.columns) for side in ("train", "holdout")
+                    read_recording(folder / f"{side}.csv", machine.columns) for side in ("train", "holdout")
                 ]
-                done = diagnose(rig, recordings[:1], recordings[1:], pool)
+                done = diagnose(machine, recordings[:1], recordings[1:], pool)
                 if INTERRUPTED in done.reasons:
                     raise KeyboardInterrupt
                 write_whole(report, json.dumps(as_json(done), indent=1))
             results.append(score(label, json.loads(report.read_text())))
-    write_whole(out / "summary.json", json.dumps({"summary": summary(results), "cases": results}, indent=1))
+    told_by = summaries(results)
+    write_whole(out / "summary.json", json.dumps({"summary": told_by, "cases": results}, indent=1))
+    write_whole(out / "summary.md", summaries_markdown(told_by))
     write_whole(out / "cases.md", markdown(results))
-    for name, value in summary(results).items():
-        output.print(f"{name}: {value}", markup=False, soft_wrap=True)
-
-
-def _case(label: dict[str, Any]) -> Any:
-    from hydrolek_drake.challenge.cases import Case
-
-    return Case(**{**label, "stages": tuple(label["stages"])})
+    write_whole(out / "confusion.md", confusion_markdown(results))
+    write_whole(out / "visibility.md", visibility_markdown(results))
+    write_whole(out / "calibration.png", calibration_png(told_by["all"]["calibration"]))
+    output.print(summaries_markdown(told_by), markup=False, soft_wrap=True)
+    output.print(f"cases, confusion, visibility and calibration: {out}", markup=False, soft_wrap=True)

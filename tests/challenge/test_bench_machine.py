@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.challenge.bench_machine import LISTED, nominal_machine, play, with_effects
+from hydrolek_drake.challenge.driving import bench_driving
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.rigs import load_rig
 
@@ -28,7 +29,7 @@ def test_it_reproduces_the_practice_recordings_to_the_noise(pair: str) -> None:
     own = {FIELDS[name]: value for name, value in label["machine"].items()}
     machine = with_effects(nominal_machine(rig)._replace(**own), label["effects"])
     recording = read_recording(DATA / pair / "train.csv", rig.columns)
-    done = play(machine, np.asarray(recording.signal("joint.command"))[:SAMPLES])
+    done = play(machine, bench_driving(), np.asarray(recording.signal("joint.command"))[:SAMPLES])
     left = np.degrees(np.asarray(recording.signal("joint.angle"))[:SAMPLES] - done.reading)
     # the deviation of 1000 samples of noise is known to 2.2 %; three times that
     assert np.sqrt(np.mean(left**2)) < 1.07 * NOISE_DEG

@@ -2,10 +2,18 @@
 
 import json
 
+import numpy as np
 import pytest
 
-from hydrolek_drake.challenge.cases import _in_turn, digest
-from hydrolek_drake.challenge.scoring import markdown, score, summary
+from hydrolek_drake.challenge.build import ARM_JOINTS, BENCH, build_of, rig_names
+from hydrolek_drake.challenge.calibration import calibration_png
+from hydrolek_drake.challenge.cases import _in_turn, digest, draw_cases, labels_of, read_case, record
+from hydrolek_drake.challenge.confusion import confusion_markdown, confusions
+from hydrolek_drake.challenge.scoring import markdown, score, summaries, summaries_markdown, summary
+from hydrolek_drake.challenge.visibility import visibility_markdown
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.recordings import read_recording
+from hydrolek_drake.rigs import load_rig
 
 
 def _report(verdict, effects=(), stages=(), groups=(), probability=0.99):
@@ -21,10 +29,11 @@ def _report(verdict, effects=(), stages=(), groups=(), probability=0.99):
     }
 
 
-def _case(kind, effects=(), stages=(), size="large", unlisted=()):
+def _case(kind, effects=(), stages=(), size="large", unlisted=(), **more):
     return {
         "name": "case", "kind": kind, "size": size, "drive": "open", "pressures": False,
         "effects": {e: {"a": 1.0} for e in effects}, "unlisted": {u: {} for u in unlisted}, "stages": list(stages),
+        **more,
     }  # fmt: skip
 
 
@@ -73,8 +82,114 @@ def test_the_hash_changes_with_any_label() -> None:
 
 
 def test_every_effect_has_its_turn() -> None:
-    import numpy as np
-
     turn = _in_turn(["a", "b", "c"], np.random.default_rng(1))
     first = [next(turn) for _ in range(6)]
     assert sorted(first[:3]) == sorted(first[3:]) == ["a", "b", "c"]
+
+
+def test_each_group_of_rigs_counts_its_own() -> None:
+    bench = score(_case("healthy"), _report("none"))  # an old label, which names no rig
+    arm = score(_case("healthy", rig="hydrolek_left_j3"), _report("missing_physics", ["x.y"], ["x"]))
+    told = summaries([bench, arm])
+    assert told["all"]["false_alarms"]["of"] == 2
+    assert told["bench"]["false_alarms"]["count"] == 0
+    assert told["arms"]["false_alarms"] == told["hydrolek_left_j3"]["false_alarms"]
+    assert "| false alarms | 1 of 2 | 0 of 1 | 1 of 1 | 1 of 1 |" in summaries_markdown(told)
+
+
+def test_an_effect_that_its_machine_hardly_shows_counts_as_barely_visible() -> None:
+    report = _report("none")
+    hidden = score(_case("single", ["a.x"], ["a"], shows={"a.x": 0.4}), report)
+    plain = score(_case("single", ["a.x"], ["a"], shows={"a.x": 28.0}), report)
+    told = summary([hidden, plain])
+    assert told["visible_singles_right"]["of"] == told["barely_visible_singles_right"]["of"] == 1
+
+
+def test_confusion_has_the_right_ones_on_its_diagonal() -> None:
+    told = confusions(
+        [
+            score(_case("healthy"), _report("none")),
+            score(
+                _case("double", ["a.x", "b.y"], ["a", "b"]), _report("missing_physics", ["a.x", "c.z"], ["a", "c"])
+            ),
+            score(_case("single", ["b.y"], ["b"]), _report("none")),
+            score(
+                _case("unlisted", stages=["supply"], unlisted=["supply.ripple"]),
+                _report("unlisted_physics", ["unlisted.load"], ["load"]),
+            ),
+        ]
+    )  # fmt: skip
+    assert told == {
+        ("nothing", "nothing"): 1,
+        ("a.x", "a.x"): 1,
+        ("b.y", "c.z"): 1,
+        ("b.y", "nothing"): 1,
+        ("unlisted: supply.ripple", "unlisted at load"): 1,
+    }
+
+
+def test_confusion_table_has_a_row_for_each_thing_concealed() -> None:
+    missed = score(_case("single", ["b.y"], ["b"]), _report("none"))
+    alarmed = score(_case("healthy"), _report("missing_physics", ["b.y"], ["b"]))
+    lines = confusion_markdown([missed, alarmed]).splitlines()
+    assert lines[0] == "| concealed \\ named | nothing | b.y |"
+    assert lines[2:] == ["| nothing |  | 1 |", "| b.y | 1 |  |"]
+
+
+def test_visibility_parts_found_from_missed_sizes() -> None:
+    def one(shown, named):
+        report = _report("missing_physics" if named else "none", ["a.x"] if named else [], ["a"])
+        return score(_case("single", ["a.x"], ["a"], shows={"a.x": shown}), report)
+
+    table = visibility_markdown([one(6.2, True), one(1.4, False), one(29.0, True)])
+    assert "| a.x | 6.2, 29 | 1.4 | 6.2 | 1.4 |" in table
+    old = score(_case("single", ["a.x"], ["a"], size="middle"), _report("none"))  # tells what was wanted only
+    assert "| a.x |  | 6 |  | 6 |" in visibility_markdown([old])
+
+
+def test_calibration_picture_is_drawn_even_of_nothing() -> None:
+    for results in ([], [score(_case("single", ["a.x"], ["a"]), _report("missing_physics", ["a.x"], ["a"]))]):
+        assert calibration_png(summary(results)["calibration"]).startswith(b"\x89PNG")
+
+
+def test_a_choice_of_rigs_is_one_or_a_group() -> None:
+    assert rig_names("hydrolek_right_j4") == ("hydrolek_right_j4",)
+    assert set(rig_names("all")) == {BENCH, *ARM_JOINTS}
+    with pytest.raises(InputError, match="--rig emps"):
+        rig_names("emps")
+
+
+@pytest.mark.parametrize("name", [BENCH, *ARM_JOINTS])
+def test_every_size_fits_its_machine(name: str) -> None:
+    build = build_of(load_rig(name, {}))
+    fields = set(build.nominal._fields)
+    for effect, entry in build.listed.items():
+        assert build.with_effects(
+            build.nominal, {effect: entry["size"] | dict.fromkeys(entry.get("draw", {}), 1.0)}
+        )
+    for entry in build.unlisted.values():
+        assert {*entry["size"], *entry.get("draw", {})} <= fields
+        assert "stage" in entry
+
+
+def test_an_old_label_is_a_case_of_the_bench() -> None:
+    label = _case("healthy") | {"machine": {}, "seed": 1}
+    assert read_case(label).rig == BENCH
+
+
+def test_cases_of_joints_are_drawn_alike_and_recorded_with_their_noise(tmp_path) -> None:
+    rigs = [load_rig(name, {}) for name in ("hydrolek_left_j3", "hydrolek_right_j5")]
+    # the first kind of all is healthy, which needs no size and so no time
+    cases = [case for seed in (1, 2) for case in draw_cases(rigs, 1, seed)]
+    assert labels_of(cases[:1]) == labels_of(draw_cases(rigs, 1, 1))
+    assert {case.kind for case in cases} == {"healthy"}
+    case = cases[0]
+    rig = next(rig for rig in rigs if rig.name == case.rig)
+    record(rig, case, tmp_path)
+    angle = read_recording(tmp_path / "train.csv", rig.columns).signal(f"{rig.joints[0]}.angle")
+    noise = rig.value("sensor.noise")
+    rest = np.asarray(angle)[:50] - rig.value(
+        "load.initial_position"
+    )  # nothing moves in the first half second
+    # 50 samples know their deviation to 10 %; three times that, and the resolution's rounding
+    assert noise * 0.7 < np.sqrt(np.mean(rest**2)) < noise * 1.35
