@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -13,6 +14,36 @@ EDGE = 1e-6
 """Starts are pulled so far inside the cube: the trust-region method walks in the interior."""
 
 LOSSES = ("linear", "soft_l1", "huber", "cauchy")
+
+
+class LeastSquares(Protocol):
+    """What a search needs of a problem; see `Problem`."""
+
+    @property
+    def evaluations(self) -> int:
+        """Rollouts of all experiments so far."""
+        ...
+
+    @property
+    def counted(self) -> int:
+        """How many measured values count."""
+        ...
+
+    def residuals(self, unit: np.ndarray) -> np.ndarray:
+        """Residuals in units of their noise. # (n,) -> (values,)."""
+        ...
+
+    def jacobian(self, unit: np.ndarray, at: np.ndarray | None = None) -> np.ndarray:
+        """Their change with each parameter's place. # (values, n)."""
+        ...
+
+    def prior_residuals(self, unit: np.ndarray) -> np.ndarray:
+        """Distances from a prior, in standard deviations."""
+        ...
+
+    def prior_jacobian(self) -> np.ndarray:
+        """Their change with each parameter's place."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -59,7 +90,7 @@ class Fit:
 
 
 def fit_from(
-    problem: Problem,
+    problem: LeastSquares,
     start: np.ndarray,
     *,
     loss: str = "linear",
@@ -104,7 +135,7 @@ def fit_from(
         ftol=tolerance,
         gtol=1e-12,
     )
-    values = len(result.fun) - len(result.x)
+    values = len(result.fun) - len(prior_jacobian)
     return Fit(
         unit=result.x,
         residuals=result.fun[:values],
