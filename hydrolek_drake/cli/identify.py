@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from hydrolek_drake.cli.force import force
 from hydrolek_drake.cli.settings import SetOption, parse_settings
 from hydrolek_drake.cli.two_step import two_step
 from hydrolek_drake.errors import InputError
@@ -114,3 +115,4 @@ def sdp(
 
 
 identify.command("two-step")(two_step)
+identify.command()(force)
