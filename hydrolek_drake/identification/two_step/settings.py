@@ -1,6 +1,5 @@
 """What is searched in each step and where it may lie: `two_step.yaml`, and its parameters on a rig."""
 
-import math
 from dataclasses import replace
 from functools import cache
 from importlib.resources import files
@@ -15,8 +14,8 @@ from hydrolek_drake.rigs.rig import declaration
 MASSES = ("inertia", "gravity_cos", "gravity_sin")
 """What the CAD model says of a load; all grow with the links' masses."""
 
-NO_MOMENT = 1e-6
-"""Gravity below this part of the largest moment of the load at 1 g is none: a joint with a vertical axis."""
+NO_GRAVITY = 1e-6
+"""Gravity that would accelerate the load by less [rad/s^2] is none: a joint with a vertical axis."""
 
 
 @cache
@@ -71,11 +70,11 @@ def mechanical_ranges(rig: Rig, joint: str) -> dict[str, tuple[float, float, str
     step = two_step_data()["step_one"]
     factor = float(step["known_within"]["value"])
     ranges: dict[str, tuple[float, float, str]] = {}
-    weight = math.hypot(*(rig.value(f"joints.{joint}.load.{name}") for name in MASSES))
+    inertia = rig.value(f"joints.{joint}.load.inertia")
     for name in MASSES:
         path = f"joints.{joint}.load.{name}"
         value = rig.value(path)
-        if abs(value) > NO_MOMENT * weight:
+        if abs(value) > NO_GRAVITY * inertia:
             low, high = sorted((value / factor, value * factor))
             ranges[path] = (low, high, "log" if low > 0.0 else "linear")
     low, high = map(float, step["damping"]["range"])
@@ -86,6 +85,7 @@ def mechanical_ranges(rig: Rig, joint: str) -> dict[str, tuple[float, float, str
 def hydraulic_ranges(rig: Rig, joint: str) -> dict[str, tuple[float, float, str]]:
     """The parameters of Table 4.1 on this rig, in the table's order."""
     data = two_step_data()
+    factors = data["factor_without_range"]
     ranges: dict[str, tuple[float, float, str]] = {}
     for row in data["table_4_1"].values():
         short = str(row["path"])
@@ -94,7 +94,7 @@ def hydraulic_ranges(rig: Rig, joint: str) -> dict[str, tuple[float, float, str]
         if entry.range is not None:
             ranges[path] = (*entry.range, entry.scale)
         else:
-            factor = float(data["factor_without_range"].get(short, {"value": 2.0})["value"])
+            factor = float(factors.get(short, factors["any other"])["value"])
             ranges[path] = (rig.value(path) / factor, rig.value(path) * factor, "log")
     return ranges
 
