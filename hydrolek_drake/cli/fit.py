@@ -35,6 +35,10 @@ def fit(
     overdue: Annotated[
         float | None, typer.Option(metavar="SECONDS", help="an evaluation that takes longer has failed")
     ] = None,
+    profile: Annotated[
+        list[str] | None,
+        typer.Option(metavar="PATH", help="also the profile likelihood of this parameter (repeatable)"),
+    ] = None,
     set_: SetOption = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="folder for rig_fitted.yaml, fit.json, checkpoint")
@@ -51,8 +55,10 @@ def fit(
 
     from hydrolek_drake.cli.output import console
     from hydrolek_drake.identification.fit import fit_rig
+    from hydrolek_drake.identification.fit.profiles import check_profiled, profiles_of, write_profiles
     from hydrolek_drake.identification.fit.report import sentences, write_fit
     from hydrolek_drake.identification.least_squares import LOSSES
+    from hydrolek_drake.identification.parameter_set import free_parameters
     from hydrolek_drake.recordings import read_recording
     from hydrolek_drake.rigs import load_rig
 
@@ -66,6 +72,9 @@ def fit(
             raise InputError(f"recording {path} is given twice")
     output, progress = console(), Console(stderr=True)
     loaded = load_rig(rig, parse_settings(set_))
+    profiled = check_profiled(
+        loaded, profile or [], [free.path for free in free_parameters(loaded, parameter)]
+    )
     read = [read_recording(path, loaded.columns) for path in recordings]
     held = [read_recording(path, loaded.columns) for path in holdout or []]
     with progress.status("fitting") as status:
@@ -97,3 +106,13 @@ def fit(
             output.print(f"wrote {file}", markup=False, soft_wrap=True)
     if fitted.interrupted:
         raise KeyboardInterrupt
+    if profiled:
+        with progress.status("profile likelihood") as status:
+            profiles = profiles_of(fitted, read, profiled, status.update)
+        for one in profiles:
+            output.print(one.sentence(), markup=False, soft_wrap=True)
+        if out is not None:
+            for file in write_profiles(profiles, out):
+                output.print(f"wrote {file}", markup=False, soft_wrap=True)
+        if profiles[-1].curve.interrupted:
+            raise KeyboardInterrupt

@@ -5,7 +5,9 @@ from typing import Annotated
 
 import typer
 
+from hydrolek_drake.cli.force import force
 from hydrolek_drake.cli.settings import SetOption, parse_settings
+from hydrolek_drake.cli.two_step import two_step
 from hydrolek_drake.errors import InputError
 
 identify = typer.Typer(add_completion=False, rich_markup_mode=None)
@@ -110,3 +112,7 @@ def sdp(
     if out is not None:
         for path in write_report(results, out):
             output.print(f"wrote {path}", markup=False, soft_wrap=True)
+
+
+identify.command("two-step")(two_step)
+identify.command()(force)

@@ -26,6 +26,10 @@ def sensitivity(
     ] = 0.2,
     segments: Annotated[int, typer.Option(min=1, help="equal parts of the time")] = 8,
     trajectories: Annotated[int, typer.Option(min=2, help="of the elementary effects (Morris)")] = 10,
+    sobol: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="also Sobol indices, from N (parameters + 2) runs; a power of two"),
+    ] = None,
     top: Annotated[int, typer.Option(min=1, help="rows of the table")] = 20,
     set_: SetOption = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="folder for numbers and pictures")] = None,
@@ -38,10 +42,13 @@ def sensitivity(
 
     from hydrolek_drake.cli.output import console
     from hydrolek_drake.identification.sensitivity.report import short, write_study
+    from hydrolek_drake.identification.sensitivity.sobol import check_points
     from hydrolek_drake.identification.sensitivity.study import study_sensitivity
     from hydrolek_drake.recordings import read_recording
     from hydrolek_drake.rigs import load_rig
 
+    if sobol is not None:
+        check_points(sobol)
     output, progress = console(), Console(stderr=True)
     loaded = load_rig(rig, parse_settings(set_))
     read = None if recording is None else read_recording(recording, loaded.columns)
@@ -57,11 +64,17 @@ def sensitivity(
                 spread=spread,
                 segments=segments,
                 trajectories=trajectories,
+                sobol_points=sobol,
                 say=lambda text, name=name: status.update(f"{name}: {text}"),  # type: ignore[misc]
             )
         unit = study.response.unit
         table = Table(
-            f"{name}", f"mu* [{unit}]", f"sigma [{unit}]", f"one at a time [{unit}]", "most in segment"
+            f"{name}",
+            f"mu* [{unit}]",
+            f"sigma [{unit}]",
+            f"one at a time [{unit}]",
+            "most in segment",
+            *(() if study.sobol is None else ("Sobol alone", "Sobol total")),
         )
         for i in study.ranking[:top]:
             table.add_row(
@@ -70,8 +83,25 @@ def sensitivity(
                 f"{np.sqrt((study.effects.deviation[i] ** 2).mean()):.3g}",
                 f"{np.sqrt((study.one_at_a_time.spread[i] ** 2).mean()):.3g}",
                 f"{int(np.argmax(study.effects.mean_size[i])) + 1}",
+                *(
+                    ()
+                    if study.sobol is None
+                    else (
+                        f"{study.sobol.first_whole[i]:.3f}",
+                        f"{study.sobol.total_whole[i]:.3f} ({study.sobol.total_low[i]:.3f} to "
+                        f"{study.sobol.total_high[i]:.3f})",
+                    )
+                ),
             )
         output.print(table)
+        if study.sobol is not None:
+            alone = float(study.sobol.first_whole.sum())
+            runs = study.sobol.points * (len(study.paths) + 2)
+            output.print(
+                f"{name}: parameters alone explain {100.0 * alone:.0f} % of the variance, the rest comes of several "
+                f"together; {study.sobol.diverged} of {runs} runs diverged somewhere",
+                soft_wrap=True,
+            )
         output.print(
             f"{name}: {len(study.paths)} parameters varied, {len(study.varied.left_out)} left out; "
             f"{len(study.known.blurred())} combinations are not determined within their range by this command",

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -13,6 +14,38 @@ EDGE = 1e-6
 """Starts are pulled so far inside the cube: the trust-region method walks in the interior."""
 
 LOSSES = ("linear", "soft_l1", "huber", "cauchy")
+
+
+class LeastSquares(Protocol):
+    """What a search needs of a problem; see `Problem`."""
+
+    @property
+    def evaluations(self) -> int:
+        """Rollouts of all experiments so far."""
+        ...
+
+    @property
+    def counted(self) -> int:
+        """How many measured values count."""
+        ...
+
+    def residuals(self, unit: np.ndarray) -> np.ndarray:
+        """Residuals in units of their noise. # (n,) -> (values,)."""
+        ...
+
+    def jacobian(
+        self, unit: np.ndarray, at: np.ndarray | None = None, moving: np.ndarray | None = None
+    ) -> np.ndarray:
+        """Their change with each parameter's place, zero for those that are held. # (values, n)."""
+        ...
+
+    def prior_residuals(self, unit: np.ndarray) -> np.ndarray:
+        """Distances from a prior, in standard deviations."""
+        ...
+
+    def prior_jacobian(self) -> np.ndarray:
+        """Their change with each parameter's place."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -59,7 +92,7 @@ class Fit:
 
 
 def fit_from(
-    problem: Problem,
+    problem: LeastSquares,
     start: np.ndarray,
     *,
     loss: str = "linear",
@@ -82,8 +115,9 @@ def fit_from(
     before = problem.evaluations
     known: dict[bytes, np.ndarray] = {}
 
-    inside = np.clip(start, EDGE, 1.0 - EDGE)
-    searched = np.flatnonzero(np.ones(inside.size) if moving is None else moving)
+    searched = np.flatnonzero(np.ones(start.size) if moving is None else moving)
+    inside = np.array(start, dtype=float)
+    inside[searched] = np.clip(start[searched], EDGE, 1.0 - EDGE)
 
     def whole(part: np.ndarray) -> np.ndarray:
         unit = inside.copy()
@@ -116,7 +150,7 @@ def fit_from(
         ftol=tolerance,
         gtol=1e-12,
     )
-    values = len(result.fun) - len(inside)
+    values = len(result.fun) - len(prior_jacobian)
     found = np.zeros((values, len(inside)))
     found[:, searched] = result.jac[:values]
     return Fit(

@@ -29,6 +29,9 @@ from hydrolek_drake.rigs import Rig
 CONFIDENCE = 1.96
 """Standard errors on either side that hold 95 % of a normal distribution."""
 
+SIGNALS = ("position", "pressure_a", "pressure_b")
+"""What is followed where it was recorded."""
+
 STARTS = 20
 """Starts of the least squares: the rig's own values and random ones."""
 
@@ -85,7 +88,7 @@ def fit_rig(
     *,
     paths: Sequence[str] | None = None,
     holdout: Sequence[Recording] = (),
-    signals: tuple[str, ...] = ("position", "pressure_a", "pressure_b"),
+    signals: tuple[str, ...] = SIGNALS,
     budget: int = 8000,
     p: float = 2.0,
     segments: int = 8,

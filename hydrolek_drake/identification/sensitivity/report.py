@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from hydrolek_drake.identification.sensitivity.sobol import SobolIndices
 from hydrolek_drake.identification.sensitivity.study import SensitivityStudy
 
 LEAST = 1e-4
@@ -34,6 +35,7 @@ def as_json(study: SensitivityStudy) -> dict[str, Any]:
                 "mean_size_per_segment": study.effects.mean_size[i].tolist(),
                 "deviation_per_segment": study.effects.deviation[i].tolist(),
                 "one_at_a_time_per_segment": study.one_at_a_time.spread[i].tolist(),
+                **_sobol_row(study, int(i)),
             }
             for i in study.ranking
         ],
@@ -41,6 +43,22 @@ def as_json(study: SensitivityStudy) -> dict[str, Any]:
         "not_determined": list(study.known.blurred()),
         "singular_values": study.known.singular_values.tolist(),
         "left_out": study.varied.left_out,
+    }
+
+
+def _sobol_row(study: SensitivityStudy, i: int) -> dict[str, Any]:
+    """Sobol indices of one parameter; nothing where none were asked for."""
+    found = study.sobol
+    if found is None:
+        return {}
+    return {
+        "sobol": {
+            "first": float(found.first_whole[i]),
+            "total": float(found.total_whole[i]),
+            "total_95_percent": [float(found.total_low[i]), float(found.total_high[i])],
+            "first_per_segment": found.first[i].tolist(),
+            "total_per_segment": found.total[i].tolist(),
+        }
     }
 
 
@@ -52,6 +70,8 @@ def write_study(study: SensitivityStudy, folder: Path) -> list[Path]:
         f"sensitivity_{study.joint}.png": ranking_picture(study),
         f"sensitivity_{study.joint}_outputs.png": outputs_picture(study),
     }
+    if study.sobol is not None:
+        contents[f"sensitivity_{study.joint}_sobol.png"] = sobol_picture(study, study.sobol)
     written = []
     for name, content in contents.items():
         draft = folder / f"{name}.part"
@@ -91,6 +111,26 @@ def ranking_picture(study: SensitivityStudy) -> bytes:
     figure.suptitle(
         f"{study.joint}: elementary effects; {hidden} parameters without any are not shown", fontsize=10
     )
+    return _png(figure)
+
+
+def sobol_picture(study: SensitivityStudy, found: SobolIndices) -> bytes:
+    """First-order and total index of the parameters that matter most by the latter, which has its interval."""
+    from matplotlib.figure import Figure
+
+    order = np.argsort(-found.total_whole, kind="stable")[:SHOWN][::-1]
+    rows = np.arange(len(order))
+    figure = Figure(figsize=(8.0, 1.2 + 0.28 * len(order)), layout="constrained")
+    axis = figure.subplots()
+    total = found.total_whole[order]
+    miss = np.maximum([total - found.total_low[order], found.total_high[order] - total], 0.0)
+    axis.barh(rows + 0.2, total, 0.4, xerr=miss, color="#1b6ca8", label="total", error_kw={"linewidth": 0.8})
+    axis.barh(rows - 0.2, np.maximum(found.first_whole[order], 0.0), 0.4, color="#d95f02", label="alone")
+    axis.set_yticks(rows, [short(study.paths[i], study.joint) for i in order], fontsize=7)
+    axis.set_xlabel("part of the variance of the reading")
+    axis.legend(fontsize=8, loc="lower right")
+    axis.grid(alpha=0.25, axis="x")
+    figure.suptitle(f"{study.joint}: Sobol indices, N = {found.points}", fontsize=10)
     return _png(figure)
 
 

@@ -1,4 +1,4 @@
-"""A sensitivity study: one at a time, elementary effects, and what cannot be told apart."""
+"""A sensitivity study: one at a time, elementary effects, Sobol indices, and what cannot be told apart."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,6 +10,7 @@ from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.sensitivity.morris import ElementaryEffects, elementary_effects
 from hydrolek_drake.identification.sensitivity.one_at_a_time import OneAtATime, one_at_a_time
 from hydrolek_drake.identification.sensitivity.response import Response, response_of
+from hydrolek_drake.identification.sensitivity.sobol import SobolIndices, sobol_of
 from hydrolek_drake.identification.sensitivity.varied import Varied, varied_parameters
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
@@ -30,6 +31,7 @@ class SensitivityStudy:
         one_at_a_time: outputs over each parameter's range.
         effects: global screening, per segment.
         known: from the Jacobian at the rig's own values, in units of the reading's noise.
+        sobol: variance-based indices; None unless asked for.
     """
 
     joint: str
@@ -38,6 +40,7 @@ class SensitivityStudy:
     one_at_a_time: OneAtATime
     effects: ElementaryEffects
     known: Identifiability
+    sobol: SobolIndices | None = None
 
     @property
     def paths(self) -> tuple[str, ...]:
@@ -60,6 +63,7 @@ def study_sensitivity(
     spread: float = 0.2,
     segments: int = 8,
     trajectories: int = 10,
+    sobol_points: int | None = None,
     say: Callable[[str], None] = lambda text: None,
 ) -> SensitivityStudy:
     """Study a joint's reading.
@@ -73,6 +77,7 @@ def study_sensitivity(
         spread: part of its value by which a parameter without a range is varied.
         segments: equal parts of the time.
         trajectories: of the global screening.
+        sobol_points: N of the Sobol indices, a power of two; None for none.
         say: told what is being done.
 
     Raises:
@@ -94,8 +99,14 @@ def study_sensitivity(
     say("Jacobian")
     noise = response.factor * rig.value(f"joints.{joint}.sensor.noise")
     jacobian = _jacobian(response) / (noise if noise > 0.0 else 1.0)
+    sobol = None
+    if sobol_points is not None:
+        cost = sobol_points * (count + 2)
+        sobol = sobol_of(
+            response, segments, count, sobol_points, rng, lambda done: say(f"Sobol indices: {done} of {cost}")
+        )
     return SensitivityStudy(
-        joint, varied, response, single, effects, identifiability(parameters.paths, jacobian)
+        joint, varied, response, single, effects, identifiability(parameters.paths, jacobian), sobol
     )
 
 

@@ -1,0 +1,131 @@
+"""Variance-based sensitivity: Sobol indices of a signal, segment by segment.
+
+The first-order index of a parameter is the part of the output's variance that it alone explains, the total index that
+in which it has a share; their difference is what it does together with others (Saltelli et al., Computer Physics
+Communications 181, 2010). For a signal, numerators and variances are summed over the samples (Lamboni, Monod, Makowski,
+Reliability Engineering and System Safety 96, 2011). The sample is scipy's.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.stats import sobol_indices, uniform
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.identification.objective.norms import segment_edges
+
+MOST_SAMPLES = 400
+"""Of the signal that are kept: neighbours say the same."""
+
+RESAMPLES = 200
+"""Of the bootstrap."""
+
+
+@dataclass(frozen=True)
+class SobolIndices:
+    """Indices per segment, and over all segments.
+
+    Attributes:
+        first: # (parameters, segments)
+        total: # (parameters, segments)
+        first_whole: # (parameters,)
+        total_whole: # (parameters,)
+        total_low: lower ends of the 95 % intervals of `total_whole`, from the bootstrap. # (parameters,)
+        total_high: # (parameters,)
+        points: N; the cost is N (parameters + 2) evaluations.
+        diverged: evaluations without a value somewhere, where the output in the middle of the ranges was taken.
+    """
+
+    first: np.ndarray
+    total: np.ndarray
+    first_whole: np.ndarray
+    total_whole: np.ndarray
+    total_low: np.ndarray
+    total_high: np.ndarray
+    points: int
+    diverged: int
+
+
+def check_points(points: int) -> None:
+    """Refuse a number of points that Sobol's sequence cannot take.
+
+    Raises:
+        InputError: not a power of two.
+    """
+    if points < 2 or points & (points - 1):
+        near = 2 ** max(round(math.log2(max(points, 2))), 1)
+        raise InputError(f"--sobol {points}: Sobol's sequence needs a power of two, such as {near}")
+
+
+def sobol_of(
+    output: Callable[[np.ndarray], np.ndarray],
+    segments: int,
+    parameters: int,
+    points: int,
+    rng: np.random.Generator,
+    progress: Callable[[int], None] = lambda done: None,
+) -> SobolIndices:
+    """First-order and total indices of an output that may be a whole signal, parameters uniform in the cube.
+
+    Args:
+        output: place in the unit cube -> signal, NaN where it has no value. # (n,)
+        segments: equal parts of the signal.
+        parameters: how many.
+        points: N, a power of two.
+        rng: of the sample and the bootstrap.
+        progress: told after each evaluation how many are done.
+
+    Raises:
+        InputError: not a power of two.
+    """
+    check_points(points)
+    middle = np.nan_to_num(np.asarray(output(np.full(parameters, 0.5)), dtype=float))
+    every = max(-(-middle.size // MOST_SAMPLES), 1)
+    kept = middle[::every]
+    done, diverged = 0, 0
+    seen: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+
+    def signals(columns: np.ndarray) -> np.ndarray:
+        nonlocal done, diverged
+        rows = []
+        for place in columns.T:
+            signal = np.asarray(output(place), dtype=float)[::every]
+            missing = ~np.isfinite(signal)
+            diverged += bool(missing.any())
+            rows.append(np.where(missing, kept, signal))
+            done += 1
+            progress(done)
+        return np.array(rows).T
+
+    edges = segment_edges(kept.size, segments)
+
+    def summed(f_A: np.ndarray, f_B: np.ndarray, f_AB: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Indices of each segment and of the whole. # (segments + 1, parameters) each."""
+        if not seen:
+            seen.append((f_A, f_B, f_AB))
+        variance = _parts(np.var([f_A, f_B], axis=(0, -1))[None], edges)
+        first = _parts(np.mean(f_B * (f_AB - f_A), axis=-1), edges)
+        total = _parts(0.5 * np.mean((f_A - f_AB) ** 2, axis=-1), edges)
+        safe = np.where(variance > 0.0, variance, np.inf)  # a part that never changes has no indices: zero
+        return (first / safe).T, (total / safe).T
+
+    found = sobol_indices(func=signals, n=points, dists=[uniform()] * parameters, method=summed, rng=rng)
+    first, total = (
+        np.reshape(value, (segments + 1, parameters)).T for value in (found.first_order, found.total_order)
+    )
+    f_A, f_B, f_AB = seen[0]
+    drawn = [
+        summed(f_A[:, i], f_B[:, i], f_AB[..., i])[1][-1]
+        for i in rng.integers(points, size=(RESAMPLES, points))
+    ]
+    low, high = np.quantile(drawn, [0.025, 0.975], axis=0)
+    return SobolIndices(first[:, :-1], total[:, :-1], first[:, -1], total[:, -1], low, high, points, diverged)
+
+
+def _parts(values: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Sums over each segment, and over all, along the last axis. # (k, n) -> (k, segments + 1)."""
+    parts = [values[:, a:b].sum(axis=1) for a, b in pairwise(edges)]
+    return np.stack([*parts, values.sum(axis=1)], axis=1)
