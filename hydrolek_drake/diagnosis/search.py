@@ -104,7 +104,7 @@ def search(
             break
         for hypothesis in grown:
             found.keep(hypothesis)
-        _prune(bench, found, found.best)
+        _prune(bench, found, found.best, candidates)
         beam = [h for h in grown if h.fit.objective < HOPELESS * grown[0].fit.objective][:BEAM]
         beam = [found.best] if found.best.fit.over_noise < NEAR else beam
         found.left = scores_of(bench, found.best, candidates, bench.fine)
@@ -147,9 +147,26 @@ def fit_baseline(bench: Workbench) -> Hypothesis:
     return bench.refit(best, bench.fine, POLISH if best.fit.over_noise < FAR else POLISH // 2)
 
 
-def _prune(bench: Workbench, found: Search, hypothesis: Hypothesis) -> None:
-    """Fit the best hypothesis again without each of its effects, from where it ended."""
-    work = [tuple(c for c in hypothesis.effects if c is not effect) for effect in hypothesis.effects]
-    fits = bench.side_by_side(lambda rest: bench.fit(rest, hypothesis.values, bench.fine, POLISH), work)
+def _prune(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: Sequence[Candidate]) -> None:
+    """Fit the best hypothesis again with less: without each of its effects, or with the special case of one."""
+    work: list[tuple[tuple[Candidate, ...], dict[str, float]]] = []
+    for effect in hypothesis.effects:
+        rest = tuple(c for c in hypothesis.effects if c is not effect)
+        work.append((rest, hypothesis.values))
+        work += [
+            ((*rest, special), {**hypothesis.values, **_carried_over(effect, special, hypothesis.values)})
+            for special in candidates
+            if special.joint == effect.joint and special.id in effect.effect.contains
+        ]
+    fits = bench.side_by_side(lambda item: bench.fit(item[0], item[1], bench.fine, POLISH), work)
     for fitted in fits:
         found.keep(fitted)
+
+
+def _carried_over(effect: Candidate, special: Candidate, values: dict[str, float]) -> dict[str, float]:
+    """Values of a special case's parameters that the effect has too, within their ranges."""
+    known = {free.path.rpartition(".")[2]: values[free.path] for free in effect.free}
+    own = {free: known.get(free.path.rpartition(".")[2]) for free in special.free}
+    return {
+        free.path: min(max(value, free.lower), free.upper) for free, value in own.items() if value is not None
+    }

@@ -1,0 +1,33 @@
+"""What is found is held against less: without an effect, and with the special case of one."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from hydrolek_drake.diagnosis.candidates import candidates_of
+from hydrolek_drake.diagnosis.growing import POLISH, gain_needed
+from hydrolek_drake.diagnosis.search import Search, _prune
+from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.parameter_set import free_parameters
+
+COULOMB = 600.0
+
+
+def test_coulomb_friction_is_tried_where_stribeck_friction_was_found(bench, recorded) -> None:
+    machine = bench.with_values({"effects.cylinder.coulomb_friction.coulomb_N": COULOMB})
+    experiments = recorded(machine, bench)
+    candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
+    known = {c.id: c for c in candidates}
+    stribeck, coulomb = (known[f"cylinder.{name}_friction"] for name in ("stribeck", "coulomb"))
+    with ThreadPoolExecutor(2) as pool:
+        work = Workbench(bench, free_parameters(bench, ["load.gravity_cos"]), experiments, pool)
+        found = Search()
+        found.keep(work.fit((stribeck,), stribeck.starts[0], work.fine, POLISH))
+        general = found.best
+        _prune(work, found, general, candidates)
+    special = found.hypotheses[frozenset({coulomb.size_path})]
+    assert special.values[coulomb.size_path] == pytest.approx(COULOMB, rel=0.02)
+    # two parameters more gain no more than chance
+    assert special.fit.objective - general.fit.objective < gain_needed(special.fit)
+    assert found.best.ids == special.ids
