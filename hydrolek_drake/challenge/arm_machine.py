@@ -20,7 +20,7 @@ from hydrolek_drake.kinematics.arms import arms_urdf_path
 from hydrolek_drake.rigs import Rig
 
 STEP_S = 2e-5
-"""Half of it changes the angle by 4e-5 deg at most, with a play by 2e-3 deg: see docs/concealed_effects.md."""
+"""Half of it changes the angle by 1.2e-4 deg at most, with a play by 1.6e-3 deg: see docs/concealed_effects.md."""
 
 SIZE = 11
 """x, x', P_A, P_B, q, q', flow felt by the supply, cylinder's side and its rate, tilt and its rate."""

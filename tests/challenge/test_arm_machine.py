@@ -19,7 +19,7 @@ ALLOWED_DEG = 0.02
 """What the rollout's step may cost (hydrolek.yaml); less than half of the sensor's noise."""
 
 STEP_S = 1e-4
-"""Coarse enough for a test; at these sizes within 0.01 deg of the step that records."""
+"""Coarse enough for a test; at these sizes within about 0.01 deg of the step that records."""
 
 OTHER_SIZES = {
     "command.delay": {"delay_s": 0.03},
