@@ -8,7 +8,7 @@ import pytest
 from scipy.constants import g as GRAVITY
 
 from hydrolek_drake.challenge.arm_body import turned_body
-from hydrolek_drake.challenge.arm_machine import LISTED
+from hydrolek_drake.challenge.arm_numbers import LISTED
 from hydrolek_drake.challenge.build import ARM_JOINTS, Build, build_of
 from hydrolek_drake.challenge.driving import SAMPLE_S, Played, random_series, turned_back
 from hydrolek_drake.kinematics.arms import arms_urdf_path
