@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from hydrolek_drake.challenge import arm_machine, bench_machine
+from hydrolek_drake.challenge import arm_machine, arm_numbers, bench_machine
 from hydrolek_drake.challenge.driving import Driving, Played, arm_driving, bench_driving, unhindered
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
@@ -105,11 +105,11 @@ def build_of(rig: Rig) -> Build:
     }
     return Build(
         rig,
-        arm_machine.nominal_machine(rig),
-        arm_machine.SPREAD,
+        arm_numbers.nominal_machine(rig),
+        arm_numbers.SPREAD,
         listed,
         {name: {**entry, **own.get(name, {})} for name, entry in sizes["unlisted"].items()},
         arm_driving(rig),
-        arm_machine.with_effects,
+        arm_numbers.with_effects,
         arm_machine.play,
     )

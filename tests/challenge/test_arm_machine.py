@@ -8,7 +8,7 @@ import pytest
 from scipy.constants import g as GRAVITY
 
 from hydrolek_drake.challenge.arm_body import turned_body
-from hydrolek_drake.challenge.arm_machine import LISTED
+from hydrolek_drake.challenge.arm_numbers import LISTED
 from hydrolek_drake.challenge.build import ARM_JOINTS, Build, build_of
 from hydrolek_drake.challenge.driving import SAMPLE_S, Played, random_series, turned_back
 from hydrolek_drake.kinematics.arms import arms_urdf_path
@@ -19,7 +19,7 @@ ALLOWED_DEG = 0.02
 """What the rollout's step may cost (hydrolek.yaml); less than half of the sensor's noise."""
 
 STEP_S = 1e-4
-"""Coarse enough for a test; at these sizes within 0.01 deg of the step that records."""
+"""Coarse enough for a test; at these sizes within about 0.01 deg of the step that records."""
 
 OTHER_SIZES = {
     "command.delay": {"delay_s": 0.03},
