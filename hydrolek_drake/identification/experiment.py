@@ -12,10 +12,10 @@ from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import measured_position, position_key
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.kernel import PULLED
-from hydrolek_drake.rollout.rollout import Outcome, Signals, rest_state, roll_out
+from hydrolek_drake.rollout.rollout import Outcome, Signals, rest_state_at_reading, roll_out
 
-REST_SAMPLES = 25
-"""At most so many leading samples are averaged for the start, if the joint stands still that long."""
+STANDS_STILL = 3.0
+"""The means of two halves of the leading samples differ by less than so many of their standard errors."""
 
 FAITHFUL = 3e-4
 """A model follows a machine to this share of a signal's range at best, however fine the sensor: a noise below it
@@ -128,7 +128,7 @@ class Experiment:
                 rollout.
         """
         record = records[self.index : self.index + 1]
-        state = None if self.start is None else rest_state(record, self.start)
+        state = None if self.start is None else rest_state_at_reading(record, self.start)
         return roll_out(
             record,
             self.command_times,
@@ -285,11 +285,19 @@ def faithful(measured: np.ndarray) -> float:
 
 
 def _resting_position(position: np.ndarray, command: np.ndarray) -> float:
-    """Mean of the leading samples while the command has not changed yet."""
+    """Mean of the leading samples while the command has not changed yet and the joint stands still."""
     changed = np.flatnonzero(command != command[0])
-    still = int(changed[0]) if changed.size else position.size
-    leading = position[: min(max(still, 1), REST_SAMPLES)]
+    leading = position[: max(int(changed[0]) if changed.size else position.size, 1)]
     finite = leading[np.isfinite(leading)]
     if not finite.size:
         finite = position[np.isfinite(position)][:1]
+    while finite.size >= 4 and not _still(finite):
+        finite = finite[: finite.size // 2]
     return float(finite.mean())
+
+
+def _still(values: np.ndarray) -> bool:
+    """Whether the halves of some samples have one mean, as far as their scatter tells."""
+    first, second = np.array_split(values, 2)
+    error = np.sqrt(first.var(ddof=1) / first.size + second.var(ddof=1) / second.size)
+    return abs(float(first.mean() - second.mean())) <= STANDS_STILL * error

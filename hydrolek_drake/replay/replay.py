@@ -17,7 +17,7 @@ from hydrolek_drake.replay.readings import (
     supply_pair,
 )
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.rollout import Outcome, rest_state, roll_out
+from hydrolek_drake.rollout.rollout import Outcome, rest_state_at_reading, roll_out
 
 START_SAMPLES = 5
 """Samples of the recorded position whose median is the start; odd, so that the median is a sample."""
@@ -93,7 +93,7 @@ def replay(rig: Rig, recording: Recording, between: tuple[float, float] | None =
             record,
             *_command_until(recording, key, window.time[0], window.time[-1]),
             window.time,
-            state=rest_state(record, start),
+            state=None if start is None else rest_state_at_reading(record, start),
             longest_step=rig.value("integration.longest_step"),
             spool_steps=int(rig.value("integration.spool_steps")),
         )

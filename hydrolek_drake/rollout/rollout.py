@@ -6,11 +6,18 @@ from functools import cache
 import numpy as np
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.physics import cylinder, hooks, linkage, load
+from hydrolek_drake.physics import cylinder, hooks, linkage, load, sensor
 from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, flat, position_of
 from hydrolek_drake.rollout import kernel
 
 STATE_SIZE = 2 + len(kernel.State._fields) + 2
+
+START_STEPS = 8
+"""Steps of the search for a start: its error falls by the share that lean and bow change with position, at most a
+tenth, in each."""
+
+UNPRESSED = 1e-9
+"""A play that the load presses together by less than this share of its gap is not taken up."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +74,23 @@ def rest_state(joint: np.ndarray, position: float | None = None, time: float = 0
     return state
 
 
+def rest_state_at_reading(joint: np.ndarray, reading: float) -> np.ndarray:
+    """State at rest in which the sensor reads a value [rad or m]: a leaning base or a bowed sensor is allowed for.
+
+    Args:
+        joint: parameter record, shape (1,).
+        reading: what was measured [rad or m].
+    """
+    position = reading
+    for _ in range(START_STEPS):
+        state = rest_state(joint, position)
+        off = reading - float(sensor.reading(state[11], 0.0, joint[0]))
+        if off == 0.0:
+            break
+        position += off
+    return state
+
+
 def rest_tilt_and_lead(record: np.void, position: float, needed: float) -> tuple[float, float]:
     """Tilt of the base and position of the actuator's side [rad] under a held moment `needed` [N m]."""
     stiffness = hooks.base_stiffness(record)
@@ -74,8 +98,10 @@ def rest_tilt_and_lead(record: np.void, position: float, needed: float) -> tuple
     lead = position
     gap = hooks.linkage_gap(record)
     if gap > 0.0:
-        contact = float(np.sign(needed)) * 0.5 * gap + needed / float(record["linkage"]["play_stiffness"])
-        lead = position + float(record["linkage"]["play_taken_up"]) * contact
+        pressed = needed / float(record["linkage"]["play_stiffness"])
+        if abs(pressed) > UNPRESSED * gap:  # an upright joint's gravity is rounding: it takes up no side
+            contact = float(np.sign(needed)) * 0.5 * gap + pressed
+            lead = position + float(record["linkage"]["play_taken_up"]) * contact
     return tilt, lead
 
 
