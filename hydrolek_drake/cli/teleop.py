@@ -11,6 +11,8 @@ from hydrolek_drake.errors import InputError
 if TYPE_CHECKING:
     from hydrolek_drake.teleop.machine import Machine
     from hydrolek_drake.teleop.session import OperatorSession
+    from hydrolek_drake.workcell.pipe import Pipe
+    from hydrolek_drake.workcell.table import Table
 
 _Vector = tuple[float, float, float]
 
@@ -37,6 +39,9 @@ def teleop(
     pipe_axis: Annotated[
         _Vector | None, typer.Option(metavar="X Y Z", help="simulated pipe's axis, world")
     ] = None,
+    loose: Annotated[
+        bool, typer.Option("--loose", help="simulated pipe stands loose on a table, for pick and place")
+    ] = False,
     light: Annotated[float, typer.Option(min=0.0, max=1.0, help="of the simulated room")] = 1.0,
     flip: Annotated[bool, typer.Option(help="mirror a live camera's pictures back")] = False,
     out: Annotated[
@@ -55,6 +60,7 @@ def teleop(
     from hydrolek_drake.teleop.trial import TrialLog
     from hydrolek_drake.workcell.pipe import make_pipe
     from hydrolek_drake.workcell.scene import home_posture
+    from hydrolek_drake.workcell.table import make_loose_pipe, make_table
 
     logging.getLogger("drake").setLevel(logging.WARNING)
     if plant not in ("full", "simple"):
@@ -62,8 +68,11 @@ def teleop(
     address, trials = _address(controllers), TrialLog(out)
     if settings and (plant == "simple" or address is not None):
         raise InputError("teleop: --set is the full plant's; leave it out")
-    _check_camera(camera, pipe_point, pipe_axis)
-    pipe = make_pipe(pipe_point, pipe_axis) if camera == "sim" else None
+    _check_camera(camera, pipe_point, pipe_axis, loose)
+    table = make_table() if loose else None
+    pipe = None
+    if camera == "sim":
+        pipe = make_pipe(pipe_point, pipe_axis) if table is None else make_loose_pipe(table)
     process = None
     if plant == "full" and address is None:
         with output().status("starting the hydraulic plant: step tests of all joints"):
@@ -73,12 +82,19 @@ def teleop(
                 settings=parse_settings(settings),
                 seed=seed,
                 pipe=pipe,
+                table=table,
                 meshcat=view,
                 host=host,
             )
-    machine = Machine(home_posture(), controllers=address, plant=process)
+    machine = Machine(
+        home_posture(),
+        controllers=address,
+        plant=process,
+        pipe=None if table is None else pipe,
+        table=table,
+    )
     try:
-        session = _session(camera, machine, pipe_point, pipe_axis, light, flip, seed)
+        session = _session(camera, machine, pipe, table, light, flip, seed)
     except BaseException:
         machine.close()
         raise
@@ -111,8 +127,8 @@ def teleop(
 def _session(
     camera: str,
     machine: "Machine",
-    point: _Vector | None,
-    axis: _Vector | None,
+    pipe: "Pipe | None",
+    table: "Table | None",
     light: float,
     flip: bool,
     seed: int,
@@ -123,27 +139,29 @@ def _session(
     from hydrolek_drake.vision.frames import FolderSource, LiveCamera
 
     if camera == "sim":
-        from hydrolek_drake.workcell.pipe import make_pipe
-        from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
+        from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect, as_machine_stands
 
-        pipe = make_pipe(point, axis)
         return OperatorSession(
-            lambda: SimulatedKinect(pipe, np.random.default_rng(seed), brightness=light),
+            lambda: SimulatedKinect(pipe, np.random.default_rng(seed), brightness=light, table=table),
             machine,
             seed=seed,
-            stand=lambda source, angles: source.stand(angles),  # type: ignore[attr-defined]
+            stand=as_machine_stands,
         )
     if camera == "live":
         return OperatorSession(lambda: LiveCamera(flipped=flip), machine, seed=seed)
     return OperatorSession(lambda: FolderSource(Path(camera)), machine, seed=seed)
 
 
-def _check_camera(camera: str, point: _Vector | None, axis: _Vector | None) -> None:
+def _check_camera(camera: str, point: _Vector | None, axis: _Vector | None, loose: bool) -> None:
     """Refuse what would be refused only after the plant has been started."""
     from hydrolek_drake.vision.frames import FolderSource
 
     if camera != "sim" and (point is not None or axis is not None):
         raise InputError("teleop: --pipe-point and --pipe-axis are the simulated camera's; leave them out")
+    if loose and (camera != "sim" or point is not None or axis is not None):
+        raise InputError(
+            "teleop: --loose puts the simulated camera's pipe on the table; leave the others out"
+        )
     if camera not in ("sim", "live"):
         FolderSource(Path(camera))
 

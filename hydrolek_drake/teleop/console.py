@@ -109,6 +109,8 @@ class Console:
             session.set_sliders(**{name: _number(message, name) for name in message if name != "do"})
         elif what == "fill":
             session.set_fill(str(message.get("name")))
+        elif what == "task":
+            session.set_task(str(message.get("name")))
         elif what in ("snapshot", "back", "confirm", "release"):
             getattr(session, str(what))()
         elif what == "joystick":

@@ -22,6 +22,7 @@ from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.signals import Signals
 from hydrolek_drake.workcell.grip_contact import GripContact
 from hydrolek_drake.workcell.pipe import Pipe
+from hydrolek_drake.workcell.table import Table
 
 Array = NDArray[np.float64]
 
@@ -67,8 +68,10 @@ class HydraulicArms:
         rig: The machine; `hydrolek` if not given.
         controller: Name in the catalogue of controllers.
         seed: Of the sensors' noise.
-        pipe: What the grippers may touch; it does not give way. None for nothing.
+        pipe: What the grippers may touch; None for nothing. It does not give way.
+        table: What the pipe stands on; with one, it is loose and goes where a gripper takes it.
         visualize: Called while the station is built, see `make_station`.
+        settings: From `joint_settings` of this rig, which takes a while; made if not given.
 
     Raises:
         InputError: Unknown controller, a rig that is not both arms, a posture beyond a stop.
@@ -82,13 +85,15 @@ class HydraulicArms:
         controller: str = "feedforward",
         seed: int = 1,
         pipe: Pipe | None = None,
+        table: Table | None = None,
         visualize: Callable[..., None] | None = None,
+        settings: dict[str, JointSetting] | None = None,
     ) -> None:
         if controller not in CONTROLLERS:
             raise InputError(f"no controller '{controller}'; choose {', '.join(CONTROLLERS)}")
         self.rig = load_rig("hydrolek") if rig is None else rig
         start = np.asarray(posture, dtype=float)
-        settings = joint_settings(self.rig)
+        settings = joint_settings(self.rig) if settings is None else settings
         _refuse_beyond_stops(start, settings)
         sizes = StepSizes(
             step=MACHINE_STEP_S,
@@ -101,7 +106,7 @@ class HydraulicArms:
 
         def add(builder: DiagramBuilder, body: RigPlant, rig: Rig, joints: np.ndarray) -> None:
             if pipe is not None:
-                self._contact = _add_contact(builder, body, pipe)
+                self._contact = _add_contact(builder, body, pipe, table)
             if visualize is not None:
                 visualize(builder, body, rig, joints)
 
@@ -189,6 +194,7 @@ class HydraulicArms:
             potentiometer=self._of("potentiometer_voltage"),
             supply_pressure=float(supply_pressure[0]),
             grip=self.grip(),
+            pipe_place=self.pipe_place(),
         )
 
     def grip(self) -> Array:
@@ -196,6 +202,22 @@ class HydraulicArms:
         if self._contact is None:
             return np.zeros(len(SIDES))
         return np.array(self._contact.grip_force.Eval(self._contact.GetMyContextFromRoot(self._root)))
+
+    def touch(self) -> Array:
+        """Force of all fingers and the hand of the right and the left gripper on the pipe in N, shape (2,)."""
+        if self._contact is None:
+            return np.zeros(len(SIDES))
+        sizes = self._contact.sizes(self._contact.GetMyContextFromRoot(self._root))
+        return np.array(
+            [sizes[[owner == side for owner, _ in self._contact.fingers]].sum() for side in SIDES]
+        )
+
+    def pipe_place(self) -> Array:
+        """Middle of the pipe in m and its axis, world frame, shape (6,); NaN without a pipe."""
+        if self._contact is None:
+            return np.full(6, np.nan)
+        context = self._contact.GetMyContextFromRoot(self._root)
+        return np.array(self._contact.pipe_place.Eval(context))
 
     @property
     def _root(self):  # type: ignore[no-untyped-def]
@@ -213,9 +235,9 @@ class HydraulicArms:
             self._diagram.GetInputPort(name).FixValue(context, wanted)
 
 
-def _add_contact(builder: DiagramBuilder, body: RigPlant, pipe: Pipe) -> GripContact:
+def _add_contact(builder: DiagramBuilder, body: RigPlant, pipe: Pipe, table: Table | None) -> GripContact:
     """Beside the cylinders, which act as moments here and leave the port for forces on bodies free."""
-    contact = builder.AddSystem(GripContact(body.plant, pipe))
+    contact = builder.AddSystem(GripContact(body.plant, pipe, table))
     builder.Connect(body.plant.get_state_output_port(), contact.plant_state)
     builder.Connect(contact.contact_force, body.plant.get_applied_spatial_force_input_port())
     return contact

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pydrake.systems.analysis import Simulator
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.kinematics.chain import SIDES
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.hand import JOYSTICK, SLIDERS, Hand, travel
 from hydrolek_drake.teleop.link import SetpointClient, SetpointServer
@@ -18,6 +19,10 @@ from hydrolek_drake.teleop.plant_process import PlantProcess
 from hydrolek_drake.teleop.sequencer import Mode, Order, TaskSequencer
 from hydrolek_drake.teleop.signals import Signals
 from hydrolek_drake.teleop.simulated_arms import SimulatedArms
+from hydrolek_drake.workcell.grasp import tool_in_world
+from hydrolek_drake.workcell.loose_pipe import LoosePipe, clasped
+from hydrolek_drake.workcell.pipe import Pipe
+from hydrolek_drake.workcell.table import Table
 from hydrolek_drake.workcell.trajectory import joint_speeds
 
 Array = NDArray[np.float64]
@@ -43,6 +48,7 @@ class MachineState:
         reason: Why the link is lost, or empty.
         manual: `joystick` or `sliders` while the operator moves joints by hand, else empty.
         signals: Voltages and pressures, of a machine that has them.
+        pipe: Where a loose simulated pipe is, world frame; None without one.
     """
 
     mode: Mode
@@ -56,6 +62,7 @@ class MachineState:
     reason: str
     manual: str = ""
     signals: Signals | None = None
+    pipe: Pipe | None = None
 
 
 class ArmsEnd:
@@ -65,15 +72,28 @@ class ArmsEnd:
         posture: Joints at first, in rad, shape (14,).
         port: TCP port, 0 for any free one.
         host: Address to listen at.
+        pipe: A loose pipe, which goes with a hand whose jaw has closed around it.
+        table: What it stands on.
     """
 
-    def __init__(self, posture: Array, *, port: int | None = None, host: str = "127.0.0.1") -> None:
+    def __init__(
+        self,
+        posture: Array,
+        *,
+        port: int | None = None,
+        host: str = "127.0.0.1",
+        pipe: Pipe | None = None,
+        table: Table | None = None,
+    ) -> None:
         self.server = SetpointServer(posture, port=port, host=host)
         self._period = teleop_entries("task")["period"]
         self._arms = SimulatedArms(posture, self._period)
         self._simulator = Simulator(self._arms)
         self._position = np.array(posture, dtype=float)
         self._driven: Array | None = None
+        self._loose = None if pipe is None or table is None else LoosePipe(pipe)
+        self._table = table
+        self.pipe: Pipe | None = None if self._loose is None else pipe
         self._lower, self._upper = travel()
 
     def advance(self) -> Array:
@@ -91,6 +111,14 @@ class ArmsEnd:
         self._arms.valves_open_input.FixValue(context, [float(order.valves_open)])
         self._simulator.AdvanceTo(context.get_time() + self._period)
         self._position = np.array(self._arms.position_measured_output.Eval(context))
+        if self._loose is not None and self._table is not None:
+            hands = [tool_in_world(self._position, side) for side in SIDES]
+            gripped = [
+                clasped(self._loose.now(hands), hand[1], self._position[7 * place + 6])
+                for place, hand in enumerate(hands)
+            ]
+            self._loose = self._loose.step(hands, gripped, self._table, self._period)
+            self.pipe = self._loose.now(hands)
         self.server.report(self._position)
         return self._position
 
@@ -107,6 +135,8 @@ class Machine:
         controllers: Host and port of the controllers' end.
         plant: The hydraulic plant instead; it ends with the machine. With neither, the simple simulated arms.
         realtime_rate: Simulated seconds a second; tests run faster.
+        pipe: The simulated pipe, where it is loose.
+        table: What it stands on; for the simple arms, since the hydraulic plant has its own.
     """
 
     def __init__(
@@ -116,13 +146,15 @@ class Machine:
         controllers: tuple[str, int] | None = None,
         plant: PlantProcess | None = None,
         realtime_rate: float = 1.0,
+        pipe: Pipe | None = None,
+        table: Table | None = None,
     ) -> None:
-        self._plant = plant
+        self._plant, self._pipe = plant, pipe
         self._signals: Signals | None = None
         self._plant_time = -1.0
         if plant is not None:
             controllers = ("127.0.0.1", plant.port)
-        self._arms = ArmsEnd(posture, port=0) if controllers is None else None
+        self._arms = ArmsEnd(posture, port=0, pipe=pipe, table=table) if controllers is None else None
         host, port = controllers or ("127.0.0.1", self._arms.server.port if self._arms else 0)
         self._client: SetpointClient | None = SetpointClient(port, host)
         self._sequencer = TaskSequencer()
@@ -214,7 +246,15 @@ class Machine:
                 self._lost,
                 by_hand,
                 self._signals,
+                self._pipe_now(),
             )
+
+    def _pipe_now(self) -> Pipe | None:
+        if self._arms is not None:
+            return self._arms.pipe
+        if self._pipe is None or self._signals is None or not np.isfinite(self._signals.pipe_place).all():
+            return None
+        return self._pipe.at(self._signals.pipe_place)
 
     def close(self) -> None:
         """Close the valves and end the thread."""

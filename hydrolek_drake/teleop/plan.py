@@ -34,7 +34,7 @@ class Step:
     """One step of a task.
 
     Attributes:
-        name: One of `STEPS`, or of `RELEASE_STEPS`.
+        name: One of `STEPS`, of `RELEASE_STEPS`, or of `place_plan.PLACE_STEPS`.
         trajectory: Joints `right_j1` ... `left_j7` over time from 0, in rad; a PiecewisePolynomial of 14 rows.
         timed_out_after: Seconds after which the step counts as failed.
         watched: Which joints must be within the tolerance at its end, shape (14,); a gripper that closes on a
@@ -55,13 +55,15 @@ class TaskPlan:
         steps: In order.
         pipe: The pipe that was planned with, world frame.
         grasp: The grasping arm's way onto the pipe.
-        cut: The cutting arm's way across it.
+        cut: The cutting arm's way across it; None where nothing is cut.
+        holds: Whether the pipe is in the gripper when all is done.
     """
 
     steps: tuple[Step, ...]
     pipe: Pipe
     grasp: ToolPath
-    cut: ToolPath
+    cut: ToolPath | None
+    holds: bool = True
 
     def duration(self) -> float:
         """Planned time of all steps in s."""
@@ -98,8 +100,7 @@ def plan_task(
     grasp_point, cut_point = to_frame(targets.grasp, "world"), to_frame(targets.cut, "world")
     values, sizes = workcell_entries()["grasp"], kinect_entries("targets")
     clear = CollisionWorld(pipe)
-    thinner = make_pipe(pipe.point, pipe.axis, pipe.radius - values["give"], pipe.length)
-    touching = CollisionWorld(thinner, padding=0.0)
+    touching = CollisionWorld(thinner(pipe), padding=0.0)
     held = CollisionWorld(pipe, holding=(grasping,))
 
     on_step("grasp")
@@ -123,20 +124,21 @@ def plan_task(
     retreat = plan_path(held, cut_postures[-1], home, generator)
     paths = {
         "approach": approach,
-        "grasp": _without_doubles(np.array([with_arm(opened, grasping, row) for row in grasp.angles])),
+        "grasp": without_doubles(np.array([with_arm(opened, grasping, row) for row in grasp.angles])),
         "close": np.array([on_pipe, closed]),
         "cut start": to_cut,
-        "cut": _without_doubles(np.array(cut_postures)),
+        "cut": without_doubles(np.array(cut_postures)),
         "retreat": retreat,
     }
     jaw = _of(grasping).start + 6
     # a gripper that closes on a pipe cannot reach its set point
     feed = float(np.linalg.norm(cut.points[-1] - cut.points[0])) / teleop_entries("task")["cut_speed"]
     steps = [
-        _step(
+        timed_step(
             name,
             paths[name],
             None if STEPS.index(name) < STEPS.index("close") else jaw,
+            line=name in ("grasp", "cut"),
             least=feed if name == "cut" else 0.0,
         )
         for name in STEPS
@@ -156,7 +158,7 @@ def plan_release(plan: TaskPlan, posture: ArrayLike, generator: np.random.Genera
         InputError: The arms stand where no path leads home from.
     """
     start, home = np.asarray(posture, dtype=float), home_posture()
-    grasping, cutting = _of(plan.grasp.side), _of(plan.cut.side)
+    grasping, cutting = _of(plan.grasp.side), _of("left" if plan.grasp.side == "right" else "right")
     clear, held = CollisionWorld(plan.pipe), CollisionWorld(plan.pipe, holding=(plan.grasp.side,))
     away = np.array(start)
     away[cutting] = home[cutting]
@@ -170,16 +172,23 @@ def plan_release(plan: TaskPlan, posture: ArrayLike, generator: np.random.Genera
         back += [
             with_arm(opened, plan.grasp.side, row) for row in plan.grasp.angles[: far.argmin() + 1][::-1]
         ]
-    paths["back off"] = _without_doubles(np.array(back))
+    paths["back off"] = without_doubles(np.array(back))
     paths["home"] = plan_path(clear, paths["back off"][-1], home, generator)
-    steps = tuple(_step(name, paths[name], None) for name in RELEASE_STEPS)
-    return TaskPlan(steps, plan.pipe, plan.grasp, plan.cut)
+    steps = tuple(timed_step(name, paths[name], None, line=name == "back off") for name in RELEASE_STEPS)
+    return TaskPlan(steps, plan.pipe, plan.grasp, plan.cut, holds=False)
 
 
-def _step(name: str, path: Array, unwatched: int | None, *, least: float = 0.0) -> Step:
-    """A path in time, which takes `least` seconds at least."""
-    along_a_line = name in ("grasp", "cut", "back off")
-    trajectory = smooth_trajectory(path) if along_a_line else time_parametrised(path)
+def timed_step(name: str, path: Array, unwatched: int | None, *, line: bool, least: float = 0.0) -> Step:
+    """A path in time.
+
+    Args:
+        name: Of the step.
+        path: Postures in rad, shape (n, 14).
+        unwatched: Joint that cannot reach its set point, from 0: a gripper that closes on a pipe; None for none.
+        line: Whether it is a straight path of the tool, which becomes one spline; else it rests at each posture.
+        least: Seconds it takes at least.
+    """
+    trajectory = smooth_trajectory(path) if line else time_parametrised(path)
     if trajectory.end_time() < least:
         trajectory.ScaleTime(least / trajectory.end_time())
     watched = np.ones(14, bool)
@@ -201,6 +210,11 @@ def pipe_in_world(targets: PipeTargets, camera: CameraModel) -> Pipe:
     return make_pipe(to_frame(middle, "world"), axis, cylinder.radius, sum(reach))
 
 
+def thinner(pipe: Pipe) -> Pipe:
+    """The pipe as the open gripper may come near it on its way onto it."""
+    return make_pipe(pipe.point, pipe.axis, pipe.radius - workcell_entries()["grasp"]["give"], pipe.length)
+
+
 def camera_in_world() -> Array:
     """Where the camera is, world frame, in m, shape (3,)."""
     return in_frame(camera_pose()[:3, 3], given_in="plate", wanted_in="world")
@@ -210,7 +224,7 @@ def _of(side: str) -> slice:
     return slice(0, 7) if side == "right" else slice(7, 14)
 
 
-def _without_doubles(path: Array) -> Array:
+def without_doubles(path: Array) -> Array:
     """A path without postures that repeat the one before."""
     kept = [path[0]]
     for posture in path[1:]:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.workcell.pipe import Pipe
+from hydrolek_drake.workcell.table import Table
 
 _GOODBYE = 5.0  # s that the process may take to end
 
@@ -29,6 +30,7 @@ class PlantProcess:
         settings: Parameters of the rig, as `--set` takes them.
         seed: Of the sensors' noise.
         pipe: What the grippers may touch, and the browser view shows.
+        table: What the pipe stands on, if it is loose.
         meshcat: Whether Drake's browser view is served.
         host: Address at which it is.
         realtime_rate: Simulated seconds a second.
@@ -50,6 +52,7 @@ class PlantProcess:
         settings: Mapping[str, str] | None = None,
         seed: int = 1,
         pipe: Pipe | None = None,
+        table: Table | None = None,
         meshcat: bool = False,
         host: str = "127.0.0.1",
         realtime_rate: float = 1.0,
@@ -68,6 +71,9 @@ class PlantProcess:
                 "radius": pipe.radius,
                 "length": pipe.length,
             },
+            "table": None
+            if table is None
+            else {"top": table.top.tolist(), "size": table.size.tolist(), "thickness": table.thickness},
             "meshcat": meshcat,
             "host": host,
             "realtime_rate": realtime_rate,

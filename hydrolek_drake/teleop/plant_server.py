@@ -15,7 +15,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from pydrake.geometry import Cylinder, Meshcat, MeshcatParams, Rgba
+from pydrake.geometry import Box, Cylinder, Meshcat, MeshcatParams, Rgba
 from pydrake.math import RigidTransform, RotationMatrix
 
 from hydrolek_drake.control.thesis_gains import sample_s
@@ -26,6 +26,7 @@ from hydrolek_drake.teleop.hydraulic_arms import HydraulicArms
 from hydrolek_drake.teleop.link import SetpointServer
 from hydrolek_drake.visualization.station_view import StationView
 from hydrolek_drake.workcell.pipe import Pipe, make_pipe, workcell_entries
+from hydrolek_drake.workcell.table import Table
 
 _LONGEST_LAG = 1.0  # s behind the clock after which the lost time is not made up
 _PACE_WINDOW = 20  # samples over which the pace is measured
@@ -74,14 +75,16 @@ def serve(settings: dict[str, Any]) -> None:
     meshcat = Meshcat(MeshcatParams(host=settings["host"])) if settings["meshcat"] else None
     view = None if meshcat is None else StationView(meshcat)
     pipe = None if settings["pipe"] is None else make_pipe(**settings["pipe"])
+    table = None if settings["table"] is None else _table(settings["table"])
     if meshcat is not None and pipe is not None:
-        show_pipe(meshcat, pipe)
+        show_pipe(meshcat, pipe, table)
     arms = HydraulicArms(
         posture,
         rig=load_rig(settings["rig"], settings["settings"]),
         controller=settings["controller"],
         seed=settings["seed"],
         pipe=pipe,
+        table=table,
         visualize=None if view is None else view.add,
     )
     server = SetpointServer(posture, port=0)
@@ -102,16 +105,32 @@ def serve(settings: dict[str, Any]) -> None:
                 arms.advance(deflection=order.deflection)
             else:
                 arms.advance(order.desired)
-            server.report(arms.measured(), replace(arms.signals(), pace=pacer.pace()))
+            signals = replace(arms.signals(), pace=pacer.pace())
+            server.report(arms.measured(), signals)
+            if meshcat is not None and pipe is not None and table is not None:
+                put_pipe(meshcat, pipe.at(signals.pipe_place))
     finally:
         server.close()
 
 
-def show_pipe(meshcat: Meshcat, pipe: Pipe) -> None:
-    """The pipe in the browser view."""
+def show_pipe(meshcat: Meshcat, pipe: Pipe, table: Table | None) -> None:
+    """The pipe in the browser view, and what it stands on."""
     colour = workcell_entries()["pipe"]["colour"]
     meshcat.SetObject("/pipe", Cylinder(pipe.radius, pipe.length), Rgba(*colour, 1.0))
+    put_pipe(meshcat, pipe)
+    if table is not None:
+        board = Box(*table.size, table.thickness)
+        meshcat.SetObject("/table", board, Rgba(*workcell_entries()["table"]["colour"], 1.0))
+        meshcat.SetTransform("/table", RigidTransform(table.top - [0.0, 0.0, 0.5 * table.thickness]))
+
+
+def put_pipe(meshcat: Meshcat, pipe: Pipe) -> None:
+    """Where the pipe is now."""
     meshcat.SetTransform("/pipe", RigidTransform(RotationMatrix(pipe.rotation()), pipe.point))
+
+
+def _table(sizes: dict[str, Any]) -> Table:
+    return Table(np.array(sizes["top"]), np.array(sizes["size"]), float(sizes["thickness"]))
 
 
 def _until_input_ends(ended: threading.Event) -> None:

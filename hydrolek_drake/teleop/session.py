@@ -4,7 +4,7 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
 from typing import Any
 
@@ -13,18 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.teleop.clicks import Clicks, Task, Wanted
 from hydrolek_drake.teleop.hand import travel, within_limits
 from hydrolek_drake.teleop.machine import Machine, MachineState
-from hydrolek_drake.teleop.plan import STEPS, TaskPlan, plan_release, plan_task
+from hydrolek_drake.teleop.place_plan import PLACE_STEPS, plan_place_by_either
+from hydrolek_drake.teleop.plan import STEPS, TaskPlan, plan_task
+from hydrolek_drake.teleop.release import plan_letting_go
 from hydrolek_drake.teleop.sequencer import Mode, Order
 from hydrolek_drake.teleop.signals import shown
 from hydrolek_drake.vision.edges import EdgeSettings, default_settings
 from hydrolek_drake.vision.frames import Frame, FrameSource
-from hydrolek_drake.vision.selection import Fill, Mask, Snapshot, overlay, select_object
-from hydrolek_drake.vision.snapshot import take_snapshot
-from hydrolek_drake.vision.targets import PipeTargets, PixelTargets, pipe_targets, pixel_targets
+from hydrolek_drake.vision.selection import Fill
 
-_GREEN, _MAGENTA, _YELLOW = (80, 220, 80), (255, 0, 255), (0, 220, 255)  # blue, green, red
 _QUALITY = [cv2.IMWRITE_JPEG_QUALITY, 85]
 
 _HALF_TURN_DEG = 180.0  # shown of a joint that turns without end
@@ -34,27 +34,26 @@ _SLIDERS_DEG = [
 
 
 class Stage(Enum):
-    """Where the operator is; each but the last two waits for one click."""
+    """Where the operator is; each but the first and the last three waits for one click."""
 
     LIVE = "Take a snapshot when the pipe is in view."
     OBJECT = "Click the pipe, in either picture."
     GRASP = "Click where to grasp it."
     CUT = "Click where to cut it."
+    PLACE = "Click where to put it down, on the table."
     CONFIRM = "Check the marks, then confirm."
     PLANNING = "Planning the motion."
     MOVING = "The arms are moving."
 
 
-@dataclass
-class _Choice:
-    """What has been clicked so far."""
-
-    frame: Frame | None = None
-    snapshot: Snapshot | None = None
-    selected: Mask | None = None
-    grasp: tuple[float, float] | None = None
-    pixels: PixelTargets | None = None
-    targets: PipeTargets | None = None
+_STAGES = {
+    Wanted.OBJECT: Stage.OBJECT,
+    Wanted.GRASP: Stage.GRASP,
+    Wanted.CUT: Stage.CUT,
+    Wanted.PLACE: Stage.PLACE,
+    Wanted.NOTHING: Stage.CONFIRM,
+}
+_STEPS = {Task.CUT: STEPS, Task.PLACE: PLACE_STEPS}
 
 
 class OperatorSession:
@@ -65,7 +64,7 @@ class OperatorSession:
             renderer needs it.
         machine: What moves.
         seed: Of the path planner.
-        stand: Tells a simulated camera where the joints are before each frame, if given.
+        stand: Tells a simulated camera where the joints and a loose pipe are before each frame, if given.
     """
 
     def __init__(
@@ -74,7 +73,7 @@ class OperatorSession:
         machine: Machine,
         *,
         seed: int,
-        stand: Callable[[FrameSource, Any], None] | None = None,
+        stand: Callable[[FrameSource, MachineState], None] | None = None,
     ) -> None:
         self._machine, self._stand = machine, stand
         self._camera = ThreadPoolExecutor(1, thread_name_prefix="camera")
@@ -82,13 +81,18 @@ class OperatorSession:
         self._camera.submit(self._begin, source).result()
         self._generator = np.random.default_rng(seed)
         self._lock = threading.RLock()
-        self._stage, self._choice = Stage.LIVE, _Choice()
+        self._stage, self._task = Stage.LIVE, Task.CUT
+        self._clicks: Clicks | None = None
         self._settings, self._fill = default_settings(), Fill.SURFACES
         self._message, self._error = "", ""
         self._pictures: dict[str, bytes] = {}
         self._version = 0
         self._planning: Future[None] | None = None
-        self._done: TaskPlan | None = None
+        self._asked: object = None  # the planning whose plan is still wanted
+        self._under_way: TaskPlan | None = None
+        self._done: tuple[TaskPlan, str] | None = (
+            None  # plan and the step it was aborted in; what the arms are to be released from
+        )
         self._steps: tuple[str, ...] = STEPS
         self._began: float | None = None
         self._took: float | None = None
@@ -126,9 +130,26 @@ class OperatorSession:
         self._not_while_moving()
         frame = self._read()
         with self._lock:
-            self._choice = _Choice(frame=frame)
-            self._process()
+            self._clicks = Clicks(frame, self._task, self._settings)
+            self._draw()
             self._stage, self._message = Stage.OBJECT, ""
+
+    def set_task(self, name: str) -> None:
+        """What is to be done: cut, or place. Of what was clicked, the last point is forgotten.
+
+        Raises:
+            InputError: Unknown name, or the arms are moving.
+        """
+        if name not in [task.value for task in Task]:
+            raise InputError(f"task '{name[:40]}' is unknown; choose from cut, place")
+        self._not_while_moving()
+        with self._lock:
+            self._task = Task(name)
+            self._steps = _STEPS[self._task]
+            if self._clicks is not None:
+                self._clicks.change_task(self._task)
+                self._stage, self._message = _STAGES[self._clicks.wanted()], ""
+            self._draw()
 
     def set_sliders(self, **values: float) -> None:
         """Stage 3: low_contrast, high_contrast, sensitivity between 0 and 1; the edge picture follows.
@@ -143,8 +164,9 @@ class OperatorSession:
             )
         with self._lock:
             self._settings = replace(self._settings, **values)
-            if self._choice.frame is not None and self._stage not in (Stage.PLANNING, Stage.MOVING):
-                self._process()
+            if self._clicks is not None and self._stage not in (Stage.PLANNING, Stage.MOVING):
+                self._clicks.process(self._settings)
+                self._draw()
 
     def set_fill(self, name: str) -> None:
         """What a click on the object is filled up to: surfaces or edges.
@@ -158,34 +180,18 @@ class OperatorSession:
             self._fill = Fill(name)
 
     def click(self, u: float, v: float) -> None:
-        """Stages 4 and 5: the object, then the grasp, then the cut.
+        """Stages 4 and 5: the object, then the grasp, then the cut or the place.
 
         Raises:
             InputError: What is wrong with the click; the stage stays, the arms stand still.
         """
         with self._lock:
-            choice = self._choice
-            if not (np.isfinite(u) and np.isfinite(v)):
-                raise InputError("a click needs two finite numbers")
-            if choice.snapshot is None or choice.frame is None:
+            if self._clicks is None:
                 raise InputError("take a snapshot before you click")
-            if self._stage is Stage.OBJECT:
-                choice.selected = select_object(choice.snapshot, (u, v), self._fill)
-                self._stage = Stage.GRASP
-            elif self._stage is Stage.GRASP:
-                assert choice.selected is not None
-                pixel_targets(choice.snapshot, choice.selected, (u, v), (u, v), choice.frame.camera)
-                choice.grasp, self._stage = (u, v), Stage.CUT
-            elif self._stage is Stage.CUT:
-                assert choice.selected is not None and choice.grasp is not None
-                pixels = pixel_targets(
-                    choice.snapshot, choice.selected, choice.grasp, (u, v), choice.frame.camera
-                )
-                choice.targets = pipe_targets(choice.snapshot, choice.selected, pixels, choice.frame.camera)
-                choice.pixels, self._stage = pixels, Stage.CONFIRM
-                self._message = f"Pipe of {2e3 * choice.targets.cylinder.radius:.0f} mm."
-            else:
+            if self._stage in (Stage.PLANNING, Stage.MOVING):
                 raise InputError("no click is needed now; confirm, or go back")
+            self._clicks.click(u, v, self._fill)
+            self._stage, self._message = _STAGES[self._clicks.wanted()], self._clicks.told()
             self._draw()
 
     def back(self) -> None:
@@ -196,16 +202,10 @@ class OperatorSession:
         """
         self._not_while_moving()
         with self._lock:
-            choice = self._choice
-            if self._stage is Stage.CONFIRM:
-                choice.pixels = choice.targets = None
-                self._stage = Stage.CUT
-            elif self._stage is Stage.CUT:
-                choice.grasp, self._stage = None, Stage.GRASP
-            elif self._stage is Stage.GRASP:
-                choice.selected, self._stage = None, Stage.OBJECT
+            if self._clicks is not None and self._clicks.back():
+                self._stage = _STAGES[self._clicks.wanted()]
             else:
-                self._choice, self._stage = _Choice(), Stage.LIVE
+                self._clicks, self._stage = None, Stage.LIVE
             self._message = ""
             self._draw()
 
@@ -217,9 +217,12 @@ class OperatorSession:
         """
         with self._lock:
             if self._stage is not Stage.CONFIRM:
-                raise InputError("object, grasp and cut must be clicked before you confirm")
+                last = "cut" if self._task is Task.CUT else "place"
+                raise InputError(f"object, grasp and {last} must be clicked before you confirm")
             self._stage, self._error, self._began, self._took = Stage.PLANNING, "", time.monotonic(), None
-            self._planning = self._planner.submit(self._plan_and_go, self._choice)
+            self._asked = object()
+            assert self._clicks is not None  # the stage says so
+            self._planning = self._planner.submit(self._plan_and_go, self._clicks, self._asked)
             self._planning.add_done_callback(self._after_planning)
 
     def release(self) -> None:
@@ -232,9 +235,10 @@ class OperatorSession:
         with self._lock:
             if self._done is None:
                 raise InputError("nothing is held; a task must have been started before")
-            self._choice = _Choice()
+            self._clicks = None
             self._stage, self._error, self._began, self._took = Stage.PLANNING, "", time.monotonic(), None
-            self._planning = self._planner.submit(self._release_and_go, self._choice, self._done)
+            self._asked = object()
+            self._planning = self._planner.submit(self._release_and_go, self._done, self._asked)
             self._planning.add_done_callback(self._after_planning)
             self._draw()
 
@@ -242,7 +246,7 @@ class OperatorSession:
         """Stop, resume or abort; a stop while a task is planned keeps it from starting."""
         with self._lock:
             if self._stage is Stage.PLANNING and order is not Order.RESUME:
-                self._stage = Stage.CONFIRM if self._choice.targets is not None else Stage.LIVE
+                self._stage = Stage.LIVE if self._clicks is None else Stage.CONFIRM
                 self._message = "Stopped before the arms moved."
         self._machine.order(order)
 
@@ -281,6 +285,7 @@ class OperatorSession:
                     for name in ("low_contrast", "high_contrast", "sensitivity")
                 },
                 "fill": self._fill.value,
+                "task": self._task.value,
                 "version": self._version,
                 "mode": machine.mode.name.lower(),
                 "steps": list(self._steps),
@@ -303,47 +308,25 @@ class OperatorSession:
         """`colour` or `edges` as JPEG, empty where there is none yet."""
         with self._lock:
             if name == "colour":
-                clicking = self._choice.snapshot is not None and self._stage is not Stage.MOVING
+                clicking = self._clicks is not None and self._stage is not Stage.MOVING
                 name = "colour" if clicking else "live"
             return self._pictures.get(name, b"")
 
     def _read(self) -> Frame:
         def read() -> Frame:
             if self._stand is not None:
-                self._stand(self._source, self._machine.state().position)
+                self._stand(self._source, self._machine.state())
             return self._source.read()
 
         return self._camera.submit(read).result()
 
-    def _process(self) -> None:
-        choice = self._choice
-        assert choice.frame is not None
-        choice.snapshot = take_snapshot(
-            choice.frame.colour, choice.frame.depth, choice.frame.camera, self._settings
-        )
-        self._draw()
-
     def _draw(self) -> None:
-        choice = self._choice
-        if choice.snapshot is None:
+        if self._clicks is None:
             self._pictures.pop("edges", None)
             self._version += 1
             return
-        edges, colour = choice.snapshot.edges, choice.snapshot.colour
-        shown = cv2.cvtColor(edges, cv2.COLOR_GRAY2BGR)
-        if choice.selected is not None:
-            shown = np.zeros_like(shown)
-            shown[choice.selected] = 255
-            colour = overlay(colour, choice.selected)
-        colour = colour.copy()
-        if choice.grasp is not None and choice.selected is not None and choice.frame is not None:
-            pixels = choice.pixels or pixel_targets(
-                choice.snapshot, choice.selected, choice.grasp, choice.grasp, choice.frame.camera
-            )
-            for picture in (colour, shown):
-                _mark(picture, pixels, with_cut=choice.pixels is not None)
-        self._show("colour", colour)
-        self._show("edges", shown)
+        for name, picture in self._clicks.pictures().items():
+            self._show(name, picture)
 
     def _show(self, name: str, picture: NDArray[np.uint8]) -> None:
         done, data = cv2.imencode(".jpg", picture, _QUALITY)
@@ -351,31 +334,34 @@ class OperatorSession:
             self._pictures[name] = data.tobytes()
             self._version += 1
 
-    def _plan_and_go(self, choice: _Choice) -> None:
+    def _plan_and_go(self, clicks: Clicks, asked: object) -> None:
         def told(name: str) -> None:
             with self._lock:
                 self._message = f"Planning: {name}."
 
-        assert choice.targets is not None and choice.frame is not None
-        targets, camera = choice.targets, choice.frame.camera
+        assert clicks.targets is not None
+        targets, camera, place = clicks.targets, clicks.frame.camera, clicks.place
         posture = within_limits(self._machine.state().position)
-        self._go(
-            choice, lambda: plan_task(targets, camera, posture, self._generator, on_step=told), Stage.CONFIRM
-        )
 
-    def _release_and_go(self, choice: _Choice, done: TaskPlan) -> None:
+        def make() -> TaskPlan:
+            if place is None:
+                return plan_task(targets, camera, posture, self._generator, on_step=told)
+            return plan_place_by_either(targets, place, camera, posture, self._generator, on_step=told)
+
+        self._go(asked, make, Stage.CONFIRM)
+
+    def _release_and_go(self, done: tuple[TaskPlan, str], asked: object) -> None:
         posture = within_limits(self._machine.state().position)
-        self._go(choice, lambda: plan_release(done, posture, self._generator), Stage.LIVE)
+        self._go(asked, lambda: plan_letting_go(*done, posture, self._generator), Stage.LIVE)
 
-    def _go(self, choice: _Choice, make: Callable[[], TaskPlan], otherwise: Stage) -> None:
+    def _go(self, asked: object, make: Callable[[], TaskPlan], otherwise: Stage) -> None:
         try:
             plan = make()
             with self._lock:
-                if self._stage is not Stage.PLANNING or self._choice is not choice:
+                if self._stage is not Stage.PLANNING or self._asked is not asked:
                     return  # stopped meanwhile
                 self._machine.start(plan)
-                names = tuple(step.name for step in plan.steps)
-                self._done, self._steps = (plan if names == STEPS else self._done), names
+                self._under_way, self._steps = plan, tuple(step.name for step in plan.steps)
                 self._stage, self._message = Stage.MOVING, f"Planned for {plan.duration():.1f} s."
                 self._version += 1
         except InputError as error:
@@ -387,7 +373,7 @@ class OperatorSession:
         unforeseen = None if planning.cancelled() else planning.exception()
         if unforeseen is not None:
             with self._lock:
-                self._stage, self._choice = Stage.LIVE, _Choice()
+                self._stage, self._clicks = Stage.LIVE, None
                 self._error = f"the motion could not be planned: {unforeseen}"
 
     def _after_moving(self, machine: MachineState) -> None:
@@ -399,10 +385,14 @@ class OperatorSession:
         self._took = self._seconds()
         self._began = None
         done = machine.mode is Mode.DONE
-        if done and self._steps != STEPS:
-            self._done = None  # nothing is held any more
+        plan = self._under_way
+        assert plan is not None  # it moved
+        if done:
+            self._done = (plan, "") if plan.holds else None
+        elif self._steps in _STEPS.values():  # an aborted release is begun again from the task before it
+            self._done = (plan, machine.step)
         self._message = f"{'Done' if done else 'Aborted'} after {self._took:.1f} s."
-        self._choice, self._stage = _Choice(), Stage.LIVE
+        self._clicks, self._stage = None, Stage.LIVE
         self._draw()
 
     def _seconds(self) -> float | None:
@@ -416,15 +406,3 @@ class OperatorSession:
     def settings(self) -> EdgeSettings:
         """The sliders as they stand."""
         return self._settings
-
-
-def _mark(picture: NDArray[np.uint8], pixels: PixelTargets, *, with_cut: bool) -> None:
-    """Grasp as a green ring, centre line yellow, cut magenta, drawn into the picture."""
-
-    def whole(point: Any) -> tuple[int, int]:
-        return round(point[0]), round(point[1])
-
-    cv2.line(picture, whole(pixels.line.ends[0]), whole(pixels.line.ends[1]), _YELLOW, 1, cv2.LINE_AA)
-    cv2.circle(picture, whole(pixels.grasp), 9, _GREEN, 3, cv2.LINE_AA)
-    if with_cut:
-        cv2.line(picture, whole(pixels.cut_ends[0]), whole(pixels.cut_ends[1]), _MAGENTA, 3, cv2.LINE_AA)

@@ -2,7 +2,7 @@
 
 import json
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,14 @@ from hydrolek_drake.errors import InputError
 
 Array = NDArray[np.float64]
 
-_VECTORS = {"voltage": 14, "pressure_a": 14, "pressure_b": 14, "potentiometer": 14, "grip": 2}
+_VECTORS = {
+    "voltage": 14,
+    "pressure_a": 14,
+    "pressure_b": 14,
+    "potentiometer": 14,
+    "grip": 2,
+    "pipe_place": 6,
+}
 _SCALARS = ("time", "supply_pressure", "pace")
 
 
@@ -28,6 +35,7 @@ class Signals:
         potentiometer: As read by the control computer in V; NaN for a joint without one.
         supply_pressure: In Pa.
         grip: Force on the moving finger of the right and the left gripper in N, shape (2,).
+        pipe_place: Middle of the simulated pipe in m and its axis, world frame, shape (6,); NaN without one.
         pace: Simulated seconds a second, lately; below 1 the computer is too slow.
     """
 
@@ -38,6 +46,7 @@ class Signals:
     potentiometer: Array
     supply_pressure: float
     grip: Array
+    pipe_place: Array = field(default_factory=lambda: np.full(6, np.nan))
     pace: float = 1.0
 
     def to_line(self) -> bytes:

@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-from pydrake.geometry import Cylinder
+from pydrake.geometry import Box, Cylinder
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import CoulombFriction
 from pydrake.planning import RobotDiagramBuilder, SceneGraphCollisionChecker
@@ -12,6 +12,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.arms import arm_joint_names, arms_urdf_path, position_indices
 from hydrolek_drake.kinematics.chain import SIDES
 from hydrolek_drake.workcell.pipe import Pipe, workcell_entries
+from hydrolek_drake.workcell.table import Table
 
 
 class CollisionWorld:
@@ -21,10 +22,16 @@ class CollisionWorld:
         pipe: The pipe, or None for none.
         padding: Distance in m within which two shapes count as touching.
         holding: Sides (`right`, `left`) whose gripper may touch the pipe.
+        table: What stands below, or None.
     """
 
     def __init__(
-        self, pipe: Pipe | None, *, padding: float | None = None, holding: tuple[str, ...] = ()
+        self,
+        pipe: Pipe | None,
+        *,
+        padding: float | None = None,
+        holding: tuple[str, ...] = (),
+        table: Table | None = None,
     ) -> None:
         values = workcell_entries()["motion"]
         self.padding = float(values["padding"] if padding is None else padding)
@@ -38,6 +45,10 @@ class CollisionWorld:
             plant.RegisterCollisionGeometry(
                 plant.world_body(), pose, Cylinder(pipe.radius, pipe.length), "pipe", CoulombFriction()
             )
+        if table is not None:
+            pose = RigidTransform(table.top - [0.0, 0.0, 0.5 * table.thickness])
+            board = Box(*table.size, table.thickness)
+            plant.RegisterCollisionGeometry(plant.world_body(), pose, board, "table", CoulombFriction())
         plant.Finalize()
         self._order = position_indices(plant, list(arm_joint_names()))
         model = builder.Build()
@@ -61,6 +72,25 @@ class CollisionWorld:
                 self._checker.SetCollisionFilteredBetween(
                     *(plant.GetBodyByName(f"{side}_{link}") for link in pair), True
                 )
+
+    def carry(self, side: str, posture: Any, pipe: Pipe) -> None:
+        """From now on a pipe is part of a hand, in place of one before; hand, jaw and the link next to it may touch it.
+
+        Args:
+            side: `right` or `left`.
+            posture: In which the hand holds the pipe.
+            pipe: Where the pipe is then.
+        """
+        plant = self._checker.plant()
+        context = plant.CreateDefaultContext()
+        plant.SetPositions(context, self._positions(posture))
+        hand = plant.GetBodyByName(f"{side}_link6")
+        place = RigidTransform(RotationMatrix(pipe.rotation()), pipe.point)
+        in_hand = plant.EvalBodyPoseInWorld(context, hand).inverse() @ place
+        shape = Cylinder(pipe.radius, pipe.length)
+        self._checker.RemoveAllAddedCollisionShapes("carried")
+        if not self._checker.AddCollisionShapeToBody("carried", hand, shape, in_hand):
+            raise InputError("the pipe cannot be made part of the hand")
 
     def free(self, posture: Any) -> bool:
         """Whether nothing touches."""

@@ -1,6 +1,7 @@
 """Postures for grasping and cutting a pipe: from which side, and whether the arm can."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,7 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.chain import SIDES
-from hydrolek_drake.kinematics.frames import direction_in_frame, in_frame
+from hydrolek_drake.kinematics.forward import tool_pose
+from hydrolek_drake.kinematics.frames import direction_in_frame, fixed_pose, in_frame
 from hydrolek_drake.kinematics.inverse import inverse_pose, inverse_position
 from hydrolek_drake.workcell.collision import CollisionWorld
 from hydrolek_drake.workcell.pipe import workcell_entries
@@ -127,6 +129,25 @@ def grasp_path(
     Raises:
         InputError: No direction works; says why.
     """
+    return next(grasp_paths(point, axis, sight, distance, posture, side, clear, holding))
+
+
+def grasp_paths(
+    point: ArrayLike,
+    axis: ArrayLike,
+    sight: ArrayLike,
+    distance: float,
+    posture: Array,
+    side: str,
+    clear: CollisionWorld,
+    holding: CollisionWorld,
+) -> Iterator[ToolPath]:
+    """All ways as `grasp_path`, best first, with the same arguments.
+
+    Raises:
+        InputError: There is not one; says why.
+    """
+    found = False
     opened = _with_jaw(posture, side, workcell_entries()["grasp"]["open_deg"])
     point = np.asarray(point, dtype=float)
     blocked = ""
@@ -150,8 +171,10 @@ def grasp_path(
                 blocked = f"{_pairs(holding, stuck)} would touch on the way"
                 continue
             points = start + np.linspace(0, 1, len(angles))[:, np.newaxis] * (point - start)
-            return ToolPath(side, angles, direction, points, tilt)
-    raise InputError(_why(side, point, blocked, "grasp"))
+            found = True
+            yield ToolPath(side, angles, direction, points, tilt)
+    if not found:
+        raise InputError(_why(side, point, blocked, "grasp"))
 
 
 def cut_path(
@@ -204,6 +227,12 @@ def with_arm(posture: Array, side: str, angles: Array) -> Array:
     changed = np.array(posture, dtype=float)
     changed[_arm(side)][:6] = angles
     return changed
+
+
+def tool_in_world(posture: Array, side: str) -> tuple[Array, Array]:
+    """Rotation matrix (3, 3) and position in m (3,) of a tool, both arms at `posture`, shape (14,)."""
+    pose = fixed_pose("world", f"{side}_base") @ tool_pose(posture[_arm(side)][:6])
+    return pose[:3, :3], pose[:3, 3]
 
 
 def _with_jaw(posture: Array, side: str, degrees: float) -> Array:

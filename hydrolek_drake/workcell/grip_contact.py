@@ -1,4 +1,4 @@
-"""Contact of both grippers' hands and fingers with a fixed pipe, as forces on the simulated machine."""
+"""Contact of both grippers' hands and fingers with a pipe, clamped or loose, as forces on the simulated machine."""
 
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
@@ -11,11 +11,13 @@ from pydrake.math import RollPitchYaw
 from pydrake.multibody.math import SpatialForce
 from pydrake.multibody.plant import ExternallyAppliedSpatialForce, MultibodyPlant
 from pydrake.multibody.tree import RigidBody
-from pydrake.systems.framework import BasicVector, Context, LeafSystem
+from pydrake.systems.framework import BasicVector, Context, LeafSystem, State
 
 from hydrolek_drake.kinematics.arms import arms_urdf_path
 from hydrolek_drake.kinematics.chain import SIDES
+from hydrolek_drake.workcell.loose_pipe import GRAVITY, LoosePipe, Pose
 from hydrolek_drake.workcell.pipe import Pipe, workcell_entries
+from hydrolek_drake.workcell.table import Table
 
 Array = NDArray[np.float64]
 
@@ -58,22 +60,36 @@ def fingers(side: str) -> list[Finger]:
 
 
 class GripContact(LeafSystem):
-    """Normal forces between a pipe that does not give way and the grippers; no friction.
+    """Normal forces between a pipe and the grippers.
 
     Each box of a gripper is a rod with round ends. Where one is nearer to the pipe's axis than both radii, it is
     pushed away along the shortest way between them, by F = k d (1 + c d') with the depth d (Hunt and Crossley 1975);
     never pulled.
 
+    A clamped pipe does not give way. A loose one (where there is a table) does not either until a gripper holds it:
+    until moving and fixed fingers press so hard that friction on both carries its weight, 2 mu F >= m g. Held, it moves
+    with the hand as one body: the moving finger's force acts on the hand with opposite sign, and its weight at its
+    middle; its inertia is left out. What lets go of it drops it (`loose_pipe.LoosePipe`).
+
     Ports:
         in `plant_state` (all positions and velocities of the plant).
         out `contact_force`: list of forces on bodies, for the plant's `applied_spatial_force`.
         out `grip_force` (2): on the right and the left gripper's moving finger [N].
+        out `pipe_place` (6): middle of the pipe in m and its axis, world frame.
     """
 
-    def __init__(self, plant: MultibodyPlant, pipe: Pipe) -> None:
+    def __init__(self, plant: MultibodyPlant, pipe: Pipe, table: Table | None = None) -> None:
         super().__init__()
         self.set_name("grip_contact")
-        self._plant, self._pipe = plant, pipe
+        self._plant, self._table = plant, table
+        loose = workcell_entries()["loose_pipe"]
+        self._weight = float(loose["mass"]) * GRAVITY
+        self._carries = self._weight / (2.0 * float(loose["friction"]))
+        self._period = float(loose["follow"])
+        self._first = LoosePipe(pipe)
+        self._loose = self.DeclareAbstractState(Value[object](self._first))
+        if table is not None:
+            self.DeclarePeriodicUnrestrictedUpdateEvent(self._period, 0.0, self._follow)
         values = workcell_entries()["contact"]
         self._stiffness, self._damping = float(values["stiffness"]), float(values["damping"])
         self._reach = float(values["reach"])
@@ -92,14 +108,18 @@ class GripContact(LeafSystem):
             force.body_index = plant.GetBodyByName(f"{side}_{finger.link}").index()
             self._templates.append(force)
         self.plant_state = self.DeclareVectorInputPort("plant_state", plant.num_multibody_states())
+        needed = {self.plant_state.ticket(), self.abstract_state_ticket(self._loose)}
         self.contact_force = self.DeclareAbstractOutputPort(
             "contact_force",
             lambda: Value[list[ExternallyAppliedSpatialForce]](),
             self._calc_force,
-            prerequisites_of_calc={self.plant_state.ticket()},
+            prerequisites_of_calc=needed,
         )
         self.grip_force = self.DeclareVectorOutputPort(
-            "grip_force", len(SIDES), self._calc_grip, prerequisites_of_calc={self.plant_state.ticket()}
+            "grip_force", len(SIDES), self._calc_grip, prerequisites_of_calc=needed
+        )
+        self.pipe_place = self.DeclareVectorOutputPort(
+            "pipe_place", 6, self._calc_place, prerequisites_of_calc=needed
         )
 
     def _part(self, side: str, link: str) -> tuple[RigidBody, slice, Array, Array]:
@@ -114,34 +134,47 @@ class GripContact(LeafSystem):
         ends, radii = np.array([finger.ends for finger in own]), np.array([finger.radius for finger in own])
         return self._plant.GetBodyByName(f"{side}_{link}"), chosen, ends, radii
 
-    def touches(self, state: Array) -> tuple[Array, Array]:
+    def touches(self, state: Array, loose: LoosePipe | None = None) -> tuple[Array, Array]:
         """Where each finger of `self.fingers` is pushed.
 
         Args:
             state: Of the plant, positions and velocities.
+            loose: The pipe as `pipe_in` a context; where it was at first if not given.
 
         Returns:
             Points in the fingers' links' frames in m, and forces in the world frame in N, each of shape (n, 3).
         """
         points, forces = np.zeros((len(self.fingers), 3)), np.zeros((len(self.fingers), 3))
         self._plant.SetPositionsAndVelocities(self._own, state)
-        for hand, parts in self._sides:
+        loose = self._first if loose is None else loose
+        pipe = loose.now(self._hands())
+        for side, (hand, parts) in zip(SIDES, self._sides, strict=True):
             pose = self._plant.EvalBodyPoseInWorld(self._own, hand)
-            if np.linalg.norm(_square_to(self._pipe, pose.translation() - self._pipe.point)) > self._reach:
+            if np.linalg.norm(_square_to(pipe, pose.translation() - pipe.point)) > self._reach:
                 continue
+            carried = self._plant.EvalBodySpatialVelocityInWorld(self._own, hand)
             for body, chosen, ends, radii in parts:
-                pose = self._plant.EvalBodyPoseInWorld(self._own, body)
+                place = self._plant.EvalBodyPoseInWorld(self._own, body)
                 velocity = self._plant.EvalBodySpatialVelocityInWorld(self._own, body)
+                turning, sliding = velocity.rotational(), velocity.translational()
+                if (
+                    loose.holder == side
+                ):  # the pipe moves with the hand; only the moving finger moves against it
+                    if body is hand:
+                        continue
+                    turning = turning - carried.rotational()
+                    arm = place.translation() - pose.translation()
+                    sliding = sliding - carried.translational() - np.cross(carried.rotational(), arm)
                 _touch(
                     ends,
                     radii,
-                    pose.rotation().matrix(),
-                    pose.translation() - self._pipe.point,
-                    velocity.rotational(),
-                    velocity.translational(),
-                    self._pipe.axis,
-                    self._pipe.radius,
-                    0.5 * self._pipe.length,
+                    place.rotation().matrix(),
+                    place.translation() - pipe.point,
+                    turning,
+                    sliding,
+                    pipe.axis,
+                    pipe.radius,
+                    0.5 * pipe.length,
                     self._stiffness,
                     self._damping,
                     points[chosen],
@@ -149,22 +182,72 @@ class GripContact(LeafSystem):
                 )
         return points, forces
 
+    def sizes(self, context: Context) -> Array:
+        """Force on each finger of `self.fingers` in N, shape (n,)."""
+        _, pushes = self.touches(self.plant_state.Eval(context), self.pipe_in(context))
+        return np.array(np.linalg.norm(pushes, axis=1))
+
+    def pipe_in(self, context: Context) -> LoosePipe:
+        """The pipe as this system's context has it."""
+        loose: LoosePipe = context.get_abstract_state(int(self._loose)).get_value()
+        return loose
+
+    def _hands(self) -> list[Pose]:
+        """Of the plant as it stands in this system's own context."""
+        poses = [self._plant.EvalBodyPoseInWorld(self._own, hand) for hand, _ in self._sides]
+        return [(pose.rotation().matrix(), np.array(pose.translation())) for pose in poses]
+
+    def _follow(self, context: Context, state: State) -> None:
+        assert self._table is not None  # else this is never called
+        loose, sizes = self.pipe_in(context), self.sizes(context)
+        gripped = []
+        for side in SIDES:
+            pressed = []
+            for part in (_MOVING, _FIXED):
+                mine = [(owner, finger.link) == (side, part) for owner, finger in self.fingers]
+                pressed.append(float(sizes[mine].sum()) >= self._carries)
+            gripped.append(pressed[0] and (pressed[1] or loose.holder == side))
+        after = loose.step(self._hands(), gripped, self._table, self._period)
+        if after is not loose:
+            state.get_mutable_abstract_state(int(self._loose)).set_value(after)
+
     def _calc_force(self, context: Context, output: AbstractValue) -> None:
-        points, pushes = self.touches(self.plant_state.Eval(context))
+        loose = self.pipe_in(context)
+        points, pushes = self.touches(self.plant_state.Eval(context), loose)
         forces = []
         for index in np.flatnonzero(pushes.any(axis=1)):
             force = self._templates[index]
             force.p_BoBq_B = points[index]
             force.F_Bq_W = SpatialForce(_NO_TORQUE, pushes[index])
             forces.append(force)
+            if loose.holder == self.fingers[index][0]:  # what the finger presses, the hand holds against
+                finger = self._sides[SIDES.index(loose.holder)][1][1][0]
+                where = self._plant.EvalBodyPoseInWorld(self._own, finger).multiply(points[index])
+                forces.append(self._on_hand(loose.holder, where, -pushes[index]))
+        if loose.holder:
+            middle = loose.now(self._hands()).point
+            forces.append(self._on_hand(loose.holder, middle, np.array([0.0, 0.0, -self._weight])))
         output.set_value(forces)
 
+    def _on_hand(self, side: str, point: Array, push: Array) -> ExternallyAppliedSpatialForce:
+        """A force on a hand at a point of the world."""
+        hand = self._sides[SIDES.index(side)][0]
+        force = ExternallyAppliedSpatialForce()
+        force.body_index = hand.index()
+        force.p_BoBq_B = self._plant.EvalBodyPoseInWorld(self._own, hand).inverse().multiply(point)
+        force.F_Bq_W = SpatialForce(_NO_TORQUE, push)
+        return force
+
     def _calc_grip(self, context: Context, output: BasicVector) -> None:
-        _, pushes = self.touches(self.plant_state.Eval(context))
-        sizes = np.linalg.norm(pushes, axis=1)
+        sizes = self.sizes(context)
         for place, side in enumerate(SIDES):
             moving = [owner == side and finger.link == _MOVING for owner, finger in self.fingers]
             output[place] = float(sizes[moving].sum())
+
+    def _calc_place(self, context: Context, output: BasicVector) -> None:
+        self._plant.SetPositionsAndVelocities(self._own, self.plant_state.Eval(context))
+        pipe = self.pipe_in(context).now(self._hands())
+        output.SetFromVector([*pipe.point, *pipe.axis])
 
 
 @njit(cache=True)

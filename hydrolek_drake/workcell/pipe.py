@@ -1,6 +1,6 @@
 """The pipe that is grasped and cut, and the other numbers of `workcell.yaml`."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -36,6 +36,23 @@ class Pipe:
         x = np.cross([0.0, 1.0, 0.0] if abs(z[1]) < 0.9 else [1.0, 0.0, 0.0], z)
         x /= np.linalg.norm(x)
         return np.column_stack([x, np.cross(z, x), z])
+
+    def lowest(self) -> float:
+        """Height of its lowest point in m."""
+        up = float(abs(self.axis[2]))
+        return float(self.point[2] - 0.5 * self.length * up - self.radius * np.sqrt(max(0.0, 1.0 - up**2)))
+
+    def at(self, place: ArrayLike) -> "Pipe":
+        """The same pipe with its middle and axis given one after the other, shape (6,)."""
+        values = np.asarray(place, dtype=float)
+        return replace(self, point=values[:3], axis=values[3:] / np.linalg.norm(values[3:]))
+
+    def moved(self, rotation: ArrayLike, translation: ArrayLike) -> "Pipe":
+        """The pipe turned about the origin and then shifted, by a matrix (3, 3) and a vector (3,)."""
+        turn = np.asarray(rotation, dtype=float)
+        return replace(
+            self, point=turn @ self.point + np.asarray(translation, dtype=float), axis=turn @ self.axis
+        )
 
 
 def make_pipe(

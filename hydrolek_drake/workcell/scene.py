@@ -15,11 +15,13 @@ from pydrake.geometry import (
 )
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import CoulombFriction, MultibodyPlant
+from pydrake.multibody.tree import FixedOffsetFrame, SpatialInertia, default_model_instance
 from pydrake.systems.framework import Diagram, DiagramBuilder
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.arms import add_arms, arm_joint_names, position_indices
 from hydrolek_drake.workcell.pipe import Pipe, home_angles, workcell_entries
+from hydrolek_drake.workcell.table import Table
 
 RENDERER = "vtk"
 
@@ -36,6 +38,7 @@ class Scene:
         scene_graph: Shapes, collisions, renderer.
         order: Index of each joint `right_j1` ... `left_j7` in the plant's positions, shape (14,).
         pipe: What is in the scene, or None.
+        pipe_frame: The pipe's place, a frame whose pose is a parameter of the Context; None without a pipe.
     """
 
     diagram: Diagram
@@ -43,6 +46,7 @@ class Scene:
     scene_graph: SceneGraph
     order: list[int]
     pipe: Pipe | None
+    pipe_frame: Any = None
 
     def positions(self, angles: Any) -> Any:
         """The plant's position vector for joints `right_j1` ... `left_j7` in rad, shape (14,).
@@ -63,27 +67,31 @@ def home_posture() -> Any:
     return np.concatenate([home_angles("right"), home_angles("left")])
 
 
-def make_scene(pipe: Pipe | None, *, rendered: bool, meshcat: Meshcat | None = None) -> Scene:
-    """Arms, floor, wall and pipe.
+def make_scene(
+    pipe: Pipe | None, *, rendered: bool, meshcat: Meshcat | None = None, table: Table | None = None
+) -> Scene:
+    """Arms, floor, wall, pipe and table.
 
     Args:
         pipe: The pipe, or None for none.
+        table: What it stands on, or None.
         rendered: Whether a renderer for the camera is added.
         meshcat: Browser view to show the scene in, if any.
     """
     builder = DiagramBuilder()
+    frames: list[Any] = []
     arms = add_arms(
         builder,
         time_step=0.0,
         meshcat=meshcat,
-        before_finalize=lambda plant: _furnish(plant, pipe),
+        before_finalize=lambda plant: frames.append(_furnish(plant, pipe, table)),
     )
     if rendered:
         add_renderer(arms.scene_graph)
     diagram = builder.Build()
     diagram.set_name("workcell")
     order = position_indices(arms.plant, list(arm_joint_names()))
-    return Scene(diagram, arms.plant, arms.scene_graph, order, pipe)
+    return Scene(diagram, arms.plant, arms.scene_graph, order, pipe, frames[0])
 
 
 def add_renderer(scene_graph: SceneGraph) -> None:
@@ -96,15 +104,25 @@ def add_renderer(scene_graph: SceneGraph) -> None:
     scene_graph.AddRenderer(RENDERER, MakeRenderEngineVtk(RenderEngineVtkParams(lights=lamps)))
 
 
-def _furnish(plant: MultibodyPlant, pipe: Pipe | None) -> None:
+def _furnish(plant: MultibodyPlant, pipe: Pipe | None, table: Table | None) -> Any:
+    """Floor, wall, table and pipe; returns the frame of the pipe."""
     room = workcell_entries()["room"]
     world, friction = plant.world_body(), CoulombFriction()
     floor = RigidTransform([0.0, 0.0, -_THICK / 2])
     plant.RegisterVisualGeometry(world, floor, Box(8.0, 8.0, _THICK), "floor", [*room["floor_colour"], 1.0])
     wall = RigidTransform([room["wall_distance"] + _THICK / 2, 0.0, 1.25])
     plant.RegisterVisualGeometry(world, wall, Box(_THICK, 8.0, 2.5), "wall", [*room["wall_colour"], 1.0])
-    if pipe is not None:
-        pose = RigidTransform(RotationMatrix(pipe.rotation()), pipe.point)
-        shape, colour = Cylinder(pipe.radius, pipe.length), workcell_entries()["pipe"]["colour"]
-        plant.RegisterVisualGeometry(world, pose, shape, "pipe", [*colour, 1.0])
-        plant.RegisterCollisionGeometry(world, pose, shape, "pipe", friction)
+    if table is not None:
+        board = RigidTransform(table.top - [0.0, 0.0, 0.5 * table.thickness])
+        colour = [*workcell_entries()["table"]["colour"], 1.0]
+        plant.RegisterVisualGeometry(world, board, Box(*table.size, table.thickness), "table", colour)
+    if pipe is None:
+        return None
+    pose = RigidTransform(RotationMatrix(pipe.rotation()), pipe.point)
+    frame = plant.AddFrame(FixedOffsetFrame("pipe_place", world, pose))
+    body = plant.AddRigidBody("pipe", default_model_instance(), SpatialInertia.Zero())
+    plant.WeldFrames(frame, body.body_frame())
+    shape, colour = Cylinder(pipe.radius, pipe.length), workcell_entries()["pipe"]["colour"]
+    plant.RegisterVisualGeometry(body, RigidTransform(), shape, "pipe", [*colour, 1.0])
+    plant.RegisterCollisionGeometry(body, RigidTransform(), shape, "pipe", friction)
+    return frame

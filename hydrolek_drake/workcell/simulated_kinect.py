@@ -1,6 +1,7 @@
 """The Kinect on the plate between the arms, rendered by Drake: 640 x 480 px, 57 x 43 degrees."""
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,7 +12,7 @@ from pydrake.geometry import (
     DepthRenderCamera,
     RenderCameraCore,
 )
-from pydrake.math import RigidTransform
+from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.systems.sensors import CameraInfo
 
 from hydrolek_drake.vision.camera import camera_pose, thesis_camera
@@ -20,6 +21,7 @@ from hydrolek_drake.vision.frames import Frame, FrameSource
 from hydrolek_drake.vision.kinect_noise import kinect_depth
 from hydrolek_drake.workcell.pipe import Pipe
 from hydrolek_drake.workcell.scene import RENDERER, Scene, home_posture, make_scene
+from hydrolek_drake.workcell.table import Table
 
 _CLIPPED = (0.05, 10.0)  # m, beyond what the sensor sees on both sides
 
@@ -32,8 +34,15 @@ class SimulatedKinect(FrameSource):
         brightness: Share of the light that is on; poor light darkens the picture and makes it grainy.
     """
 
-    def __init__(self, pipe: Pipe | None, generator: np.random.Generator, *, brightness: float = 1.0) -> None:
-        self.scene: Scene = make_scene(pipe, rendered=True)
+    def __init__(
+        self,
+        pipe: Pipe | None,
+        generator: np.random.Generator,
+        *,
+        brightness: float = 1.0,
+        table: Table | None = None,
+    ) -> None:
+        self.scene: Scene = make_scene(pipe, rendered=True, table=table)
         self.brightness = brightness
         self._generator = generator
         self._context = self.scene.diagram.CreateDefaultContext()
@@ -47,6 +56,12 @@ class SimulatedKinect(FrameSource):
         """
         plant = self.scene.plant
         plant.SetPositions(plant.GetMyMutableContextFromRoot(self._context), self.scene.positions(angles))
+
+    def put(self, pipe: Pipe) -> None:
+        """Put the pipe of the scene elsewhere; what its sizes are stays."""
+        context = self.scene.plant.GetMyMutableContextFromRoot(self._context)
+        place = RigidTransform(RotationMatrix(pipe.rotation()), pipe.point)
+        self.scene.pipe_frame.SetPoseInParentFrame(context, place)
 
     def read(self) -> Frame:
         """Render the scene and add what a Kinect adds."""
@@ -71,6 +86,19 @@ class SimulatedKinect(FrameSource):
         # a darker picture is amplified less than it is dimmed, and its grain shows
         dimmed = colour * self.brightness + self._generator.normal(0.0, 2.0, colour.shape)
         return np.clip(dimmed.round(), 0, 255).astype(np.uint8)
+
+
+def as_machine_stands(source: FrameSource, state: Any) -> None:
+    """Put arms and a loose pipe where a machine has them.
+
+    Args:
+        source: A `SimulatedKinect`; any other source sees for itself.
+        state: Of the machine: `position` of the joints, and `pipe` or None.
+    """
+    if isinstance(source, SimulatedKinect):
+        source.stand(state.position)
+        if state.pipe is not None:
+            source.put(state.pipe)
 
 
 @cache

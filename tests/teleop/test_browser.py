@@ -12,7 +12,7 @@ from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.session import OperatorSession
 from hydrolek_drake.workcell.pipe import make_pipe
 from hydrolek_drake.workcell.scene import home_posture
-from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
+from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect, as_machine_stands
 
 playwright = pytest.importorskip("playwright.sync_api", reason="needs Playwright to drive a browser")
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -30,7 +30,7 @@ def address():
             lambda: SimulatedKinect(make_pipe(), np.random.default_rng(1)),
             machine,
             seed=1,
-            stand=lambda source, angles: source.stand(angles),
+            stand=as_machine_stands,
         )
         console = Console(session, port=0)
         running = asyncio.ensure_future(console.run())

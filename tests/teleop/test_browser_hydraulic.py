@@ -25,7 +25,7 @@ from hydrolek_drake.teleop.trial import TrialLog
 from hydrolek_drake.vision.configuration import kinect_entries
 from hydrolek_drake.workcell.pipe import make_pipe, workcell_entries
 from hydrolek_drake.workcell.scene import home_posture
-from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
+from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect, as_machine_stands
 
 playwright = pytest.importorskip("playwright.sync_api", reason="needs Playwright to drive a browser")
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -54,7 +54,7 @@ class Served:
             lambda: SimulatedKinect(pipe, np.random.default_rng(1)),
             machine,
             seed=1,
-            stand=lambda source, angles: source.stand(angles),
+            stand=as_machine_stands,
         )
         console = Console(session, port=0, view_port=plant.view_port, trials=TrialLog(self.folder))
         running = asyncio.ensure_future(console.run())

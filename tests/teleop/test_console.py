@@ -15,7 +15,7 @@ from hydrolek_drake.teleop.session import OperatorSession
 from hydrolek_drake.teleop.trial import SCALES, TrialLog
 from hydrolek_drake.workcell.pipe import make_pipe
 from hydrolek_drake.workcell.scene import home_posture
-from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
+from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect, as_machine_stands
 
 
 def _served(work):
@@ -27,7 +27,7 @@ def _served(work):
             lambda: SimulatedKinect(make_pipe(), np.random.default_rng(1)),
             machine,
             seed=1,
-            stand=lambda source, angles: source.stand(angles),
+            stand=as_machine_stands,
         )
         console = Console(session, port=0)
         running = asyncio.ensure_future(console.run())

@@ -14,7 +14,7 @@ from hydrolek_drake.vision.camera import recorded_camera
 from hydrolek_drake.vision.frames import Frame, FrameSource
 from hydrolek_drake.workcell.pipe import make_pipe
 from hydrolek_drake.workcell.scene import home_posture
-from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
+from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect, as_machine_stands
 
 COLUMN = 319.5  # the default pipe stands in the middle of the picture
 
@@ -32,7 +32,7 @@ def session(machine):
         lambda: SimulatedKinect(make_pipe(), np.random.default_rng(1)),
         machine,
         seed=1,
-        stand=lambda source, angles: source.stand(angles),
+        stand=as_machine_stands,
     )
     yield session
     session.close()

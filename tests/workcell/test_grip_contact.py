@@ -1,7 +1,10 @@
 """Forces between grippers and a pipe, by geometry and by equilibrium."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
 from hydrolek_drake.kinematics.arms import add_arms, arm_joint_names, position_indices
@@ -10,6 +13,7 @@ from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.workcell.grip_contact import GripContact, fingers
 from hydrolek_drake.workcell.pipe import make_pipe, workcell_entries
 from hydrolek_drake.workcell.scene import home_posture
+from hydrolek_drake.workcell.table import make_table
 
 STIFFNESS = workcell_entries()["contact"]["stiffness"]
 
@@ -103,3 +107,71 @@ def test_beyond_the_pipe_s_end_nothing_is_touched(plant):
     assert GripContact(plant, pipe).touches(_state(plant, posture))[1].any()
     beside = make_pipe(pipe.point + 0.8 * pipe.axis, pipe.axis)
     assert not GripContact(plant, beside).touches(_state(plant, posture))[1].any()
+
+
+def _loose(plant, posture, jaw_deg):
+    """A closed right gripper around a loose pipe at its tool, its context, and what stands below."""
+    posture = posture.copy()
+    posture[6] = np.radians(jaw_deg)
+    pipe = _pipe_in_the_gripper(posture)
+    table = replace(make_table(), top=np.array([pipe.point[0], pipe.point[1], pipe.lowest()]))
+    contact = GripContact(plant, pipe, table)
+    simulator = Simulator(contact)
+    contact.plant_state.FixValue(simulator.get_mutable_context(), _state(plant, posture))
+    simulator.AdvanceTo(0.05)
+    return contact, simulator, pipe
+
+
+def _total(plant, contact, context, state):
+    """Sum of all forces, and of their moments about the world's origin."""
+    own = plant.CreateDefaultContext()
+    plant.SetPositionsAndVelocities(own, state)
+    force, moment = np.zeros(3), np.zeros(3)
+    for each in contact.contact_force.Eval(context):
+        place = plant.EvalBodyPoseInWorld(own, plant.get_body(each.body_index)) @ each.p_BoBq_B
+        force += each.F_Bq_W.translational()
+        moment += np.cross(place, each.F_Bq_W.translational())
+    return force, moment
+
+
+def test_a_held_pipe_adds_its_weight_at_its_middle_and_nothing_else(plant):
+    """What the finger presses is held against by the hand: forces and moments cancel but for the weight."""
+    posture = home_posture()
+    contact, simulator, pipe = _loose(plant, posture, 18.0)
+    context = simulator.get_mutable_context()
+    assert contact.pipe_in(context).holder == "right"
+    assert contact.grip_force.Eval(context)[0] > 1e3 and contact.grip_force.Eval(context)[1] == 0.0
+    posture[6] = np.radians(18.0)
+    force, moment = _total(plant, contact, context, _state(plant, posture))
+    weight = np.array([0.0, 0.0, -workcell_entries()["loose_pipe"]["mass"] * 9.81])
+    np.testing.assert_allclose(force, weight, atol=1e-6)
+    np.testing.assert_allclose(moment, np.cross(pipe.point, weight), atol=1e-6)
+
+
+def test_a_held_pipe_goes_with_the_hand_and_is_dropped_when_the_jaw_opens(plant):
+    posture = home_posture()
+    contact, simulator, pipe = _loose(plant, posture, 18.0)
+    context = simulator.get_mutable_context()
+    turn = np.radians(10.0)
+    posture[[1, 6]] += [turn, np.radians(18.0 - 40.0)]  # the arm up
+    contact.plant_state.FixValue(context, _state(plant, posture))
+    place = contact.pipe_place.Eval(context)
+    lifted = np.linalg.norm(place[:3] - pipe.point)
+    shoulder = in_frame([0.07, 0.0, 0.0], given_in="right_base", wanted_in="world")
+    assert lifted == pytest.approx(2 * np.sin(turn / 2) * np.linalg.norm(pipe.point - shoulder), rel=0.05)
+    grip = contact.grip_force.Eval(context)[0]
+    simulator.AdvanceTo(0.10)
+    assert contact.grip_force.Eval(context)[0] == pytest.approx(grip)  # as firm as before
+    posture[6] = np.radians(40.0)
+    contact.plant_state.FixValue(context, _state(plant, posture))
+    simulator.AdvanceTo(1.5)
+    loose = contact.pipe_in(context)
+    assert loose.holder == "" and loose.falling == 0.0
+    assert loose.pipe.lowest() in (pytest.approx(pipe.lowest(), abs=1e-9), pytest.approx(0.0, abs=1e-9))
+
+
+def test_a_loose_pipe_that_only_the_fixed_fingers_touch_is_not_held(plant):
+    contact, simulator, pipe = _loose(plant, home_posture(), 40.0)
+    context = simulator.get_mutable_context()
+    assert contact.pipe_in(context).holder == ""
+    np.testing.assert_allclose(contact.pipe_place.Eval(context)[:3], pipe.point, atol=1e-12)
