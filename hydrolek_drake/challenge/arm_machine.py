@@ -15,6 +15,9 @@ from numba import njit
 from hydrolek_drake.challenge.arm_numbers import ArmMachine
 from hydrolek_drake.challenge.driving import SAMPLE_S, Driving, Played, controlled, turned_back
 
+UNPRESSED = 1e-9
+"""A weight that would press a play together by less than this share of its gap is rounding: it takes up no side."""
+
 STEP_S = 2e-5
 """Half of it changes the angle by 1.2e-4 deg at most, with a play by 1.6e-3 deg: see docs/concealed_effects.md."""
 
@@ -186,7 +189,7 @@ def _at_rest(machine: ArmMachine, start: float) -> np.ndarray:
     moment += load * g.tool_weight * math.cos(start + g.tool_phase)
     tilt = -moment / g.base_k if g.base_k > 0.0 else 0.0  # the base leans against the load
     side = start
-    if g.gap_rad > 0.0 and moment != 0.0:
+    if g.gap_rad > 0.0 and abs(moment) > UNPRESSED * g.play_k * g.gap_rad:
         side += g.play_up * (math.copysign(0.5 * g.gap_rad, moment) + moment / g.play_k)
     _, lever, _ = _actuator(g, side - tilt)
     p_b = g.start_p_b
