@@ -169,7 +169,15 @@ def test_signals_are_answered_as_sent_and_open_nothing(server):
     assert client.signals() is None and not server.command()[1]
     vectors = np.arange(14.0)
     sent = Signals(
-        1.25, vectors, 1e6 + vectors, 2e6 + vectors, np.full(14, np.nan), 1.6e7, np.array([1.5, 0.0]), 0.98
+        1.25,
+        vectors,
+        1e6 + vectors,
+        2e6 + vectors,
+        np.full(14, np.nan),
+        1.6e7,
+        np.array([1.5, 0.0]),
+        pipe_place=np.array([1.8, 0.1, 1.0, 0.0, 0.6, 0.8]),
+        pace=0.98,
     )
     server.report(home_posture(), sent)
     got = client.signals()
@@ -178,6 +186,7 @@ def test_signals_are_answered_as_sent_and_open_nothing(server):
         "supply_pressure",
         "pace",
         "grip",
+        "pipe_place",
         "voltage",
         "pressure_a",
         "pressure_b",
