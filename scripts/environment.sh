@@ -13,8 +13,14 @@ if ! "$python" -c 'import sys; sys.exit(sys.version_info < (3, 10))'; then
   exit 1
 fi
 
+# The console's tests drive a browser where there is one.
+extras=test
+for browser in chromium chromium-browser google-chrome; do
+  if command -v "$browser" >/dev/null; then extras=test,browser; fi
+done
+
 # What is installed depends on these; where they are as on the last run, there is nothing to do.
-wanted="$({ pwd; "$python" -VV; cat pyproject.toml constraints.txt; } | sha256sum | cut -d' ' -f1)"
+wanted="$({ pwd; "$python" -VV; echo "$extras"; cat pyproject.toml constraints.txt; } | sha256sum | cut -d' ' -f1)"
 if [[ "$(cat .venv/installed-for 2>/dev/null)" != "$wanted" ]]; then
   if ! "$python" -c 'import venv, ensurepip' 2>/dev/null; then
     echo "$("$python" --version) cannot make virtual environments (Debian, Ubuntu: apt-get install python3-venv)" >&2
@@ -22,7 +28,7 @@ if [[ "$(cat .venv/installed-for 2>/dev/null)" != "$wanted" ]]; then
   fi
   echo "installing into .venv (a few minutes, once)" >&2
   "$python" -m venv --clear .venv
-  .venv/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[test]'
+  .venv/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable ".[$extras]"
   echo "$wanted" >.venv/installed-for
 fi
 export PATH="$PWD/.venv/bin:$PATH"

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.teleop.camera_thread import CameraThread
 from hydrolek_drake.teleop.clicks import Clicks, Task, Wanted
 from hydrolek_drake.teleop.hand import travel, within_limits
 from hydrolek_drake.teleop.machine import Machine, MachineState
@@ -22,7 +23,7 @@ from hydrolek_drake.teleop.release import plan_letting_go
 from hydrolek_drake.teleop.sequencer import Mode, Order
 from hydrolek_drake.teleop.signals import shown
 from hydrolek_drake.vision.edges import EdgeSettings, default_settings
-from hydrolek_drake.vision.frames import Frame, FrameSource
+from hydrolek_drake.vision.frames import FrameSource
 from hydrolek_drake.vision.selection import Fill
 
 _QUALITY = [cv2.IMWRITE_JPEG_QUALITY, 85]
@@ -75,10 +76,14 @@ class OperatorSession:
         seed: int,
         stand: Callable[[FrameSource, MachineState], None] | None = None,
     ) -> None:
-        self._machine, self._stand = machine, stand
-        self._camera = ThreadPoolExecutor(1, thread_name_prefix="camera")
+        self._machine = machine
+
+        def arms_as_they_stand(frames: FrameSource) -> None:
+            if stand is not None:
+                stand(frames, machine.state())
+
+        self._camera = CameraThread(source, arms_as_they_stand)
         self._planner = ThreadPoolExecutor(1, thread_name_prefix="planner")
-        self._camera.submit(self._begin, source).result()
         self._generator = np.random.default_rng(seed)
         self._lock = threading.RLock()
         self._stage, self._task = Stage.LIVE, Task.CUT
@@ -99,21 +104,13 @@ class OperatorSession:
 
     def close(self) -> None:
         """End the threads; the machine is closed by its owner."""
-        self._camera.submit(self._let_go).result()
-        self._camera.shutdown(wait=True, cancel_futures=True)
+        self._camera.close()
         self._planner.shutdown(wait=True, cancel_futures=True)
-
-    def _begin(self, source: Callable[[], FrameSource]) -> None:
-        self._source = source()
-
-    def _let_go(self) -> None:
-        """In the camera's thread: a renderer must end in the thread that it lived in."""
-        del self._source
 
     def refresh(self) -> None:
         """Read a live frame for the colour picture. A lost camera is shown, not raised."""
         try:
-            frame = self._read()
+            frame = self._camera.read()
         except InputError as error:
             with self._lock:
                 self._error = str(error)
@@ -128,7 +125,7 @@ class OperatorSession:
             InputError: The camera gives none, or the arms are moving.
         """
         self._not_while_moving()
-        frame = self._read()
+        frame = self._camera.read()
         with self._lock:
             self._clicks = Clicks(frame, self._task, self._settings)
             self._draw()
@@ -311,14 +308,6 @@ class OperatorSession:
                 clicking = self._clicks is not None and self._stage is not Stage.MOVING
                 name = "colour" if clicking else "live"
             return self._pictures.get(name, b"")
-
-    def _read(self) -> Frame:
-        def read() -> Frame:
-            if self._stand is not None:
-                self._stand(self._source, self._machine.state())
-            return self._source.read()
-
-        return self._camera.submit(read).result()
 
     def _draw(self) -> None:
         if self._clicks is None:

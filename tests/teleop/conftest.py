@@ -1,10 +1,17 @@
-"""One planned task for all tests: from a rendered frame, as the console plans it."""
+"""One planned task for all tests, from a rendered frame as the console plans it; a console in a thread; a browser."""
+
+import asyncio
+import os
+import shutil
+import threading
 
 import numpy as np
 import pytest
 
 from hydrolek_drake.kinematics.frames import in_frame
+from hydrolek_drake.teleop.console import Console
 from hydrolek_drake.teleop.plan import plan_task
+from hydrolek_drake.teleop.session import OperatorSession
 from hydrolek_drake.vision.camera import camera_pose
 from hydrolek_drake.vision.edges import default_settings
 from hydrolek_drake.vision.selection import select_object
@@ -12,7 +19,7 @@ from hydrolek_drake.vision.snapshot import take_snapshot
 from hydrolek_drake.vision.targets import pipe_targets, pixel_targets
 from hydrolek_drake.workcell.pipe import make_pipe
 from hydrolek_drake.workcell.scene import home_posture
-from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
+from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect, as_machine_stands
 
 
 def pixel_of(point, camera):
@@ -39,3 +46,72 @@ def plan():
 @pytest.fixture(scope="session")
 def planner():
     return plan_for
+
+
+@pytest.fixture
+def browser():
+    """Debian's Chromium, or Chrome, driven by Playwright; a test that asks for it is skipped where one is absent."""
+    playwright = pytest.importorskip(
+        "playwright.sync_api", reason="Playwright drives the browser and is absent: pip install playwright"
+    )
+    found = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    if found is None:
+        pytest.skip("there is no chromium, chromium-browser or google-chrome on the search path")
+    options = ["--enable-unsafe-swiftshader"]  # Drake's view without a graphics card
+    if os.geteuid() == 0:
+        options.append("--no-sandbox")  # Chromium refuses its sandbox to root
+    with playwright.sync_playwright() as engine:
+        chromium = engine.chromium.launch(executable_path=found, args=options)
+        yield chromium
+        chromium.close()
+
+
+class ServedConsole:
+    """A console in a thread of its own, until `end`.
+
+    Attributes:
+        address: Of its page.
+        machine: That it moves.
+        states: Of the machine, one each 50 ms.
+    """
+
+    def __init__(self, make_machine, source, **named):
+        self.states, self._ended = [], threading.Event()
+        self._ready, self._failure = threading.Event(), None
+        self._thread = threading.Thread(
+            target=lambda: asyncio.run(self._serve(make_machine, source, named)), daemon=True
+        )
+        self._thread.start()
+        self._ready.wait()
+        if self._failure is not None:
+            raise self._failure
+
+    async def _serve(self, make_machine, source, named):
+        try:
+            self.machine = make_machine()
+            session = OperatorSession(source, self.machine, seed=1, stand=as_machine_stands)
+            console = Console(session, port=0, **named)
+            self.address = f"http://127.0.0.1:{console.port}/"
+        except BaseException as error:
+            self._failure = error
+            return
+        finally:
+            self._ready.set()
+        running = asyncio.ensure_future(console.run())
+        while not self._ended.is_set():
+            self.states.append(self.machine.state())
+            await asyncio.sleep(0.05)
+        running.cancel()
+        console.close()
+        self.machine.close()
+        session.close()
+
+    def end(self):
+        self._ended.set()
+        self._thread.join(20.0)
+        assert not self._thread.is_alive()
+
+
+@pytest.fixture(scope="session")
+def served_console():
+    return ServedConsole

@@ -1,25 +1,15 @@
 """Pick and place in a real browser: task chosen, pipe, grasp and place clicked, refused on the pipe, carried, done."""
 
-import asyncio
-import shutil
-import threading
-
 import numpy as np
 import pytest
 
 from hydrolek_drake.kinematics.frames import in_frame
-from hydrolek_drake.teleop.console import Console
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.place_plan import PLACE_STEPS
-from hydrolek_drake.teleop.session import OperatorSession
 from hydrolek_drake.vision.camera import camera_pose, thesis_camera
 from hydrolek_drake.workcell.scene import home_posture
-from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect, as_machine_stands
+from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
 from hydrolek_drake.workcell.table import make_loose_pipe, make_table
-
-playwright = pytest.importorskip("playwright.sync_api", reason="needs Playwright to drive a browser")
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-pytestmark = pytest.mark.skipif(BROWSER is None, reason="needs Chromium or Chrome on the search path")
 
 TABLE = make_table()
 PIPE = make_loose_pipe(TABLE)
@@ -34,74 +24,49 @@ def _pixel(point):
 
 
 @pytest.fixture
-def console():
-    """Address and machine of a console on simple arms at six times real time, with a loose pipe."""
-    ready, stop, found = threading.Event(), threading.Event(), []
-
-    async def serve():
-        machine = Machine(home_posture(), realtime_rate=6.0, pipe=PIPE, table=TABLE)
-        session = OperatorSession(
-            lambda: SimulatedKinect(PIPE, np.random.default_rng(1), table=TABLE),
-            machine,
-            seed=1,
-            stand=as_machine_stands,
-        )
-        page = Console(session, port=0)
-        running = asyncio.ensure_future(page.run())
-        found.append((f"http://127.0.0.1:{page.port}/", machine))
-        ready.set()
-        while not stop.is_set():
-            await asyncio.sleep(0.05)
-        running.cancel()
-        page.close()
-        machine.close()
-        session.close()
-
-    thread = threading.Thread(target=lambda: asyncio.run(serve()), daemon=True)
-    thread.start()
-    assert ready.wait(30.0)
-    yield found[0]
-    stop.set()
-    thread.join(20.0)
+def served(browser, served_console):
+    """A console on simple arms at six times real time, with a loose pipe."""
+    served = served_console(
+        lambda: Machine(home_posture(), realtime_rate=6.0, pipe=PIPE, table=TABLE),
+        lambda: SimulatedKinect(PIPE, np.random.default_rng(1), table=TABLE),
+    )
+    yield served
+    served.end()
 
 
-def test_pick_and_place_in_a_browser(console):
-    address, machine = console
-    with playwright.sync_playwright() as engine:
-        browser = engine.chromium.launch(executable_path=BROWSER, args=["--no-sandbox"])
-        page = browser.new_page(viewport={"width": 1280, "height": 900})
-        errors = []
-        page.on("pageerror", lambda error: errors.append(str(error)))
-        page.goto(address)
+def test_pick_and_place_in_a_browser(browser, served):
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    errors = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.goto(served.address)
 
-        def says(text, **named):
-            page.wait_for_function(
-                "text => document.querySelector('#say').innerText.includes(text)", arg=text, **named
-            )
-
-        def click(point):
-            page.wait_for_selector("#colour.wants")
-            box, (u, v) = page.locator("#colour").bounding_box(), _pixel(np.array(point))
-            page.mouse.click(
-                box["x"] + (u + 0.5) / 640 * box["width"], box["y"] + (v + 0.5) / 480 * box["height"]
-            )
-
-        page.click("[name=task][value=place]")
+    def says(text, **named):
         page.wait_for_function(
-            "count => document.querySelectorAll('#steps li').length === count", arg=len(PLACE_STEPS)
+            "text => document.querySelector('#say').innerText.includes(text)", arg=text, **named
         )
-        page.click("#snapshot")
-        says("Click the pipe")
-        click(RAISED)
-        says("grasp it")
-        click(GRASP)
-        says("put it down")
-        click(PIPE.point)
-        says("on the pipe itself")
-        click(PLACE)
-        says("confirm")
-        page.keyboard.press("Enter")
-        says("Done after", timeout=180_000)
-        assert page.locator("li.done").count() == len(PLACE_STEPS) and not errors
-        browser.close()
-    np.testing.assert_allclose(machine.state().pipe.point[:2], PLACE[:2], atol=0.03)
+
+    def click(point):
+        page.wait_for_selector("#colour.wants")
+        box, (u, v) = page.locator("#colour").bounding_box(), _pixel(np.array(point))
+        page.mouse.click(
+            box["x"] + (u + 0.5) / 640 * box["width"], box["y"] + (v + 0.5) / 480 * box["height"]
+        )
+
+    page.click("[name=task][value=place]")
+    page.wait_for_function(
+        "count => document.querySelectorAll('#steps li').length === count", arg=len(PLACE_STEPS)
+    )
+    page.click("#snapshot")
+    says("Click the pipe")
+    click(RAISED)
+    says("grasp it")
+    click(GRASP)
+    says("put it down")
+    click(PIPE.point)
+    says("on the pipe itself")
+    click(PLACE)
+    says("confirm")
+    page.keyboard.press("Enter")
+    says("Done after", timeout=180_000)
+    assert page.locator("li.done").count() == len(PLACE_STEPS) and not errors
+    np.testing.assert_allclose(served.machine.state().pipe.point[:2], PLACE[:2], atol=0.03)
