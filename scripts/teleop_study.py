@@ -18,8 +18,9 @@ from pydrake.systems.analysis import Simulator
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.forward import tool_pose
 from hydrolek_drake.kinematics.frames import in_frame
+from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.teleop.configuration import teleop_entries
-from hydrolek_drake.teleop.hydraulic_arms import HydraulicArms
+from hydrolek_drake.teleop.hydraulic_arms import HydraulicArms, joint_settings
 from hydrolek_drake.teleop.link import decode, encode
 from hydrolek_drake.teleop.plan import STEPS, plan_task
 from hydrolek_drake.teleop.sequencer import Mode, TaskSequencer
@@ -181,6 +182,7 @@ def main() -> None:
     parser.add_argument("--plant", choices=("full", "simple"), default="full")
     parser.add_argument("--controller", default="feedforward", help="of the full plant")
     parser.add_argument("--out", type=Path, default=Path("docs/teleop.json"))
+    parser.add_argument("--add", action="store_true", help="measure only what --out does not hold yet")
     arguments = parser.parse_args()
     logging.getLogger("drake").setLevel(logging.WARNING)
     figures = {
@@ -190,15 +192,31 @@ def main() -> None:
         "controller": arguments.controller if arguments.plant == "full" else None,
         "tasks": [],
     }
+    if arguments.add:
+        before = json.loads(arguments.out.read_text())
+        for name in ("seed", "plant", "controller"):
+            if before[name] != figures[name]:
+                parser.error(f"{arguments.out} was measured with {name} {before[name]}, not {figures[name]}")
+        figures["tasks"] = before["tasks"]
+    known = {(task["pipe"], task["distance_m"], task["grasps"]) for task in figures["tasks"]}
+    settings = joint_settings(load_rig("hydrolek")) if arguments.plant == "full" else None
 
     def make_arms(pipe):
         if arguments.plant == "simple":
             return SimpleArms()
-        return HydraulicArms(home_posture(), controller=arguments.controller, seed=arguments.seed, pipe=pipe)
+        return HydraulicArms(
+            home_posture(),
+            controller=arguments.controller,
+            seed=arguments.seed,
+            pipe=pipe,
+            settings=settings,
+        )
 
     for side in ("right", "left"):
         for name in AXES:
             for distance in arguments.distance or DISTANCES:
+                if (name, distance, side) in known:
+                    continue
                 figures["tasks"].append(measure(name, distance, side, arguments.seed, make_arms))
                 print(figures["tasks"][-1], flush=True)
                 draft = arguments.out.with_suffix(".json.part")

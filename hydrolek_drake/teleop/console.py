@@ -56,6 +56,7 @@ class Console:
                 (r"/", _Page, settings),
                 (r"/(colour|edges)\.jpg", _Picture, settings),
                 (r"/(charts|manual|trial)\.js", _Script, settings),
+                (r"/icon\.svg", _Icon, settings),
                 (r"/socket", _Socket, settings),
             ],
             websocket_max_message_size=_LONGEST_MESSAGE,
@@ -167,6 +168,12 @@ class _Script(_Handler):
     def get(self, name: str) -> None:
         self.set_header("Content-Type", "text/javascript; charset=utf-8")
         self.finish(files(__package__).joinpath(f"{name}.js").read_text(encoding="utf-8"))
+
+
+class _Icon(_Handler):
+    def get(self) -> None:
+        self.set_header("Content-Type", "image/svg+xml")
+        self.finish(files(__package__).joinpath("icon.svg").read_text(encoding="utf-8"))
 
 
 class _Picture(_Handler):

@@ -10,20 +10,16 @@ from numpy.typing import NDArray
 from pydrake.systems.analysis import Simulator
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.kinematics.chain import SIDES
+from hydrolek_drake.teleop.arms_end import ArmsEnd
 from hydrolek_drake.teleop.configuration import teleop_entries
-from hydrolek_drake.teleop.hand import JOYSTICK, SLIDERS, Hand, travel
-from hydrolek_drake.teleop.link import SetpointClient, SetpointServer
+from hydrolek_drake.teleop.hand import JOYSTICK, SLIDERS, Hand
+from hydrolek_drake.teleop.link import SetpointClient
 from hydrolek_drake.teleop.plan import OPENING, TaskPlan
 from hydrolek_drake.teleop.plant_process import PlantProcess
 from hydrolek_drake.teleop.sequencer import Mode, Order, TaskSequencer
 from hydrolek_drake.teleop.signals import Signals
-from hydrolek_drake.teleop.simulated_arms import SimulatedArms
-from hydrolek_drake.workcell.grasp import tool_in_world
-from hydrolek_drake.workcell.loose_pipe import LoosePipe, clasped
 from hydrolek_drake.workcell.pipe import Pipe
 from hydrolek_drake.workcell.table import Table
-from hydrolek_drake.workcell.trajectory import joint_speeds
 
 Array = NDArray[np.float64]
 
@@ -65,66 +61,11 @@ class MachineState:
     pipe: Pipe | None = None
 
 
-class ArmsEnd:
-    """The controllers' end with the simple simulated arms: a link server whose set points the arms follow.
-
-    Args:
-        posture: Joints at first, in rad, shape (14,).
-        port: TCP port, 0 for any free one.
-        host: Address to listen at.
-        pipe: A loose pipe, which goes with a hand whose jaw has closed around it.
-        table: What it stands on.
-    """
-
-    def __init__(
-        self,
-        posture: Array,
-        *,
-        port: int | None = None,
-        host: str = "127.0.0.1",
-        pipe: Pipe | None = None,
-        table: Table | None = None,
-    ) -> None:
-        self.server = SetpointServer(posture, port=port, host=host)
-        self._period = teleop_entries("task")["period"]
-        self._arms = SimulatedArms(posture, self._period)
-        self._simulator = Simulator(self._arms)
-        self._position = np.array(posture, dtype=float)
-        self._driven: Array | None = None
-        self._loose = None if pipe is None or table is None else LoosePipe(pipe)
-        self._table = table
-        self.pipe: Pipe | None = None if self._loose is None else pipe
-        self._lower, self._upper = travel()
-
-    def advance(self) -> Array:
-        """Let the arms follow for one period; returns the measured joints in rad, shape (14,)."""
-        context = self._simulator.get_mutable_context()
-        order = self.server.order()
-        desired = order.desired
-        if order.deflection is None:
-            self._driven = None
-        else:  # deflection 100 %: the planner's speed
-            begin = self._position if self._driven is None else self._driven
-            step = order.deflection / 100.0 * joint_speeds()[0] * self._period
-            self._driven = desired = np.clip(begin + step, self._lower, self._upper)
-        self._arms.position_desired_input.FixValue(context, desired)
-        self._arms.valves_open_input.FixValue(context, [float(order.valves_open)])
-        self._simulator.AdvanceTo(context.get_time() + self._period)
-        self._position = np.array(self._arms.position_measured_output.Eval(context))
-        if self._loose is not None and self._table is not None:
-            hands = [tool_in_world(self._position, side) for side in SIDES]
-            gripped = [
-                clasped(self._loose.now(hands), hand[1], self._position[7 * place + 6])
-                for place, hand in enumerate(hands)
-            ]
-            self._loose = self._loose.step(hands, gripped, self._table, self._period)
-            self.pipe = self._loose.now(hands)
-        self.server.report(self._position)
-        return self._position
-
-
 class Machine:
     """Runs tasks: the sequencer here, the set points over the link, the arms at its other end.
+
+    A lost link stops the task. It is sought again each `link.again` seconds of teleop.yaml; once it is back, the
+    arms stand still until the operator resumes the task.
 
     The operator may also move joints by hand, by joystick or sliders. Whoever does so must say it again and again:
     a joystick that is silent for `manual.hold` of teleop.yaml counts as let go, and the valves close. After a stop
@@ -156,7 +97,9 @@ class Machine:
             controllers = ("127.0.0.1", plant.port)
         self._arms = ArmsEnd(posture, port=0, pipe=pipe, table=table) if controllers is None else None
         host, port = controllers or ("127.0.0.1", self._arms.server.port if self._arms else 0)
+        self._controllers = host, port
         self._client: SetpointClient | None = SetpointClient(port, host)
+        self._again_at = 0.0
         self._sequencer = TaskSequencer()
         self._simulator = Simulator(self._sequencer)
         self._period = teleop_entries("task")["period"] / realtime_rate
@@ -184,8 +127,14 @@ class Machine:
             self._sequencer.start(self._simulator.get_mutable_context(), plan, self._measured)
 
     def order(self, order: Order) -> None:
-        """Stop at once, resume, or abort."""
+        """Stop at once, resume, or abort.
+
+        Raises:
+            InputError: A task is to be resumed while the link is lost.
+        """
         with self._lock:
+            if self._lost and order is Order.RESUME:
+                raise InputError(self._lost)
             if order in (Order.STOP, Order.ABORT):
                 self._hand.block()
             if order is self._order:  # the same again: let the sequencer see a change
@@ -272,6 +221,8 @@ class Machine:
         while self._running:
             with self._lock:
                 self._tick(self._order, waiting=self._behind())
+            if self._client is None:
+                self._seek_link()
             following += self._period
             time.sleep(max(0.0, following - time.monotonic()))
             following = max(following, time.monotonic() - 1.0)  # after a pause, do not run to catch up
@@ -293,9 +244,7 @@ class Machine:
         context: Any = self._simulator.get_mutable_context()
         if not waiting:
             self._sequencer.position_measured_input.FixValue(context, self._measured)
-            lost = bool(self._lost) and self._sequencer.mode(context) is Mode.RUNNING
-            self._sequencer.order_input.FixValue(context, [float(Order.STOP if lost else order)])
-            self._simulator.AdvanceTo(context.get_time() + self._step_period)
+            self._advance(context, order)
             self._free_the_jaw(self._sequencer.step_name(context))
         if self._client is None:
             return
@@ -304,9 +253,39 @@ class Machine:
             if self._plant is not None:
                 self._signals = self._client.signals()
         except InputError as error:
-            self._lost, self._client, self._signals = str(error), None, None
+            self._lose(context, str(error))
         if self._arms is not None:
             self._measured = self._arms.advance()
+
+    def _advance(self, context: Any, order: Order) -> None:
+        self._sequencer.order_input.FixValue(context, [float(order)])
+        self._simulator.AdvanceTo(context.get_time() + self._step_period)
+
+    def _lose(self, context: Any, reason: str) -> None:
+        """The link is lost: the task stops, and goes on only if the operator says so."""
+        if self._client is not None:
+            self._client.close()
+        self._lost, self._client, self._signals = reason, None, None
+        self._hand.block()
+        self._order = Order.STOP
+        for order in (Order.NONE, Order.STOP):  # the sequencer heeds a change
+            self._advance(context, order)
+
+    def _seek_link(self) -> None:
+        """Try to have the link back, with closed valves."""
+        if time.monotonic() < self._again_at:
+            return
+        client = None
+        try:
+            client = SetpointClient(self._controllers[1], self._controllers[0])
+            measured = client.stop()
+        except InputError:
+            if client is not None:
+                client.close()
+            self._again_at = time.monotonic() + teleop_entries("link")["again"]
+            return
+        with self._lock:
+            self._client, self._measured, self._lost = client, measured, ""
 
     def _free_the_jaw(self, step: str) -> None:
         """Withdraw the set points for a moment as the jaw is to open: it may have pushed in vain all the while."""

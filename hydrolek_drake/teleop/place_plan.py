@@ -204,7 +204,7 @@ def _carried(
             raise InputError(f"the {side} arm cannot {name}: out of its reach; choose another point")
         if not path_is_free(world, list(path)):
             stuck = next((each for each in path if not world.free(each)), path[0])
-            pairs = ", ".join(" and ".join(pair) for pair in world.touching(stuck))
+            pairs = world.what_touches(stuck)
             raise InputError(f"the {side} arm cannot {name}: {pairs} would touch; choose another point")
         return path
 

@@ -14,6 +14,11 @@ from hydrolek_drake.kinematics.chain import SIDES
 from hydrolek_drake.workcell.pipe import Pipe, workcell_entries
 from hydrolek_drake.workcell.table import Table
 
+_NAMED = 2
+"""Pairs of bodies that a message names."""
+_WORLD = "world"
+"""Drake's name for what pipe and table are fixed to."""
+
 
 class CollisionWorld:
     """Arms, base and pipe; postures are joints `right_j1` ... `left_j7` in rad, shape (14,).
@@ -34,6 +39,8 @@ class CollisionWorld:
         table: Table | None = None,
     ) -> None:
         values = workcell_entries()["motion"]
+        stands = [name for name, thing in (("pipe", pipe), ("table", table)) if thing is not None]
+        self._surroundings = " or ".join(stands)
         self.padding = float(values["padding"] if padding is None else padding)
         builder = RobotDiagramBuilder(time_step=0.0)
         parser = builder.parser()
@@ -102,15 +109,25 @@ class CollisionWorld:
         return bool(self._checker.CheckEdgeCollisionFree(first, second))
 
     def touching(self, posture: Any) -> list[tuple[str, str]]:
-        """Names of the bodies that touch, in pairs."""
+        """Names of the bodies that touch, in pairs; what stands around the arms is `pipe`, `table`, `pipe or table`."""
         positions = self._positions(posture)
         clearance = self._checker.CalcRobotClearance(positions, self.padding)
         plant, pairs = self._checker.plant(), set()
         for row in range(clearance.size()):
             if clearance.distances()[row] < self.padding:
                 indices = (clearance.robot_indices()[row], clearance.other_indices()[row])
-                pairs.add(tuple(sorted(plant.get_body(index).name() for index in indices)))
+                one, other = sorted(self._called(plant.get_body(index)) for index in indices)
+                pairs.add((one, other))
         return sorted(pairs)
+
+    def what_touches(self, posture: Any) -> str:
+        """The first of the bodies that touch, for a message."""
+        pairs = [f"{first} and {second}" for first, second in self.touching(posture)]
+        more = len(pairs) - _NAMED
+        return ", ".join(pairs[:_NAMED]) + (f" and {more} other pairs" if more > 0 else "")
+
+    def _called(self, body: Any) -> str:
+        return self._surroundings if body.name() == _WORLD else str(body.name())
 
     def _positions(self, posture: Any) -> Any:
         posture = np.asarray(posture, dtype=float)

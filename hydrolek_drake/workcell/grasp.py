@@ -164,11 +164,11 @@ def grasp_paths(
                 continue
             postures = [with_arm(opened, side, row) for row in angles]
             if not clear.free(postures[0]):
-                blocked = f"{_pairs(clear, postures[0])} would touch in front of it"
+                blocked = f"{clear.what_touches(postures[0])} would touch in front of it"
                 continue
             stuck = next((each for each in postures if not holding.free(each)), None)
             if stuck is not None:
-                blocked = f"{_pairs(holding, stuck)} would touch on the way"
+                blocked = f"{holding.what_touches(stuck)} would touch on the way"
                 continue
             points = start + np.linspace(0, 1, len(angles))[:, np.newaxis] * (point - start)
             found = True
@@ -215,7 +215,7 @@ def cut_path(
             postures = [with_arm(closed, side, row) for row in angles]
             stuck = next((each for each in postures if not clear.free(each)), None)
             if stuck is not None:
-                blocked = f"{_pairs(clear, stuck)} would touch"
+                blocked = f"{clear.what_touches(stuck)} would touch"
                 continue
             points = ends[0] + np.linspace(0, 1, len(angles))[:, np.newaxis] * (ends[1] - ends[0])
             return ToolPath(side, angles, direction, points, tilt)
@@ -249,10 +249,6 @@ def with_jaw(posture: Array, side: str, angle: float) -> Array:
 def _arm(side: str) -> slice:
     begin = 7 * SIDES.index(side)
     return slice(begin, begin + 7)
-
-
-def _pairs(world: CollisionWorld, posture: Array) -> str:
-    return ", ".join(" and ".join(pair) for pair in world.touching(posture))
 
 
 def _why(side: str, point: Array, blocked: str, task: str) -> str:

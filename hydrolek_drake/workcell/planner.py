@@ -46,7 +46,7 @@ def plan_path(
             side, number = SIDES[outside[0] // _JOINTS], outside[0] % _JOINTS + 1
             raise InputError(f"the {name} of the path has joint {number} of the {side} arm beyond its limit")
         if not world.free(posture):
-            pairs = ", ".join(" and ".join(pair) for pair in world.touching(posture))
+            pairs = world.what_touches(posture)
             raise InputError(f"the {name} of the path is nearer than {1e3 * world.padding:.0f} mm: {pairs}")
     if world.free_between(first, last):
         return np.stack([first, last])

@@ -1,9 +1,10 @@
-"""The page in a real browser: four clicks on the pictures, confirmation, stop, resume, done."""
+"""The page in a real browser: four clicks, confirmation, stop, resume, done; bad clicks; two browsers."""
 
 import numpy as np
 import pytest
 
 from hydrolek_drake.teleop.machine import Machine
+from hydrolek_drake.teleop.sequencer import Mode
 from hydrolek_drake.workcell.pipe import make_pipe
 from hydrolek_drake.workcell.scene import home_posture
 from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
@@ -12,21 +13,21 @@ PATIENCE = 240_000  # ms; a busy computer plans slowly
 
 
 @pytest.fixture
-def address(browser, served_console):
+def served(browser, served_console):
     """A console on simple arms that run at twice real time."""
     served = served_console(
         lambda: Machine(home_posture(), realtime_rate=2.0),
         lambda: SimulatedKinect(make_pipe(), np.random.default_rng(1)),
     )
-    yield served.address
+    yield served
     served.end()
 
 
-def test_four_clicks_in_a_browser_do_the_task(browser, address):
+def test_four_clicks_in_a_browser_do_the_task(browser, served):
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     errors = []
     page.on("pageerror", lambda error: errors.append(str(error)))
-    page.goto(address)
+    page.goto(served.address)
     page.click("#snapshot")
     for picture, v, then in (
         ("edges", 150, "grasp it"),
@@ -53,3 +54,28 @@ def test_four_clicks_in_a_browser_do_the_task(browser, address):
         "() => document.querySelector('#say').innerText.includes('Done after')", timeout=PATIENCE
     )
     assert page.locator("li.done").count() == 6 and not errors
+
+
+def test_bad_clicks_are_told_in_the_browser_and_a_second_one_watches(browser, served):
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    page.goto(served.address)
+    page.click("#snapshot")
+    page.wait_for_selector("#colour.wants")
+    box = page.locator("#colour").bounding_box()
+    page.mouse.click(box["x"] + 500 / 640 * box["width"], box["y"] + 50 / 480 * box["height"])
+    page.wait_for_selector("#note.bad:has-text('nothing within reach')")
+    page.evaluate("send({do: 'click', u: -10, v: 10})")  # the page itself sends no such click
+    page.wait_for_selector("#note.bad:has-text('outside the picture')")
+    assert "Click the pipe" in page.inner_text("#instruction")
+
+    second = browser.new_page(viewport={"width": 1280, "height": 900})
+    second.goto(served.address)
+    second.wait_for_selector("#instruction:has-text('Watching')")
+    assert second.locator("#snapshot").is_disabled() and second.locator("#stop").is_enabled()
+    second.evaluate("send({do: 'click', u: 320, v: 150})")
+    second.wait_for_selector("#note.bad:has-text('in control')")
+    page.close()
+    second.wait_for_selector("#snapshot:enabled")
+    second.close()
+    assert {state.mode for state in served.states} == {Mode.IDLE}
+    assert not any(state.valves_open for state in served.states)

@@ -13,22 +13,27 @@ from hydrolek_drake.teleop.console import Console
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.session import OperatorSession
 from hydrolek_drake.teleop.trial import SCALES, TrialLog
+from hydrolek_drake.vision.camera import recorded_camera
+from hydrolek_drake.vision.frames import Frame, FrameSource
 from hydrolek_drake.workcell.pipe import make_pipe
 from hydrolek_drake.workcell.scene import home_posture
 from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect, as_machine_stands
 
 
-def _served(work):
-    """Run `work(console)` against a console with a fast machine."""
+def _served(work, source=None):
+    """Run `work(console)` against a console with a fast machine, and the simulated camera if no other is given."""
 
     async def main():
         machine = Machine(home_posture(), realtime_rate=25.0)
-        session = OperatorSession(
-            lambda: SimulatedKinect(make_pipe(), np.random.default_rng(1)),
-            machine,
-            seed=1,
-            stand=as_machine_stands,
-        )
+        if source is None:
+            session = OperatorSession(
+                lambda: SimulatedKinect(make_pipe(), np.random.default_rng(1)),
+                machine,
+                seed=1,
+                stand=as_machine_stands,
+            )
+        else:
+            session = OperatorSession(source, machine, seed=1)
         console = Console(session, port=0)
         running = asyncio.ensure_future(console.run())
         try:
@@ -59,6 +64,12 @@ async def _state(socket):
         found = json.loads(await socket.read_message())
         if "state" in found:
             return found
+
+
+async def _stands_still(socket):
+    state = (await _state(socket))["state"]
+    assert state["mode"] == "idle" and not state["valves_open"]
+    np.testing.assert_allclose(np.radians(state["angles_deg"]), home_posture(), atol=1e-3)
 
 
 def _open(console):
@@ -133,12 +144,45 @@ def test_a_malformed_message_is_answered_and_the_arms_stand_still(message, answe
         socket = await _open(console)
         error = await _ask(socket, message)
         assert error is None if answer is None else answer in error
-        again = await _open(console)
-        state = (await _state(again))["state"]
-        assert state["mode"] == "idle" and not state["valves_open"]
-        np.testing.assert_allclose(np.radians(state["angles_deg"]), home_posture(), atol=1e-3)
+        await _stands_still(await _open(console))
 
     _served(work)
+
+
+class _Holes(FrameSource):
+    """Depth of nothing but holes, until the camera is lost after a number of frames."""
+
+    def __init__(self, frames):
+        self.left = frames
+
+    def read(self):
+        if self.left == 0:
+            raise InputError("camera 0 gives no more frames; check its cable and power")
+        self.left -= 1
+        colour, depth = np.zeros((480, 640, 3), np.uint8), np.zeros((480, 640), np.uint16)
+        return Frame(colour, depth, recorded_camera(), "holes")
+
+
+def test_depth_of_holes_is_told_over_the_socket_and_the_arms_stand_still():
+    async def work(console):
+        socket = await _open(console)
+        assert await _ask(socket, {"do": "snapshot"}) == ""
+        assert "nothing within reach" in await _ask(socket, {"do": "click", "u": 320, "v": 240})
+        await _stands_still(socket)
+
+    _served(work, lambda: _Holes(10**6))
+
+
+def test_a_lost_camera_is_told_over_the_socket_and_the_arms_stand_still():
+    async def work(console):
+        socket = await _open(console)
+        while "check its cable" not in (await _state(socket))["state"]["error"]:
+            pass
+        assert "check its cable" in await _ask(socket, {"do": "snapshot"})
+        assert "must be clicked" in await _ask(socket, {"do": "confirm"})
+        await _stands_still(socket)
+
+    _served(work, lambda: _Holes(1))
 
 
 def test_a_taken_port_is_refused():
@@ -193,7 +237,10 @@ def test_the_page_s_scripts_and_its_policy():
         loop = asyncio.get_running_loop()
         for name in ("charts.js", "manual.js", "trial.js"):
             assert "use strict" in (await loop.run_in_executor(None, get, name)).read().decode()
+        icon = await loop.run_in_executor(None, get, "icon.svg")
+        assert icon.headers["Content-Type"] == "image/svg+xml"
         page = await loop.run_in_executor(None, get, "")
+        assert 'href="/icon.svg"' in page.read().decode()
         assert "frame-src" not in page.headers["Content-Security-Policy"]
         console.view_port = 7123
         page = await loop.run_in_executor(None, get, "")

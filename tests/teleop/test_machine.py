@@ -1,11 +1,15 @@
 """Sequencer, link and arms together, faster than real time."""
 
+import threading
 import time
 
 import numpy as np
 import pytest
 
-from hydrolek_drake.teleop.machine import ArmsEnd, Machine
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.teleop.arms_end import ArmsEnd
+from hydrolek_drake.teleop.configuration import teleop_entries
+from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.sequencer import Mode, Order
 from hydrolek_drake.workcell.scene import home_posture
 
@@ -58,5 +62,34 @@ def test_a_lost_link_stops_the_task(plan):
     _until(lambda: machine.state().reason != "")
     _until(lambda: machine.state().mode is Mode.STOPPED)
     assert not machine.state().valves_open and "link:" in machine.state().reason
+    with pytest.raises(InputError, match="link:"):
+        machine.order(Order.RESUME)
     assert not arms.server.command()[1]
     machine.close()
+
+
+def test_a_link_that_comes_back_moves_nothing_until_the_operator_resumes(machine, plan, monkeypatch):
+    stall, take = threading.Event(), machine._arms.server._take
+
+    def slow(line):
+        if stall.is_set():
+            stall.clear()
+            time.sleep(1.5 * teleop_entries("link")["silence"])
+        return take(line)
+
+    monkeypatch.setattr(machine._arms.server, "_take", slow)
+    machine.order(Order.STOP)  # by an operator who presses it before anything moves
+    machine.start(plan)
+    _until(lambda: machine.state().step == "grasp")
+    stall.set()
+    _until(lambda: machine.state().reason != "")
+    assert "link: lost" in machine.state().reason and not machine.state().valves_open
+    _until(lambda: machine.state().reason == "")
+    where = machine.state().position
+    time.sleep(0.3)
+    state = machine.state()
+    assert state.mode is Mode.STOPPED and not state.valves_open
+    np.testing.assert_allclose(state.position, where, atol=np.radians(0.1))
+    machine.order(Order.RESUME)
+    _until(lambda: machine.state().mode is not Mode.RUNNING)
+    assert machine.state().mode is Mode.DONE

@@ -81,3 +81,21 @@ def test_a_click_on_a_line_says_so():
     edges = np.full((5, 5), 255, np.uint8)
     with pytest.raises(InputError, match="on a line"):
         fill_between_lines(edges, np.ones((5, 5), bool), (2, 2))
+
+
+def test_a_click_in_the_gap_between_two_pipes_is_on_what_is_behind_them(pipe):
+    left, right = (pipe([x, 0.0, 1.0], [0, 1, 0], 0.04, wall=1.4) for x in (-0.08, 0.08))
+    both = left[2] | right[2]
+    depth = np.where(left[2], left[1], right[1])
+    colour = np.where(left[2][..., None], left[0], right[0])
+    assert not both[240, 319] and both[240, 260] and both[240, 380]
+    with pytest.raises(InputError, match=r"\(319, 240\) is on a wall, floor or table"):
+        select_object(_snapshot((colour, depth)), (319, 240))
+
+
+def test_a_click_where_the_depth_has_no_surface_is_between_objects(pipe):
+    colour, depth, _ = pipe([0.0, 0.0, 1.0], [0, 1, 0], 0.05, wall=1.4)
+    rows, columns = np.mgrid[100:140, 100:140]
+    depth[100:140, 100:140] = np.where((rows + columns) % 2, 800, 1000)  # edges of two things, seen at once
+    with pytest.raises(InputError, match=r"\(120, 120\) is between objects; click further inside"):
+        select_object(_snapshot((colour, depth)), (120, 120))

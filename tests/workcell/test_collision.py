@@ -21,14 +21,17 @@ def test_arms_turned_inwards_touch_each_other(clear):
     assert not clear.free(posture)
     assert all({a.split("_")[0], b.split("_")[0]} == {"left", "right"} for a, b in clear.touching(posture))
 
+    said, count = clear.what_touches(posture), len(clear.touching(posture))
+    assert count > 2 and said.endswith(f"and {count - 2} other pairs") and said.count("link") <= 4
+
 
 def test_a_hand_on_the_pipe_touches_it_unless_it_holds_it(clear, holding, pipe):
     point = in_frame(pipe.point, given_in="world", wanted_in="right_base")
     posture = with_arm(home_posture(), "right", inverse_position(point).nearest())
     assert not clear.free(posture)
-    assert all("world" in pair for pair in clear.touching(posture))
+    assert all("pipe" in pair for pair in clear.touching(posture))
     touching = holding.touching(posture)
-    assert ("right_link6", "world") not in touching and ("right_jaw", "world") not in touching
+    assert ("pipe", "right_link6") not in touching and ("pipe", "right_jaw") not in touching
 
 
 def test_padding_is_the_distance_that_counts_as_touching(pipe):
