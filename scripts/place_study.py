@@ -15,9 +15,10 @@ from pydrake.systems.analysis import Simulator
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.frames import in_frame
+from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.teleop.clicks import Clicks, Task
 from hydrolek_drake.teleop.configuration import teleop_entries
-from hydrolek_drake.teleop.hydraulic_arms import HydraulicArms
+from hydrolek_drake.teleop.hydraulic_arms import HydraulicArms, joint_settings
 from hydrolek_drake.teleop.link import decode, encode
 from hydrolek_drake.teleop.place_plan import plan_place_by_either
 from hydrolek_drake.teleop.plan import OPENING
@@ -81,16 +82,28 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--places", type=int, default=len(PLACES), help="how many of them")
     parser.add_argument("--out", type=Path, default=Path("docs/place_study.json"))
+    parser.add_argument("--add", action="store_true", help="measure only what --out does not hold yet")
     arguments = parser.parse_args()
     logging.getLogger("drake").setLevel(logging.WARNING)
     figures = {"date": datetime.date.today().isoformat(), "seed": arguments.seed, "places": []}
+    if arguments.add:
+        before = json.loads(arguments.out.read_text())
+        if before["seed"] != arguments.seed:
+            parser.error(f"{arguments.out} was measured with seed {before['seed']}, not {arguments.seed}")
+        figures["places"] = before["places"]
+    known = [tuple(row["place_m"]) for row in figures["places"]]
     table = make_table()
     pipe = make_loose_pipe(table)
+    settings = joint_settings(load_rig("hydrolek"))
     for place in PLACES[: arguments.places]:
+        if place in known:
+            continue
         row: dict = {"place_m": place}
         try:
             plan = planned(pipe, table, place, arguments.seed)
-            arms = HydraulicArms(home_posture(), seed=arguments.seed, pipe=pipe, table=table)
+            arms = HydraulicArms(
+                home_posture(), seed=arguments.seed, pipe=pipe, table=table, settings=settings
+            )
             row |= {"arm": plan.grasp.side, "planned_s": plan.duration()} | carry_out(plan, arms, table)
             end = pipe.at(arms.pipe_place())
             row["off_place_mm"] = 1e3 * float(np.hypot(*(end.point[:2] - place)))

@@ -73,7 +73,7 @@ function makeManual(send) {
         if (slider.min !== String(low)) { slider.min = low; slider.max = high; }
         if (!touched[j]) slider.value = state.angles_deg[j];
         slider.disabled = !mayMove;
-        readings[j].textContent = `${Number(slider.value).toFixed(1)} | at ${state.angles_deg[j].toFixed(1)}`;
+        readings[j].textContent = `${degrees(Number(slider.value))} | at ${degrees(state.angles_deg[j])}`;
       });
     },
   };

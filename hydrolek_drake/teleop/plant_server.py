@@ -72,7 +72,9 @@ def serve(settings: dict[str, Any]) -> None:
         InputError: Something in the settings is wrong.
     """
     posture = np.radians(settings["posture_deg"])
-    meshcat = Meshcat(MeshcatParams(host=settings["host"])) if settings["meshcat"] else None
+    meshcat = (
+        Meshcat(MeshcatParams(host=settings["host"], show_stats_plot=False)) if settings["meshcat"] else None
+    )
     view = None if meshcat is None else StationView(meshcat)
     pipe = None if settings["pipe"] is None else make_pipe(**settings["pipe"])
     table = None if settings["table"] is None else _table(settings["table"])
@@ -87,6 +89,9 @@ def serve(settings: dict[str, Any]) -> None:
         table=table,
         visualize=None if view is None else view.add,
     )
+    if meshcat is not None:
+        near = workcell_entries()["view"]  # nearer than the whole machine, which the view shows otherwise
+        meshcat.SetCameraPose(np.array(near["eye"]), np.array(near["target"]))
     server = SetpointServer(posture, port=0)
     arms.advance()  # compiles what is not yet compiled
     server.report(arms.measured(), arms.signals())

@@ -23,7 +23,8 @@ function makeTrial(send) {
       $("clock").textContent = `${(state.seconds || 0).toFixed(1)} s`;
       $("timer_start").disabled = !mine || state.running; $("timer_stop").disabled = !mine || !state.running; $("timer_reset").disabled = !mine || state.seconds === null;
       $("save").disabled = !mine || !state.file || state.running || state.seconds === null;
-      $("saved").textContent = !state.file ? "Not kept: start with --out FOLDER to save trials." : `${state.saved} saved in ${state.file}`;
+      $("saved").textContent = !state.file ? "Not kept: start with --out FOLDER to save trials." : `${state.saved} saved in ${state.file.split("/").slice(-2).join("/")}`;
+      $("saved").title = state.file || "";
     },
   };
 }

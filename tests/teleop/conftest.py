@@ -21,6 +21,8 @@ from hydrolek_drake.workcell.pipe import make_pipe
 from hydrolek_drake.workcell.scene import home_posture
 from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect, as_machine_stands
 
+_PATIENCE = 240e3  # ms; on a busy computer everything takes long, and what comes late is not wrong
+
 
 def pixel_of(point, camera):
     pose = camera_pose()
@@ -62,7 +64,9 @@ def browser():
         options.append("--no-sandbox")  # Chromium refuses its sandbox to root
     with playwright.sync_playwright() as engine:
         chromium = engine.chromium.launch(executable_path=found, args=options)
-        yield chromium
+        context = chromium.new_context(viewport={"width": 1280, "height": 940})
+        context.set_default_timeout(_PATIENCE)
+        yield context
         chromium.close()
 
 
@@ -108,7 +112,7 @@ class ServedConsole:
 
     def end(self):
         self._ended.set()
-        self._thread.join(20.0)
+        self._thread.join(1e-3 * _PATIENCE)
         assert not self._thread.is_alive()
 
 

@@ -38,7 +38,7 @@ def plants(served_console, tmp_path_factory):
 
     def make():
         if not made:
-            pipe, folder = make_pipe(), tmp_path_factory.mktemp("trials")
+            pipe, folder = make_pipe(), tmp_path_factory.mktemp("trials", numbered=False)
             plant = PlantProcess(home_posture(), meshcat=True, pipe=pipe)
             served = served_console(
                 lambda: Machine(home_posture(), plant=plant),
@@ -62,12 +62,15 @@ def served(browser, plants):  # a test that is skipped for want of a browser mak
 
 @pytest.fixture
 def page(browser, served, request):
-    page = browser.new_page(viewport={"width": 1280, "height": 940})
-    if not getattr(request, "param", False):  # drawing the view without a graphics card holds up the plant
+    page = browser.new_page()
+    with_view = getattr(request, "param", False)
+    if not with_view:  # drawing it without a graphics card holds up the plant
         page.route(f"{served.view}**", lambda route: route.abort())
     page.failures = []
     page.on("pageerror", lambda error: page.failures.append(str(error)))
     page.goto(served.address)
+    if not with_view:
+        page.add_style_tag(content="#view { display: none }")
     page.wait_for_selector("#snapshot:enabled")
     yield page
     assert not page.failures
@@ -79,17 +82,13 @@ def _keep(page, name, selector=None):
         target.screenshot(path=Path(PICTURES) / f"{name}.png")
 
 
-def _says(page, text, seconds=PATIENCE):
-    page.wait_for_function(
-        "text => document.querySelector('#say').innerText.includes(text)", arg=text, timeout=1e3 * seconds
-    )
+def _says(page, text):
+    page.wait_for_function("text => document.querySelector('#say').innerText.includes(text)", arg=text)
 
 
-def _step(page, name, seconds=PATIENCE):
+def _step(page, name):
     page.wait_for_function(
-        "name => [...document.querySelectorAll('li.now')].some(li => li.innerText === name)",
-        arg=name,
-        timeout=1e3 * seconds,
+        "name => [...document.querySelectorAll('li.now')].some(li => li.innerText === name)", arg=name
     )
 
 
@@ -201,9 +200,9 @@ def test_joystick_sliders_and_a_saved_trial_in_the_browser(served, page):
     page.fill("#operator", "test")
     page.select_option("#control", "joystick")
     page.locator("#ratings input").first.fill("80")
-    _keep(page, "console_trial", "section:has(#ratings)")
     page.click("#save")
     page.wait_for_selector("#saved:has-text('1 saved')")
+    _keep(page, "console_trial", "section:has(#ratings)")
     with open(served.folder / "trials.csv", newline="") as file:
         (row,) = csv.DictReader(file)
     assert row["operator"] == "test" and float(row["raw_tlx"]) == pytest.approx((80 + 5 * 50) / 6, abs=0.01)
