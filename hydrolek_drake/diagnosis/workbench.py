@@ -77,7 +77,7 @@ class Workbench:
             rig: the machine with nominal values and all searched effects off.
             nominal: its free parameters.
             training: the recordings that are fitted.
-            pool: threads for fits side by side.
+            pool: threads for fits side by side, and for the columns of a fit's Jacobian where some are idle.
         """
         self.rig = rig
         self.nominal = tuple(nominal)
@@ -120,7 +120,9 @@ class Workbench:
         parameters = self.parameters(effects)
         prior = np.full(len(parameters), np.inf)
         prior[: len(self.nominal)] = SPREAD
-        return Problem(parameters, experiments or self.training, step, prior=prior, pull_time=pull_time)
+        return Problem(
+            parameters, experiments or self.training, step, pool=self.pool, prior=prior, pull_time=pull_time
+        )
 
     def fit(
         self,

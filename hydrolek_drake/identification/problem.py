@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import ParameterSet
+from hydrolek_drake.identification.sharing import shared_map
 
 DIFFERENCE = 1e-6
 """Step of the forward differences, as a fraction of a parameter's range.
@@ -37,7 +38,8 @@ class Problem:
             parameters: what is searched.
             experiments: what must be followed.
             longest_step: of the rollouts [s]; None for the rig's own.
-            pool: threads that share the columns of a Jacobian (rollouts run outside Python's lock).
+            pool: threads that share the columns of a Jacobian (rollouts run outside Python's lock); the caller may
+                be one of them.
             prior: standard deviation of each parameter's place in the unit cube about the rig's own value,
                 infinite for those of which nothing is known; None for none of them. # (n,)
             pull_time: with which rollouts are pulled to what was measured [s], so that errors do not pile up:
@@ -113,11 +115,11 @@ class Problem:
             moved[i] += steps[i]
             return (self.residuals(moved) - base) / steps[i]
 
-        indices = range(len(unit)) if moving is None else np.flatnonzero(moving).tolist()
-        columns = list(map(column, indices)) if self.pool is None else list(self.pool.map(column, indices))
+        indices = list(range(len(unit))) if moving is None else np.flatnonzero(moving).tolist()
+        columns = list(map(column, indices)) if self.pool is None else shared_map(self.pool, column, indices)
         whole = np.zeros((base.size, len(unit)))
         if columns:
-            whole[:, list(indices)] = np.stack(columns, axis=1)
+            whole[:, indices] = np.stack(columns, axis=1)
         return whole
 
     def prior_residuals(self, unit: np.ndarray) -> np.ndarray:
