@@ -41,6 +41,15 @@ FINER = 0.5
 FINISH = 4
 """Trust-region steps of the last fits, which begin at the optimum of the rig's own step."""
 
+UNFINISHED = 1.0
+"""A last fit that lowered the squared residuals by more than this, half a log-odds unit, may not have ended ..."""
+
+NEAR_BEST = 30.0
+"""... and goes on if its cost is within this of the least: a factor e^15 of probability."""
+
+FURTHER = 4
+"""At most so many times."""
+
 CONTENDERS = 8
 """At most so many hypotheses are fitted with the finer step."""
 
@@ -115,9 +124,27 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
         lambda h: bench.refit(h, finer, FINISH) if _decides(h, found) else h,
         chosen,
     )
+    if refitted[0].step == finer:
+        refitted = _finished(bench, refitted)
     paying = [h for h in refitted if pays(h, refitted)]
     judged = bench.side_by_side(lambda h: _predicted(bench, h, held_out, counted, finer), paying)
     return with_probabilities(judged)
+
+
+def _finished(bench: Workbench, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """The same, with those near the best fitted on until they end: where two differ by little, the way left decides."""
+    latest = {h.ids: h for h in hypotheses}
+    fallen = dict.fromkeys(latest, math.inf)
+    for _ in range(FURTHER):
+        least = min(cost_of(h) for h in latest.values())
+        rivals = [h for h in latest.values() if cost_of(h) < least + NEAR_BEST]
+        near = [h for h in rivals if fallen[h.ids] > UNFINISHED]
+        if not near or len(rivals) < 2:
+            break
+        for h in bench.side_by_side(lambda h: bench.refit(h, h.step, FINISH), near):
+            fallen[h.ids] = latest[h.ids].fit.objective - h.fit.objective
+            latest[h.ids] = h
+    return list(latest.values())
 
 
 def _predicted(

@@ -10,6 +10,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.score import Score, gain_of_pair, scores_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
+from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
 
 COARSE = 4.0
@@ -127,7 +128,7 @@ def grow(
             if (
                 far and not parent.effects
             ):  # the parent's values may have gone far astray to make up for what is missing
-                joints = {c.joint for c in effects}
+                joints = bench.joints_of(effects)
                 kept = {k: v for k, v in parent.values.items() if _of_another_joint(k, joints)}
                 starts.append((math.inf, {**kept, **score.start}))
     if not work:
@@ -204,23 +205,10 @@ def unstuck(
     part = [experiment.until(GLANCE_S) for experiment in bench.training]
 
     def pulled(glance: Hypothesis) -> Hypothesis:
-        joints = {c.joint for c in glance.effects}
+        joints = bench.joints_of(glance.effects)
         others = {k: v for k, v in glance.values.items() if _of_another_joint(k, joints)}
         starts = [{**others, **start} for start in ({}, *_starts_of(glance.effects))]
-        problem = bench.problem(glance.effects, step, part, PULL_S)
-        units = [problem.parameters.unit(start) for start in starts]
-        errors = [float(np.sum(problem.residuals(unit) ** 2)) for unit in units]
-        start = starts[int(np.argmin(errors))]
-        return bench.fit(
-            glance.effects,
-            start,
-            step,
-            PULLED_STEPS,
-            tolerance=1e-3,
-            experiments=part,
-            pull_time=PULL_S,
-            alone=True,
-        )
+        return fit_pulled(bench, glance.effects, starts, step, part)
 
     ahead = sorted(bench.side_by_side(pulled, glances), key=lambda h: h.fit.objective)
 
@@ -233,6 +221,29 @@ def unstuck(
     again = bench.side_by_side(followed, ahead[:BEAM])
     best = {h.ids: h for h in sorted([*looks, *again], key=lambda h: -h.fit.objective)}
     return sorted(best.values(), key=lambda h: h.fit.objective)
+
+
+def fit_pulled(
+    bench: Workbench,
+    effects: Sequence[Candidate],
+    starts: Sequence[dict[str, float]],
+    step: float,
+    experiments: Sequence[Experiment],
+) -> Hypothesis:
+    """A fit with pulled rollouts, from the start at which they fit best."""
+    problem = bench.problem(effects, step, experiments, PULL_S)
+    units = [problem.parameters.unit(start) for start in starts]
+    errors = [float(np.sum(problem.residuals(unit) ** 2)) for unit in units]
+    return bench.fit(
+        effects,
+        starts[int(np.argmin(errors))],
+        step,
+        PULLED_STEPS,
+        tolerance=1e-3,
+        experiments=experiments,
+        pull_time=PULL_S,
+        alone=True,
+    )
 
 
 def _starts_of(effects: Sequence[Candidate]) -> list[dict[str, float]]:

@@ -162,15 +162,17 @@ class Workbench:
         self.evaluations += fit.evaluations
         return Hypothesis(effects, parameters.values(fit.unit), fit, step)
 
+    def joints_of(self, effects: Sequence[Candidate]) -> set[str]:
+        """Joints on which effects act: the supply's act on every joint, whichever carries their parameters."""
+        if any(candidate.effect.stage == supply.STAGE.name for candidate in effects):
+            return set(self.rig.joints)
+        return {candidate.joint for candidate in effects}
+
     def _acted_on(self, effects: Sequence[Candidate], parameters: ParameterSet) -> np.ndarray:
         """Parameters of the joints on which effects act, and those that all joints share. # (n,)."""
-        joints = {candidate.joint for candidate in effects}
-        everywhere = any(candidate.effect.stage == supply.STAGE.name for candidate in effects)
+        joints = self.joints_of(effects)
         return np.array(
-            [
-                everywhere or not path.startswith("joints.") or path.split(".")[1] in joints
-                for path in parameters.paths
-            ]
+            [not path.startswith("joints.") or path.split(".")[1] in joints for path in parameters.paths]
         )
 
     def refit(
