@@ -263,7 +263,7 @@ def _glance(
     part = [experiment.until(GLANCE_S) for experiment in bench.training]
     fits = [
         bench.fit(effects, start, step, GLANCE, tolerance=1e-3, experiments=part, alone=True)
-        for start in _different(starts)
+        for start in different(starts)[:2]
     ]
     return min(fits, key=lambda h: h.fit.objective)
 
@@ -273,12 +273,13 @@ def _of_another_joint(path: str, joints: set[str]) -> bool:
     return path.startswith("joints.") and path.split(".")[1] not in joints
 
 
-def _different(starts: Sequence[dict[str, float]]) -> list[dict[str, float]]:
+def different(starts: Sequence[dict[str, float]]) -> list[dict[str, float]]:
+    """Starts, each once."""
     kept: list[dict[str, float]] = []
     for start in starts:
         if not any(start == other for other in kept):
             kept.append(start)
-    return kept[:2]
+    return kept
 
 
 def _redundant(parent: Hypothesis, candidate: Candidate) -> bool:

@@ -19,6 +19,7 @@ from hydrolek_drake.diagnosis.growing import (
     NEAR,
     NEARLY,
     POLISH,
+    different,
     fit_pulled,
     gain_needed,
     grow,
@@ -173,28 +174,23 @@ def _widen(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: 
     The wider effect may have been tried from far off and got stuck; the special case leads near. Pulled rollouts
     lead on, see `growing.unstuck`.
     """
-    work: list[tuple[tuple[Candidate, ...], list[dict[str, float]]]] = []
+    work: list[tuple[tuple[Candidate, ...], dict[str, float]]] = []
     for effect in hypothesis.effects:
         rest = tuple(c for c in hypothesis.effects if c is not effect)
         kept = {k: v for k, v in hypothesis.values.items() if not k.startswith(f"{effect.path}.")}
-        work += [
-            (
-                (*rest, wider),
-                [
-                    {**kept, **start, **_carried_over(effect, wider, hypothesis.values)}
-                    for start in wider.starts
-                ],
-            )
-            for wider in candidates
-            if wider.joint == effect.joint and effect.id in wider.effect.contains
-        ]
-
-    def followed(item: tuple[tuple[Candidate, ...], list[dict[str, float]]]) -> Hypothesis:
-        effects, starts = item
-        near = fit_pulled(bench, effects, starts, bench.fine, bench.training)
-        return bench.refit(near, bench.fine, LOOK)
-
-    for fitted in bench.side_by_side(followed, work):
+        for wider in candidates:
+            if wider.joint != effect.joint or effect.id not in wider.effect.contains:
+                continue
+            carried = _carried_over(effect, wider, hypothesis.values)
+            starts = different([{**kept, **start, **carried} for start in wider.starts])
+            work += [((*rest, wider), start) for start in starts]
+    pulled = bench.side_by_side(
+        lambda item: fit_pulled(bench, item[0], [item[1]], bench.fine, bench.training), work
+    )
+    ahead: dict[frozenset[str], Hypothesis] = {}
+    for near in sorted(pulled, key=lambda h: h.fit.objective):
+        ahead.setdefault(near.ids, near)
+    for fitted in bench.side_by_side(lambda h: bench.refit(h, bench.fine, LOOK), list(ahead.values())):
         found.keep(fitted)
 
 
