@@ -11,7 +11,8 @@ from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.score import Score, gain_of_pair, scores_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.least_squares import PULLED_STEPS, PULLED_TOLERANCE, Fit
+from hydrolek_drake.identification.problem import PULL_S
 
 COARSE = 4.0
 """Integration step of the first fits over the rig's own: 16 times its error, a quarter of its time."""
@@ -53,13 +54,6 @@ FOLLOWED = 5
 
 MOST_UNDECIDED = 15
 """At most so many of them go on with the whole recording."""
-
-PULL_S = 0.1
-"""Time constant with which rollouts are pulled to what was measured when free ones get stuck: longer than a valve
-takes to open and a chamber to fill, and far shorter than a move, over which errors pile up."""
-
-PULLED_STEPS = 8
-"""Trust-region steps of a fit with pulled rollouts."""
 
 TRIED_PULLED = 12
 """So many of the first fits are tried with pulled rollouts too."""
@@ -239,7 +233,7 @@ def fit_pulled(
         starts[int(np.argmin(errors))],
         step,
         PULLED_STEPS,
-        tolerance=1e-3,
+        tolerance=PULLED_TOLERANCE,
         experiments=experiments,
         pull_time=PULL_S,
         alone=True,

@@ -16,6 +16,10 @@ Far above rounding (rollouts repeat to 1e-12), and below the 1e-4 over which the
 sticks and slips already bend; a step of 1e-4 left fits 10 % above the noise.
 """
 
+PULL_S = 0.1
+"""Time constant with which rollouts are pulled to what was measured where free ones get stuck: longer than a valve
+takes to open and a chamber to fill, and far shorter than a move, over which errors pile up."""
+
 DIVERGED = 1e7
 """Residual, in units of noise, where a diverged simulation has no value: worse than any that ends."""
 
@@ -55,6 +59,11 @@ class Problem:
         self._anchor: list[tuple[bytes, np.ndarray]] | None = None
         self.evaluations = 0
         self.counted = sum(experiment.counted for experiment in self.experiments)
+
+    def pulled(self) -> "Problem":
+        """The same with rollouts that are pulled to what was measured."""
+        prior = np.where(self._prior_weight > 0.0, 1.0 / np.maximum(self._prior_weight, 1e-300), np.inf)
+        return Problem(self.parameters, self.experiments, self.longest_step, self.pool, prior, PULL_S)
 
     def residuals(self, unit: np.ndarray) -> np.ndarray:
         """Measured minus model over noise, of all experiments.
