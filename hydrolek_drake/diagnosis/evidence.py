@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.growing import FIDELITY, NEARLY, gain_needed
+from hydrolek_drake.diagnosis.growing import AT_NOISE, FIDELITY, NEARLY, gain_needed
 from hydrolek_drake.diagnosis.search import Search, cost_of
 from hydrolek_drake.diagnosis.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -124,7 +124,9 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
         lambda h: bench.refit(h, finer, FINISH) if _decides(h, found) else h,
         chosen,
     )
-    if refitted[0].step == finer:
+    if (
+        min(h.fit.over_noise for h in refitted) < AT_NOISE
+    ):  # else what no model explains outweighs what is left to gain
         refitted = _finished(bench, refitted)
     paying = [h for h in refitted if pays(h, refitted)]
     judged = bench.side_by_side(lambda h: _predicted(bench, h, held_out, counted, finer), paying)
