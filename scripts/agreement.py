@@ -1,29 +1,33 @@
 #!/usr/bin/env python3
 """How far the Drake Diagram and the compiled rollout part over a random voltage, joint by joint.
 
-A joint of the right arm and one of the left, which do not act on each other, share a diagram to save time.
-
 Runs every instrumented joint of both arms with every effect off, and each effect on one joint after the other
-(`--all` for each effect on every joint, which takes hours), and writes a table. Finished rows are kept, so an
-interrupted study goes on where it was.
+(`--all` for each effect on every joint). To save time many joints share a diagram: a joint whose neighbours are
+held is one rigid body on a fixed axis, so each case is a body of its own with that inertia and gravity. At the end
+every joint runs on the arms' own plant, one of each arm at a time. Finished rows are kept, so an interrupted
+study goes on where it was.
 """
 
 import argparse
 import datetime
 import json
 import tempfile
-from itertools import zip_longest
 from pathlib import Path
 
 import numpy as np
+from pydrake.multibody.tree import UniformGravityFieldElement
 
+from hydrolek_drake.physics import load
 from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.rigs.geometry import FROM_ARM
+from hydrolek_drake.rigs.reading import rig_from_tree
 from hydrolek_drake.rigs.rig import Rig
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import StepSizes, make_station
 
 JOINTS = [f"hydrolek_{side}_j{number}" for side in ("right", "left") for number in range(1, 6)]
+GRAVITY = UniformGravityFieldElement.kDefaultStrength  # m/s^2, of Drake and of the arms
 SIZES = Path(__file__).parent / "agreement_effects.json"
 
 
@@ -72,96 +76,115 @@ def compare(rig: Rig, duration: float, step: float, *seeds: int) -> list[tuple[f
 
 
 Case = tuple[str, str | None]
+Row = tuple[str, str, str | None, float, float]  # plant, joint, effect, root mean square, largest
+
+ONE_BODY, ARMS = "one body", "arms"
 
 
-def rig_of(cases: list[Case]) -> Rig:
-    """A rig that moves the joints of these cases, each with its effect on."""
+def single(case: Case) -> Rig:
+    """The rig of one case."""
+    joint, effect = case
+    return with_effect(load_rig(joint), effect)
+
+
+def fits_one_body(case: Case) -> bool:
+    """Whether a case may share a diagram of single bodies: not the pump's effects, and no payload out of its plane."""
+    values = single(case).records()[0]["load"]
+    moment = np.hypot(values["payload_gravity_cos"], values["payload_gravity_sin"])
+    swings_upright = np.isclose(moment, GRAVITY * np.sqrt(values["payload_inertia"]), rtol=1e-3)
+    effect = case[1] or ""
+    return not effect.startswith("supply.") and (effect != "load.payload" or bool(swings_upright))
+
+
+def bodies(cases: list[Case]) -> Rig:
+    """A rig with one body a case; nothing but a pump of constant pressure is shared."""
+    joints, common = {}, {}
+    for number, case in enumerate(cases):
+        rig = single(case)
+        tree = rig.as_tree()
+        common = {key: tree[key] for key in ("schema", "integration", "recording", "supply", "fluid")}
+        [name] = rig.joints
+        sections = tree["joints"][name]
+        values = rig.records()[0]["load"]
+        turning = {
+            p.name: {"value": float(values[p.name]), "unit": p.unit, "source": "the arms, other joints held"}
+            for p in load.STAGE.parameters("rotating")
+            if p.name in FROM_ARM
+        }
+        sections["load"] = {**sections["load"], **turning, "variant": "rotating"}
+        joints[f"case_{number}"] = sections
+    return rig_from_tree({**common, "name": "agreement", "joints": joints}, Path("agreement"))
+
+
+def on_the_arms(cases: list[Case]) -> Rig:
+    """A rig of the arms that moves the joints of these cases; the others are held."""
     names = [joint.removeprefix("hydrolek_") for joint, _ in cases]
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "rig.yaml"
         path.write_text(f"schema: 1\nname: agreement\nbased_on: hydrolek\nkeep: [{', '.join(names)}]\n")
         rig = load_rig(path)
-    for joint, effect in cases:
-        rig = with_effect(rig, effect, rig.joints.index(joint.removeprefix("hydrolek_")))
+    for number, (_, effect) in enumerate(cases):
+        rig = with_effect(rig, effect, number)
     return rig
 
 
-def shared_runs(cases: list[Case]) -> list[list[Case]]:
-    """Cases that run in one diagram: one of each arm, but an effect of the pump, which is shared, runs alone."""
-    alone = [[case] for case in cases if (case[1] or "").startswith("supply.")]
-    arms = [[case for case in cases if side in case[0] and [case] not in alone] for side in ("right", "left")]
-    pairs = [[case for case in pair if case is not None] for pair in zip_longest(*arms)]
-    return pairs + alone
-
-
 def main() -> None:
-    """Run the study and write docs/agreement.md, anew after each case."""
+    """Run the study and write docs/agreement.md, anew after each diagram."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--duration", type=float, default=60.0, help="seconds of random voltage per case")
-    parser.add_argument("--step", type=float, default=0.5e-3, help="step of the diagram [s]")
+    parser.add_argument("--step", type=float, default=0.4e-3, help="step of the diagram [s]")
     parser.add_argument("--all", action="store_true", help="then each effect on every other joint")
     parser.add_argument("--out", type=Path, default=Path("docs/agreement.md"))
     arguments = parser.parse_args()
     effects = list(json.loads(SIZES.read_text()))
     cases: list[Case] = [(joint, None) for joint in JOINTS]
     cases += [(JOINTS[i % len(JOINTS)], effect) for i, effect in enumerate(effects)]
-    required = len(cases)
+    more = [(joint, effect) for joint in JOINTS for effect in effects if (joint, effect) not in cases]
+    seeds = {case: number for number, case in enumerate(cases + more)}
+    runs: list[tuple[str, list[Case]]] = [(ONE_BODY, [case for case in cases if fits_one_body(case)])]
+    runs += [(ARMS, [case]) for case in cases if not fits_one_body(case)]
+    runs += [(ARMS, [(JOINTS[i], None), (JOINTS[i + 5], None)]) for i in range(5)]
     if arguments.all:
-        cases += [(joint, effect) for joint in JOINTS for effect in effects if (joint, effect) not in cases]
+        fit = [case for case in more if fits_one_body(case)]
+        runs += [(ONE_BODY, fit[i : i + len(cases)]) for i in range(0, len(fit), len(cases))]
+        runs += [(ARMS, [case]) for case in more if case not in fit]
     kept = arguments.out.with_suffix(".partial.json")
-    rows: dict[str, list[float]] = json.loads(kept.read_text()) if kept.exists() else {}
-    seeds = {case: number for number, case in enumerate(cases)}
-    done = []
-    runs = shared_runs(cases[:required]) + shared_runs(cases[required:])
-    for together in runs:
-        keys = [f"{joint} {effect or ''} {arguments.duration} {arguments.step}" for joint, effect in together]
-        if not all(key in rows for key in keys):
-            rig = rig_of(together)
-            places = [rig.joints.index(joint.removeprefix("hydrolek_")) for joint, _ in together]
-            in_rig_order = sorted(zip(places, together, strict=True))
-            figures = compare(
-                rig, arguments.duration, arguments.step, *(seeds[case] for _, case in in_rig_order)
-            )
-            rows.update({key: list(figures[place]) for key, place in zip(keys, places, strict=True)})
-            kept.write_text(json.dumps(rows))
-        for key, case in zip(keys, together, strict=True):
-            done.append((*case, *rows[key]))
-            print(
-                f"{case[0]:18s} {case[1] or 'no effect':28s} rms {rows[key][0]:.4f} deg, "
-                f"largest {rows[key][1]:.4f} deg",
-                flush=True,
-            )
-        done.sort(key=lambda row: seeds[row[:2]])
-        write(arguments.out, done, required, arguments.duration, arguments.step)
+    rows: list[Row] = [tuple(row) for row in json.loads(kept.read_text())] if kept.exists() else []
+    for plant, together in runs:
+        if any(row[:3] == (plant, *together[0]) for row in rows):
+            continue
+        rig = bodies(together) if plant == ONE_BODY else on_the_arms(together)
+        figures = compare(rig, arguments.duration, arguments.step, *(seeds[case] for case in together))
+        rows += [(plant, *case, *figure) for case, figure in zip(together, figures, strict=True)]
+        kept.write_text(json.dumps(rows))
+        for row in rows[-len(together) :]:
+            print("{:9s} {:18s} {!s:28s} rms {:.4f} deg, largest {:.4f} deg".format(*row), flush=True)
+        done = len({row[1:3] for row in rows} & set(cases))
+        write(arguments.out, rows, f"{done} of {len(cases)}", arguments.duration, arguments.step)
     kept.unlink()
 
 
-def write(
-    out: Path,
-    done: list[tuple[str, str | None, float, float]],
-    required: int,
-    duration: float,
-    step: float,
-) -> None:
-    """Write the table of the cases that are done."""
-    joint, effect, _, worst = max(done, key=lambda row: row[3])
+def write(out: Path, rows: list[Row], done: str, duration: float, step: float) -> None:
+    """Write the table of what is done."""
+    plant, joint, effect, _, worst = max(rows, key=lambda row: row[4])
     lines = [
         "# Diagram and rollout agree",
         "",
         f"Measured {datetime.date.today()} with `scripts/agreement.py`: {duration:g} s of random voltage a case, "
-        f"diagram at {step * 1e3:g} ms, rollout at a fifth of",
-        f"that. Required: 0.02 deg at any moment. Largest difference of all: {worst:.4f} deg "
-        f"({joint}, {effect or 'no effect'}).",
+        f"diagram at {step * 1e3:g} ms, rollout at a fifth",
+        f"of that. Required: 0.02 deg at any moment. Largest difference of all {len(rows)} runs: {worst:.4f} deg "
+        f"({joint}, {effect or 'no effect'}, {plant}).",
         "",
-        f"{min(len(done), required)} of {required} cases are done: every joint without effects and each effect on one "
-        f"joint; and {max(len(done) - required, 0)} more, effects on further joints (`--all`).",
+        f"{done} cases are done: every joint without effects and each effect on one joint. `one body`: many cases "
+        "share a diagram,",
+        "each a rigid body of its own with the inertia and gravity that the joint has while the others are held; "
+        "`arms`: on the",
+        "plant of both arms, a joint of each arm at a time.",
         "",
-        "| joint | effect on | rms [deg] | largest [deg] |",
-        "|---|---|---|---|",
+        "| plant | joint | effect on | rms [deg] | largest [deg] |",
+        "|---|---|---|---|---|",
     ]
-    lines += [
-        f"| {joint} | {effect or '-'} | {rms:.4f} | {largest:.4f} |" for joint, effect, rms, largest in done
-    ]
+    lines += [f"| {p} | {j} | {e or '-'} | {rms:.4f} | {largest:.4f} |" for p, j, e, rms, largest in rows]
     draft = out.with_name(f".{out.name}.part")
     draft.write_text("\n".join(lines) + "\n")
     draft.replace(out)
