@@ -165,7 +165,8 @@ def main() -> None:
 
 
 def write(out: Path, rows: list[Row], done: str, duration: float, step: float) -> None:
-    """Write the table of what is done."""
+    """Write the table of what is done; sections that were written below an older one stay."""
+    _, heading, below = (out.read_text() if out.exists() else "").partition("\n## ")
     plant, joint, effect, _, worst = max(rows, key=lambda row: row[4])
     lines = [
         "# Diagram and rollout agree",
@@ -186,7 +187,7 @@ def write(out: Path, rows: list[Row], done: str, duration: float, step: float) -
     ]
     lines += [f"| {p} | {j} | {e or '-'} | {rms:.4f} | {largest:.4f} |" for p, j, e, rms, largest in rows]
     draft = out.with_name(f".{out.name}.part")
-    draft.write_text("\n".join(lines) + "\n")
+    draft.write_text("\n".join(lines) + "\n" + heading + below)
     draft.replace(out)
 
 
