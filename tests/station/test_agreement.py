@@ -39,13 +39,6 @@ def test_the_difference_shrinks_with_the_step():
     assert fine < 0.5 * coarse
 
 
-def test_a_delay_that_is_no_multiple_of_the_step_costs_no_order():
-    """Half the step, a quarter of the difference, or nearly: with a mean voltage over the step it would be half."""
-    rig = load_rig("hydrolek_right_j1").with_values({"command.delay": 0.1737})
-    coarse, fine = (agreement.compare(rig, 4.0, step, 10)[0][0] for step in (1e-3, 0.5e-3))
-    assert fine < 0.35 * coarse
-
-
 @pytest.mark.parametrize("plant", [agreement.on_the_arms, agreement.bodies])
 def test_cases_that_share_a_diagram_are_those_that_run_alone(plant):
     cases = [("hydrolek_left_j2", "linkage.backlash"), ("hydrolek_right_j3", "base.compliance")]
