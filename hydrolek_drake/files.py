@@ -1,7 +1,11 @@
 """Writing a file so that it is either complete or not there."""
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+
+from hydrolek_drake.errors import InputError
 
 
 def write_whole(path: Path, data: bytes | str) -> Path:
@@ -17,3 +21,17 @@ def write_whole(path: Path, data: bytes | str) -> Path:
     finally:
         part.unlink(missing_ok=True)
     return path
+
+
+@contextmanager
+def results_folder(folder: Path) -> Iterator[None]:
+    """Make a command's `--out` folder and write into it.
+
+    Raises:
+        InputError: the folder cannot be made or written to.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        yield
+    except OSError as error:
+        raise InputError(f"--out {folder}: cannot write there: {error.strerror or error}") from None

@@ -2,25 +2,32 @@
 """How far the Drake Diagram and the compiled rollout part over a random voltage, joint by joint.
 
 Runs every instrumented joint of both arms with every effect off, and each effect on one joint after the other
-(`--all` for each effect on every joint, which takes hours), and writes a table. Finished rows are kept, so an
-interrupted study goes on where it was.
+(`--all` for each effect on every joint). To save time many joints share a diagram: a joint whose neighbours are
+held is one rigid body on a fixed axis, so each case is a body of its own with that inertia and gravity. At the end
+every joint runs on the arms' own plant, one of each arm at a time. Finished rows are kept, so an interrupted
+study goes on where it was.
 """
 
 import argparse
 import datetime
 import json
+import tempfile
 from pathlib import Path
 
 import numpy as np
+from pydrake.multibody.tree import UniformGravityFieldElement
 
-from hydrolek_drake.effects import EFFECTS
+from hydrolek_drake.physics import load
 from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.rigs.geometry import FROM_ARM
+from hydrolek_drake.rigs.reading import rig_from_tree
 from hydrolek_drake.rigs.rig import Rig
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import StepSizes, make_station
 
 JOINTS = [f"hydrolek_{side}_j{number}" for side in ("right", "left") for number in range(1, 6)]
+GRAVITY = UniformGravityFieldElement.kDefaultStrength  # m/s^2, of Drake and of the arms
 SIZES = Path(__file__).parent / "agreement_effects.json"
 
 
@@ -35,88 +42,154 @@ def random_voltage(duration: float, generator: np.random.Generator) -> tuple[np.
     return times, volts
 
 
-def with_effect(rig: Rig, effect: str | None) -> Rig:
-    """The rig with one effect on, at a size that is plainly visible, relative to the rig's own numbers."""
+def with_effect(rig: Rig, effect: str | None, joint: int = 0) -> Rig:
+    """The rig with one effect on at one joint, at a size that is plainly visible, relative to the rig's own numbers."""
     if effect is None:
         return rig
     sizes = json.loads(SIZES.read_text())[effect]
-    record = rig.records()[0]
+    record = rig.records()[joint]
     scale = {
         "force": float(record["cylinder"]["area_a"] * record["supply"]["pressure"]),
         "inertia": float(record["load"]["inertia"]),
     }
+    where = f"joints.{rig.joints[joint]}.effects.{effect}"
     return rig.with_values(
-        {f"effects.{effect}.{name}": value * scale.get(of, 1.0) for name, (value, of) in sizes.items()}
+        {f"{where}.{name}": value * scale.get(of, 1.0) for name, (value, of) in sizes.items()}
     )
 
 
-def compare(rig: Rig, duration: float, step: float, seed: int) -> tuple[float, float]:
-    """Root mean square and largest difference of the readings [deg]."""
-    times, volts = random_voltage(duration, np.random.default_rng(seed))
-    outcome = roll_out(rig.records(), times, volts, times, longest_step=step / 5.0)
-    station = make_station(rig, sizes=StepSizes(step=step), command=command_source(times, volts[:, None]))
-    reading = run(station, duration).signals["reading"][:, 0]
-    count = min(len(reading), len(times))
-    difference = np.degrees(reading[:count] - outcome.signals.reading[:count])
-    return float(np.sqrt(np.mean(difference**2))), float(np.abs(difference).max())
+def compare(rig: Rig, duration: float, step: float, *seeds: int) -> list[tuple[float, float]]:
+    """Root mean square and largest difference of each joint's readings [deg], driven by one seed each."""
+    drives = [random_voltage(duration, np.random.default_rng(seed)) for seed in seeds]
+    times = drives[0][0]
+    volts = np.column_stack([volts for _, volts in drives])
+    station = make_station(rig, sizes=StepSizes(step=step), command=command_source(times, volts))
+    readings = run(station, duration).signals["reading"]
+    figures = []
+    for i in range(len(rig.joints)):
+        command = np.ascontiguousarray(volts[:, i])
+        outcome = roll_out(rig.records()[i : i + 1], times, command, times, longest_step=step / 5.0)
+        count = min(len(readings), len(times))
+        difference = np.degrees(readings[:count, i] - outcome.signals.reading[:count])
+        figures.append((float(np.sqrt(np.mean(difference**2))), float(np.abs(difference).max())))
+    return figures
+
+
+Case = tuple[str, str | None]
+Row = tuple[str, str, str | None, float, float]  # plant, joint, effect, root mean square, largest
+
+ONE_BODY, ARMS = "one body", "arms"
+
+
+def single(case: Case) -> Rig:
+    """The rig of one case."""
+    joint, effect = case
+    return with_effect(load_rig(joint), effect)
+
+
+def fits_one_body(case: Case) -> bool:
+    """Whether a case may share a diagram of single bodies: not the pump's effects, and no payload out of its plane."""
+    values = single(case).records()[0]["load"]
+    moment = np.hypot(values["payload_gravity_cos"], values["payload_gravity_sin"])
+    swings_upright = np.isclose(moment, GRAVITY * np.sqrt(values["payload_inertia"]), rtol=1e-3)
+    effect = case[1] or ""
+    return not effect.startswith("supply.") and (effect != "load.payload" or bool(swings_upright))
+
+
+def bodies(cases: list[Case]) -> Rig:
+    """A rig with one body a case; nothing but a pump of constant pressure is shared."""
+    joints, common = {}, {}
+    for number, case in enumerate(cases):
+        rig = single(case)
+        tree = rig.as_tree()
+        common = {key: tree[key] for key in ("schema", "integration", "recording", "supply", "fluid")}
+        [name] = rig.joints
+        sections = tree["joints"][name]
+        values = rig.records()[0]["load"]
+        turning = {
+            p.name: {"value": float(values[p.name]), "unit": p.unit, "source": "the arms, other joints held"}
+            for p in load.STAGE.parameters("rotating")
+            if p.name in FROM_ARM
+        }
+        sections["load"] = {**sections["load"], **turning, "variant": "rotating"}
+        joints[f"case_{number}"] = sections
+    return rig_from_tree({**common, "name": "agreement", "joints": joints}, Path("agreement"))
+
+
+def on_the_arms(cases: list[Case]) -> Rig:
+    """A rig of the arms that moves the joints of these cases; the others are held."""
+    names = [joint.removeprefix("hydrolek_") for joint, _ in cases]
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "rig.yaml"
+        path.write_text(f"schema: 1\nname: agreement\nbased_on: hydrolek\nkeep: [{', '.join(names)}]\n")
+        rig = load_rig(path)
+    for number, (_, effect) in enumerate(cases):
+        rig = with_effect(rig, effect, number)
+    return rig
 
 
 def main() -> None:
-    """Run the study and write docs/agreement.md."""
+    """Run the study and write docs/agreement.md, anew after each diagram."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--duration", type=float, default=60.0, help="seconds of random voltage per case")
-    parser.add_argument("--step", type=float, default=0.5e-3, help="step of the diagram [s]")
-    parser.add_argument("--all", action="store_true", help="each effect on every joint")
+    parser.add_argument("--step", type=float, default=0.4e-3, help="step of the diagram [s]")
+    parser.add_argument("--all", action="store_true", help="then each effect on every other joint")
     parser.add_argument("--out", type=Path, default=Path("docs/agreement.md"))
     arguments = parser.parse_args()
-    cases = [(joint, None) for joint in JOINTS]
     effects = list(json.loads(SIZES.read_text()))
+    cases: list[Case] = [(joint, None) for joint in JOINTS]
+    cases += [(JOINTS[i % len(JOINTS)], effect) for i, effect in enumerate(effects)]
+    more = [(joint, effect) for joint in JOINTS for effect in effects if (joint, effect) not in cases]
+    seeds = {case: number for number, case in enumerate(cases + more)}
+    runs: list[tuple[str, list[Case]]] = [(ONE_BODY, [case for case in cases if fits_one_body(case)])]
+    runs += [(ARMS, [case]) for case in cases if not fits_one_body(case)]
+    runs += [(ARMS, [(JOINTS[i], None), (JOINTS[i + 5], None)]) for i in range(5)]
     if arguments.all:
-        cases += [(joint, effect) for effect in effects for joint in JOINTS]
-    else:
-        cases += [(JOINTS[i % len(JOINTS)], effect) for i, effect in enumerate(effects)]
+        fit = [case for case in more if fits_one_body(case)]
+        runs += [(ONE_BODY, fit[i : i + len(cases)]) for i in range(0, len(fit), len(cases))]
+        runs += [(ARMS, [case]) for case in more if case not in fit]
     kept = arguments.out.with_suffix(".partial.json")
-    rows: dict[str, list[float]] = json.loads(kept.read_text()) if kept.exists() else {}
-    for number, (joint, effect) in enumerate(cases):
-        key = f"{joint} {effect or ''} {arguments.duration} {arguments.step}"
-        if key not in rows:
-            rig = with_effect(load_rig(joint), effect)
-            rows[key] = list(compare(rig, arguments.duration, arguments.step, seed=number))
-            kept.write_text(json.dumps(rows))
-        print(
-            f"{joint:18s} {effect or 'no effect':28s} rms {rows[key][0]:.4f} deg, largest {rows[key][1]:.4f} deg",
-            flush=True,
-        )
-    write(arguments.out, cases, rows, arguments)
+    rows: list[Row] = [tuple(row) for row in json.loads(kept.read_text())] if kept.exists() else []
+    for plant, together in runs:
+        if any(row[:3] == (plant, *together[0]) for row in rows):
+            continue
+        rig = bodies(together) if plant == ONE_BODY else on_the_arms(together)
+        figures = compare(rig, arguments.duration, arguments.step, *(seeds[case] for case in together))
+        rows += [(plant, *case, *figure) for case, figure in zip(together, figures, strict=True)]
+        kept.write_text(json.dumps(rows))
+        for row in rows[-len(together) :]:
+            print("{:9s} {:18s} {!s:28s} rms {:.4f} deg, largest {:.4f} deg".format(*row), flush=True)
+        done = len({row[1:3] for row in rows} & set(cases))
+        write(arguments.out, rows, f"{done} of {len(cases)}", arguments.duration, arguments.step)
     kept.unlink()
 
 
-def write(
-    out: Path,
-    cases: list[tuple[str, str | None]],
-    rows: dict[str, list[float]],
-    arguments: argparse.Namespace,
-) -> None:
-    """Write the table."""
-    worst = max(rows[f"{j} {e or ''} {arguments.duration} {arguments.step}"][1] for j, e in cases)
+def write(out: Path, rows: list[Row], done: str, duration: float, step: float) -> None:
+    """Write the table of what is done; sections that were written below an older one stay."""
+    _, heading, below = (out.read_text() if out.exists() else "").partition("\n## ")
+    plant, joint, effect, _, worst = max(rows, key=lambda row: row[4])
     lines = [
         "# Diagram and rollout agree",
         "",
-        f"Measured {datetime.date.today()} with `scripts/agreement.py`: "
-        f"{arguments.duration:g} s of random voltage, "
-        f"diagram at {arguments.step * 1e3:g} ms, rollout at a fifth of that. "
-        f"Largest difference of all: {worst:.4f} deg "
-        "(required: 0.02 deg).",
+        f"Measured {datetime.date.today()} with `scripts/agreement.py`: {duration:g} s of random voltage a case, "
+        f"diagram at {step * 1e3:g} ms, rollout at a fifth",
+        f"of that. Required: 0.02 deg at any moment. Largest difference of all {len(rows)} runs: {worst:.4f} deg "
+        f"({joint}, {effect or 'no effect'}, {plant}).",
         "",
-        "| joint | effect on | rms [deg] | largest [deg] |",
-        "|---|---|---|---|",
+        f"{done} cases are done: every joint without effects and each effect on one joint. `one body`: many cases "
+        "share a diagram,",
+        "each a rigid body of its own with the inertia and gravity that the joint has while the others are held; "
+        "`arms`: on the",
+        "plant of both arms, a joint of each arm at a time.",
+        "",
+        "| plant | joint | effect on | rms [deg] | largest [deg] |",
+        "|---|---|---|---|---|",
     ]
-    for joint, effect in cases:
-        rms, largest = rows[f"{joint} {effect or ''} {arguments.duration} {arguments.step}"]
-        lines.append(f"| {joint} | {effect or '-'} | {rms:.4f} | {largest:.4f} |")
-    out.write_text("\n".join(lines) + "\n")
+    lines += [f"| {p} | {j} | {e or '-'} | {rms:.4f} | {largest:.4f} |" for p, j, e, rms, largest in rows]
+    draft = out.with_name(f".{out.name}.part")
+    draft.write_text("\n".join(lines) + "\n" + heading + below)
+    draft.replace(out)
 
 
 if __name__ == "__main__":
-    assert EFFECTS
     main()

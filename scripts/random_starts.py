@@ -13,7 +13,7 @@ import numpy as np
 
 from hydrolek_drake.identification.experiment import experiments_of
 from hydrolek_drake.identification.fit.report import AT_NOISE
-from hydrolek_drake.identification.least_squares import fit_from
+from hydrolek_drake.identification.least_squares import fit_from_afar
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.recordings import read_recording
@@ -48,7 +48,7 @@ def main() -> None:
     for number, start in enumerate(starts):
         for name in names:
             began = time.perf_counter()
-            fit = fit_from(problems[name, "train"], start)
+            fit = fit_from_afar(problems[name, "train"], start)
             seconds = time.perf_counter() - began
             judge = problems[name, "holdout"]
             residuals = judge.residuals(fit.unit)

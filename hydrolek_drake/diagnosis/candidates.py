@@ -33,9 +33,14 @@ class Candidate:
         return self.effect.id
 
     @property
+    def path(self) -> str:
+        """Full path of the effect in a rig."""
+        return f"joints.{self.joint}.effects.{self.effect.id}"
+
+    @property
     def size_path(self) -> str:
         """Full path of the parameter that switches it on."""
-        return f"joints.{self.joint}.effects.{self.effect.id}.{self.effect.size}"
+        return f"{self.path}.{self.effect.size}"
 
 
 def candidates_of(rig: Rig, joint: str, scales: Scales) -> tuple[Candidate, ...]:

@@ -9,18 +9,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate, candidates_of
-from hydrolek_drake.diagnosis.conclusion import EXPLAINED, MATERIAL, Conclusion, conclude
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED, Conclusion, conclude
 from hydrolek_drake.diagnosis.data_quality import reasons_against
 from hydrolek_drake.diagnosis.evidence import FINER, Judged, judge, judge_given_up
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
+from hydrolek_drake.diagnosis.law_choice import with_law
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
 from hydrolek_drake.diagnosis.score import Score
 from hydrolek_drake.diagnosis.search import Search, search
-from hydrolek_drake.diagnosis.unlisted import find_law
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
-from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.experiment import Experiment, experiments_of
 from hydrolek_drake.identification.natural_scales import natural_scales
@@ -41,9 +40,6 @@ stays held out: short ones, so that what it shows is in both parts."""
 FAR_AHEAD = 3.0
 """A model that leaves this many times more on held-out data than on training data was not told by these what matters
 there. Chosen with EMPS (2 to 3) and the Festo cylinder (3 and more) in view, not derived."""
-
-SIMPLER = 1.1
-"""A law beside the nominal model may leave so many times what it leaves beside known effects, and is preferred."""
 
 INTERRUPTED = "interrupted: this is what was known by then; run it again for the whole answer"
 
@@ -164,13 +160,15 @@ def diagnose(
     bench, held_out, found, judged = known.bench, known.held_out, known.found, known.judged
     conclusion = known.conclusion
     interrupted = known.interrupted
-    law = None
+    law: FoundLaw | None = None
     if interrupted and conclusion.verdict == "unlisted_physics":  # not every known effect has been tried
         conclusion = replace(conclusion, verdict="ambiguous")
-    if conclusion.verdict == "unlisted_physics" and len(joints) == 1:
-        say("searching a law for physics that is in no list")
-        law, named = _law_and_model(bench, conclusion.best, judged, held_out, scales[joints[0]])
-        conclusion = replace(conclusion, best=named)
+    if len(joints) == 1 and not interrupted:
+        try:
+            conclusion, law = with_law(bench, conclusion, judged, held_out, scales[joints[0]], say)
+        except KeyboardInterrupt:
+            bench.resume()
+            remarks = [INTERRUPTED]
     best = conclusion.best.hypothesis
     places = locate(bench, best, found.baseline, bench.training)
     if law is not None:
@@ -226,30 +224,6 @@ def _attempt(
     weighted = tuple(bench.weighted_by(found.best, held_out))
     judged = tuple(judge(bench, found, weighted))
     return _Known(bench, found, weighted, judged, conclude(judged), interrupted)
-
-
-def _law_and_model(
-    bench: Workbench,
-    best: Judged,
-    judged: Sequence[Judged],
-    held_out: Sequence[Experiment],
-    scales: Scales,
-) -> tuple[FoundLaw | None, Judged]:
-    """A law for physics that is in no list, and the model that it adds to.
-
-    Known effects that were fitted without the law may only have made up for it: the law is searched beside the
-    nominal model too, which is preferred unless the effects make it predict better by `SIMPLER`. Effects that take
-    no material part of the error are left out from the beginning.
-    """
-    nominal = next(j for j in judged if not j.hypothesis.effects)
-    if best.half_chi_squared > MATERIAL * nominal.half_chi_squared:
-        return find_law(bench, nominal, held_out, scales), nominal
-    law = find_law(bench, best, held_out, scales)
-    alone = find_law(bench, nominal, held_out, scales)
-    to_beat = SIMPLER * law.held_out_over_noise if law is not None else best.over_noise
-    if alone is not None and alone.held_out_over_noise < to_beat:
-        return alone, nominal
-    return law, best
 
 
 def _unexcited(conclusion: Conclusion) -> bool:

@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.growing import FIDELITY, NEARLY, gain_needed
+from hydrolek_drake.diagnosis.growing import AT_NOISE, FIDELITY, NEARLY, gain_needed
 from hydrolek_drake.diagnosis.search import Search, cost_of
 from hydrolek_drake.diagnosis.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -40,6 +40,15 @@ FINER = 0.5
 
 FINISH = 4
 """Trust-region steps of the last fits, which begin at the optimum of the rig's own step."""
+
+UNFINISHED = 1.0
+"""A last fit that lowered the squared residuals by more than this, half a log-odds unit, may not have ended ..."""
+
+NEAR_BEST = 30.0
+"""... and goes on if its cost is within this of the least: a factor e^15 of probability."""
+
+FURTHER = 4
+"""At most so many times."""
 
 CONTENDERS = 8
 """At most so many hypotheses are fitted with the finer step."""
@@ -115,9 +124,29 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
         lambda h: bench.refit(h, finer, FINISH) if _decides(h, found) else h,
         chosen,
     )
+    if (
+        min(h.fit.over_noise for h in refitted) < AT_NOISE
+    ):  # else what no model explains outweighs what is left to gain
+        refitted = _finished(bench, refitted)
     paying = [h for h in refitted if pays(h, refitted)]
     judged = bench.side_by_side(lambda h: _predicted(bench, h, held_out, counted, finer), paying)
     return with_probabilities(judged)
+
+
+def _finished(bench: Workbench, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """The same, with those near the best fitted on until they end: where two differ by little, the way left decides."""
+    latest = {h.ids: h for h in hypotheses}
+    fallen = dict.fromkeys(latest, math.inf)
+    for _ in range(FURTHER):
+        least = min(cost_of(h) for h in latest.values())
+        rivals = [h for h in latest.values() if cost_of(h) < least + NEAR_BEST]
+        near = [h for h in rivals if fallen[h.ids] > UNFINISHED]
+        if not near or len(rivals) < 2:
+            break
+        for h in bench.side_by_side(lambda h: bench.refit(h, h.step, FINISH), near):
+            fallen[h.ids] = latest[h.ids].fit.objective - h.fit.objective
+            latest[h.ids] = h
+    return list(latest.values())
 
 
 def _predicted(

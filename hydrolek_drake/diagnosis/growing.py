@@ -10,7 +10,9 @@ import numpy as np
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.score import Score, gain_of_pair, scores_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
-from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import PULLED_STEPS, PULLED_TOLERANCE, Fit
+from hydrolek_drake.identification.problem import PULL_S
 
 COARSE = 4.0
 """Integration step of the first fits over the rig's own: 16 times its error, a quarter of its time."""
@@ -52,13 +54,6 @@ FOLLOWED = 5
 
 MOST_UNDECIDED = 15
 """At most so many of them go on with the whole recording."""
-
-PULL_S = 0.1
-"""Time constant with which rollouts are pulled to what was measured when free ones get stuck: longer than a valve
-takes to open and a chamber to fill, and far shorter than a move, over which errors pile up."""
-
-PULLED_STEPS = 8
-"""Trust-region steps of a fit with pulled rollouts."""
 
 TRIED_PULLED = 12
 """So many of the first fits are tried with pulled rollouts too."""
@@ -127,7 +122,7 @@ def grow(
             if (
                 far and not parent.effects
             ):  # the parent's values may have gone far astray to make up for what is missing
-                joints = {c.joint for c in effects}
+                joints = bench.joints_of(effects)
                 kept = {k: v for k, v in parent.values.items() if _of_another_joint(k, joints)}
                 starts.append((math.inf, {**kept, **score.start}))
     if not work:
@@ -204,23 +199,10 @@ def unstuck(
     part = [experiment.until(GLANCE_S) for experiment in bench.training]
 
     def pulled(glance: Hypothesis) -> Hypothesis:
-        joints = {c.joint for c in glance.effects}
+        joints = bench.joints_of(glance.effects)
         others = {k: v for k, v in glance.values.items() if _of_another_joint(k, joints)}
         starts = [{**others, **start} for start in ({}, *_starts_of(glance.effects))]
-        problem = bench.problem(glance.effects, step, part, PULL_S)
-        units = [problem.parameters.unit(start) for start in starts]
-        errors = [float(np.sum(problem.residuals(unit) ** 2)) for unit in units]
-        start = starts[int(np.argmin(errors))]
-        return bench.fit(
-            glance.effects,
-            start,
-            step,
-            PULLED_STEPS,
-            tolerance=1e-3,
-            experiments=part,
-            pull_time=PULL_S,
-            alone=True,
-        )
+        return fit_pulled(bench, glance.effects, starts, step, part)
 
     ahead = sorted(bench.side_by_side(pulled, glances), key=lambda h: h.fit.objective)
 
@@ -233,6 +215,29 @@ def unstuck(
     again = bench.side_by_side(followed, ahead[:BEAM])
     best = {h.ids: h for h in sorted([*looks, *again], key=lambda h: -h.fit.objective)}
     return sorted(best.values(), key=lambda h: h.fit.objective)
+
+
+def fit_pulled(
+    bench: Workbench,
+    effects: Sequence[Candidate],
+    starts: Sequence[dict[str, float]],
+    step: float,
+    experiments: Sequence[Experiment],
+) -> Hypothesis:
+    """A fit with pulled rollouts, from the start at which they fit best."""
+    problem = bench.problem(effects, step, experiments, PULL_S)
+    units = [problem.parameters.unit(start) for start in starts]
+    errors = [float(np.sum(problem.residuals(unit) ** 2)) for unit in units]
+    return bench.fit(
+        effects,
+        starts[int(np.argmin(errors))],
+        step,
+        PULLED_STEPS,
+        tolerance=PULLED_TOLERANCE,
+        experiments=experiments,
+        pull_time=PULL_S,
+        alone=True,
+    )
 
 
 def _starts_of(effects: Sequence[Candidate]) -> list[dict[str, float]]:
@@ -252,7 +257,7 @@ def _glance(
     part = [experiment.until(GLANCE_S) for experiment in bench.training]
     fits = [
         bench.fit(effects, start, step, GLANCE, tolerance=1e-3, experiments=part, alone=True)
-        for start in _different(starts)
+        for start in different(starts)[:2]
     ]
     return min(fits, key=lambda h: h.fit.objective)
 
@@ -262,12 +267,13 @@ def _of_another_joint(path: str, joints: set[str]) -> bool:
     return path.startswith("joints.") and path.split(".")[1] not in joints
 
 
-def _different(starts: Sequence[dict[str, float]]) -> list[dict[str, float]]:
+def different(starts: Sequence[dict[str, float]]) -> list[dict[str, float]]:
+    """Starts, each once."""
     kept: list[dict[str, float]] = []
     for start in starts:
         if not any(start == other for other in kept):
             kept.append(start)
-    return kept[:2]
+    return kept
 
 
 def _redundant(parent: Hypothesis, candidate: Candidate) -> bool:

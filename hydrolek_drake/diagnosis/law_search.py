@@ -54,7 +54,7 @@ def promising(bench: Workbench, left: Hypothesis, inputs: Sequence[Input], span:
         rest = across(np.concatenate([here, off]))
         trajectories = [e.simulate(records, step).signals for e in bench.training]
         found = []
-        for term in TERMS:
+        for term in (term for term in TERMS if given.stage in term.stages):
             shapes = [
                 given.scale * term_on_grid(term, e, grid_of(e), s, span)
                 for e, s in zip(bench.training, trajectories, strict=True)

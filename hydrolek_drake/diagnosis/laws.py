@@ -75,33 +75,44 @@ class Term:
 
     Attributes:
         name: as in an equation.
+        stages: at which it has a physical meaning: a friction is no business of the pump's.
         values: (time since the start over the span's, variables) -> values. # (n,)
     """
 
     name: str
+    stages: tuple[str, ...]
     values: Callable[[np.ndarray, Mapping[str, np.ndarray]], np.ndarray]
 
 
 CONSTANT = "1"
 """Name of the term that does not vary."""
 
+_FORCES = ("cylinder", "load")
+_MOVED = (*_FORCES, "sensor")
+_FLOWS = ("supply", "valve")
+_ALL = ("command", "amplifier", "supply", "valve", "fluid", "cylinder", "load", "sensor")
+
 TERMS = (
-    Term(CONSTANT, lambda t, s: np.ones(t.size)),
-    Term("t/T", lambda t, s: t),
-    Term("(t/T)^2", lambda t, s: t * t),
-    Term("sign(v)", lambda t, s: s["sign"]),
-    Term("v", lambda t, s: s["v"]),
-    Term("v |v|", lambda t, s: s["v"] * np.abs(s["v"])),
-    Term("z", lambda t, s: s["z"]),
-    Term("z^2", lambda t, s: s["z"] ** 2),
-    Term("z sign(v)", lambda t, s: s["z"] * s["sign"]),
-    Term("z^2 sign(v)", lambda t, s: s["z"] ** 2 * s["sign"]),
-    Term("z v", lambda t, s: s["z"] * s["v"]),
-    Term("p_A", lambda t, s: s["pa"]),
-    Term("p_B", lambda t, s: s["pb"]),
-    Term("p_A - p_B", lambda t, s: s["pa"] - s["pb"]),
-    Term("x", lambda t, s: s["x"]),
-    Term("|x|", lambda t, s: np.abs(s["x"])),
+    Term(CONSTANT, _ALL, lambda t, s: np.ones(t.size)),
+    Term("t/T", _ALL, lambda t, s: t),
+    Term("(t/T)^2", _ALL, lambda t, s: t * t),
+    Term("sign(v)", _MOVED, lambda t, s: s["sign"]),
+    Term("v", (*_MOVED, *_FLOWS), lambda t, s: s["v"]),
+    Term("|v|", _FLOWS, lambda t, s: np.abs(s["v"])),
+    Term("v |v|", (*_FORCES, *_FLOWS), lambda t, s: s["v"] * np.abs(s["v"])),
+    Term("z", (*_MOVED, "fluid"), lambda t, s: s["z"]),
+    Term("z^2", _MOVED, lambda t, s: s["z"] ** 2),
+    Term("z sign(v)", _FORCES, lambda t, s: s["z"] * s["sign"]),
+    Term("z^2 sign(v)", _FORCES, lambda t, s: s["z"] ** 2 * s["sign"]),
+    Term("(1 - z^2) sign(v)", _FORCES, lambda t, s: (1.0 - s["z"] ** 2) * s["sign"]),
+    Term("((1 + z)/2)^2 sign(v)", _FORCES, lambda t, s: (0.5 * (1.0 + s["z"])) ** 2 * s["sign"]),
+    Term("((1 - z)/2)^2 sign(v)", _FORCES, lambda t, s: (0.5 * (1.0 - s["z"])) ** 2 * s["sign"]),
+    Term("z v", _FORCES, lambda t, s: s["z"] * s["v"]),
+    Term("p_A", ("valve", "fluid", *_MOVED), lambda t, s: s["pa"]),
+    Term("p_B", ("valve", "fluid", *_MOVED), lambda t, s: s["pb"]),
+    Term("p_A - p_B", ("valve", *_MOVED), lambda t, s: s["pa"] - s["pb"]),
+    Term("x", ("command", "amplifier", *_FLOWS), lambda t, s: s["x"]),
+    Term("|x|", ("command", "amplifier", *_FLOWS), lambda t, s: np.abs(s["x"])),
 )
 """t: time, T: duration of the longest training recording, v: speed over its largest in these, z: position from -1 to 1
 over what they show, x: spool over its largest, p: pressure over the supply's (`Span`)."""

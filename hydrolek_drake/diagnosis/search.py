@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.growing import (
+    AT_NOISE,
     BEAM,
     COARSE,
     FAR,
@@ -18,6 +19,8 @@ from hydrolek_drake.diagnosis.growing import (
     NEAR,
     NEARLY,
     POLISH,
+    different,
+    fit_pulled,
     gain_needed,
     grow,
 )
@@ -105,6 +108,8 @@ def search(
         for hypothesis in grown:
             found.keep(hypothesis)
         _prune(bench, found, found.best, candidates)
+        if found.best.fit.over_noise > AT_NOISE:
+            _widen(bench, found, found.best, candidates)
         beam = [h for h in grown if h.fit.objective < HOPELESS * grown[0].fit.objective][:BEAM]
         beam = [found.best] if found.best.fit.over_noise < NEAR else beam
         found.left = scores_of(bench, found.best, candidates, bench.fine)
@@ -163,10 +168,36 @@ def _prune(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: 
         found.keep(fitted)
 
 
-def _carried_over(effect: Candidate, special: Candidate, values: dict[str, float]) -> dict[str, float]:
-    """Values of a special case's parameters that the effect has too, within their ranges."""
+def _widen(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: Sequence[Candidate]) -> None:
+    """Fit the best hypothesis again with what contains one of its effects, from where that effect has led.
+
+    The wider effect may have been tried from far off and got stuck; the special case leads near. Pulled rollouts
+    lead on, see `growing.unstuck`.
+    """
+    work: list[tuple[tuple[Candidate, ...], dict[str, float]]] = []
+    for effect in hypothesis.effects:
+        rest = tuple(c for c in hypothesis.effects if c is not effect)
+        kept = {k: v for k, v in hypothesis.values.items() if not k.startswith(f"{effect.path}.")}
+        for wider in candidates:
+            if wider.joint != effect.joint or effect.id not in wider.effect.contains:
+                continue
+            carried = _carried_over(effect, wider, hypothesis.values)
+            starts = different([{**kept, **start, **carried} for start in wider.starts])
+            work += [((*rest, wider), start) for start in starts]
+    pulled = bench.side_by_side(
+        lambda item: fit_pulled(bench, item[0], [item[1]], bench.fine, bench.training), work
+    )
+    ahead: dict[frozenset[str], Hypothesis] = {}
+    for near in sorted(pulled, key=lambda h: h.fit.objective):
+        ahead.setdefault(near.ids, near)
+    for fitted in bench.side_by_side(lambda h: bench.refit(h, bench.fine, LOOK), list(ahead.values())):
+        found.keep(fitted)
+
+
+def _carried_over(effect: Candidate, other: Candidate, values: dict[str, float]) -> dict[str, float]:
+    """Values of parameters that both effects have, within the ranges of the other one."""
     known = {free.path.rpartition(".")[2]: values[free.path] for free in effect.free}
-    own = {free: known.get(free.path.rpartition(".")[2]) for free in special.free}
+    own = {free: known.get(free.path.rpartition(".")[2]) for free in other.free}
     return {
         free.path: min(max(value, free.lower), free.upper) for free, value in own.items() if value is not None
     }

@@ -77,7 +77,7 @@ class Workbench:
             rig: the machine with nominal values and all searched effects off.
             nominal: its free parameters.
             training: the recordings that are fitted.
-            pool: threads for fits side by side.
+            pool: threads for fits side by side, and for the columns of a fit's Jacobian where some are idle.
         """
         self.rig = rig
         self.nominal = tuple(nominal)
@@ -120,7 +120,9 @@ class Workbench:
         parameters = self.parameters(effects)
         prior = np.full(len(parameters), np.inf)
         prior[: len(self.nominal)] = SPREAD
-        return Problem(parameters, experiments or self.training, step, prior=prior, pull_time=pull_time)
+        return Problem(
+            parameters, experiments or self.training, step, pool=self.pool, prior=prior, pull_time=pull_time
+        )
 
     def fit(
         self,
@@ -160,15 +162,17 @@ class Workbench:
         self.evaluations += fit.evaluations
         return Hypothesis(effects, parameters.values(fit.unit), fit, step)
 
+    def joints_of(self, effects: Sequence[Candidate]) -> set[str]:
+        """Joints on which effects act: the supply's act on every joint, whichever carries their parameters."""
+        if any(candidate.effect.stage == supply.STAGE.name for candidate in effects):
+            return set(self.rig.joints)
+        return {candidate.joint for candidate in effects}
+
     def _acted_on(self, effects: Sequence[Candidate], parameters: ParameterSet) -> np.ndarray:
         """Parameters of the joints on which effects act, and those that all joints share. # (n,)."""
-        joints = {candidate.joint for candidate in effects}
-        everywhere = any(candidate.effect.stage == supply.STAGE.name for candidate in effects)
+        joints = self.joints_of(effects)
         return np.array(
-            [
-                everywhere or not path.startswith("joints.") or path.split(".")[1] in joints
-                for path in parameters.paths
-            ]
+            [not path.startswith("joints.") or path.split(".")[1] in joints for path in parameters.paths]
         )
 
     def refit(

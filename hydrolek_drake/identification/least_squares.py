@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -14,6 +14,10 @@ EDGE = 1e-6
 """Starts are pulled so far inside the cube: the trust-region method walks in the interior."""
 
 LOSSES = ("linear", "soft_l1", "huber", "cauchy")
+
+
+PULLED_STEPS, PULLED_TOLERANCE = 8, 1e-3
+"""Trust-region steps of a fit with pulled rollouts and its tolerance: it need only lead near."""
 
 
 class LeastSquares(Protocol):
@@ -164,6 +168,26 @@ def fit_from(
     )
 
 
+def fit_from_afar(problem: Problem, start: np.ndarray, *, loss: str = "linear", most_steps: int = 50) -> Fit:
+    """Least squares from a start far from the optimum, first with pulled rollouts.
+
+    The residuals of a free rollout pile up what went wrong before, and least squares ends in the next hollow. Pulled
+    rollouts forget within `PULL_S`, as the prediction errors of an observer do (Ljung, System Identification, 1999,
+    chapter 7), and lead near; free ones then see what drifts slowly, too.
+
+    Args:
+        problem: residuals and Jacobian.
+        start: place in the unit cube. # (n,)
+        loss: one of `LOSSES`.
+        most_steps: with free rollouts.
+    """
+    pulled = problem.pulled()
+    near = fit_from(pulled, start, loss=loss, most_steps=PULLED_STEPS, tolerance=PULLED_TOLERANCE)
+    problem.evaluations += pulled.evaluations
+    fit = fit_from(problem, near.unit, loss=loss, most_steps=most_steps)
+    return replace(fit, evaluations=fit.evaluations + near.evaluations)
+
+
 def multi_start(
     problem: Problem,
     starts: Sequence[np.ndarray],
@@ -177,7 +201,7 @@ def multi_start(
 
     Args:
         problem: residuals and Jacobian.
-        starts: places in the unit cube, tried in this order. # (n,) each
+        starts: places in the unit cube, tried in this order; all but the first count as far off. # (n,) each
         loss: one of `LOSSES`.
         most_steps: for each start.
         good_enough: over the noise; further starts cannot gain more than this.
@@ -185,7 +209,8 @@ def multi_start(
     """
     best: Fit | None = None
     for number, start in enumerate(starts):
-        fit = fit_from(problem, start, loss=loss, most_steps=most_steps)
+        approach = fit_from_afar if number else fit_from
+        fit = approach(problem, start, loss=loss, most_steps=most_steps)
         if best is None or fit.objective < best.objective:
             best = fit
         if progress is not None:

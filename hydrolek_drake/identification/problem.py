@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import ParameterSet
+from hydrolek_drake.identification.sharing import shared_map
 
 DIFFERENCE = 1e-6
 """Step of the forward differences, as a fraction of a parameter's range.
@@ -14,6 +15,10 @@ DIFFERENCE = 1e-6
 Far above rounding (rollouts repeat to 1e-12), and below the 1e-4 over which the residuals of a joint that
 sticks and slips already bend; a step of 1e-4 left fits 10 % above the noise.
 """
+
+PULL_S = 0.1
+"""Time constant with which rollouts are pulled to what was measured where free ones get stuck: longer than a valve
+takes to open and a chamber to fill, and far shorter than a move, over which errors pile up."""
 
 DIVERGED = 1e7
 """Residual, in units of noise, where a diverged simulation has no value: worse than any that ends."""
@@ -37,7 +42,8 @@ class Problem:
             parameters: what is searched.
             experiments: what must be followed.
             longest_step: of the rollouts [s]; None for the rig's own.
-            pool: threads that share the columns of a Jacobian (rollouts run outside Python's lock).
+            pool: threads that share the columns of a Jacobian (rollouts run outside Python's lock); the caller may
+                be one of them.
             prior: standard deviation of each parameter's place in the unit cube about the rig's own value,
                 infinite for those of which nothing is known; None for none of them. # (n,)
             pull_time: with which rollouts are pulled to what was measured [s], so that errors do not pile up:
@@ -53,6 +59,11 @@ class Problem:
         self._anchor: list[tuple[bytes, np.ndarray]] | None = None
         self.evaluations = 0
         self.counted = sum(experiment.counted for experiment in self.experiments)
+
+    def pulled(self) -> "Problem":
+        """The same with rollouts that are pulled to what was measured."""
+        prior = np.where(self._prior_weight > 0.0, 1.0 / np.maximum(self._prior_weight, 1e-300), np.inf)
+        return Problem(self.parameters, self.experiments, self.longest_step, self.pool, prior, PULL_S)
 
     def residuals(self, unit: np.ndarray) -> np.ndarray:
         """Measured minus model over noise, of all experiments.
@@ -113,11 +124,11 @@ class Problem:
             moved[i] += steps[i]
             return (self.residuals(moved) - base) / steps[i]
 
-        indices = range(len(unit)) if moving is None else np.flatnonzero(moving).tolist()
-        columns = list(map(column, indices)) if self.pool is None else list(self.pool.map(column, indices))
+        indices = list(range(len(unit))) if moving is None else np.flatnonzero(moving).tolist()
+        columns = list(map(column, indices)) if self.pool is None else shared_map(self.pool, column, indices)
         whole = np.zeros((base.size, len(unit)))
         if columns:
-            whole[:, list(indices)] = np.stack(columns, axis=1)
+            whole[:, indices] = np.stack(columns, axis=1)
         return whole
 
     def prior_residuals(self, unit: np.ndarray) -> np.ndarray:

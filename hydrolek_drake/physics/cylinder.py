@@ -23,30 +23,35 @@ _CHAMBERS = (
         "initial_pressure_b", "Pa", "pressure on side B at the start; side A balances the load", lowest=0.0
     ),
 )
+_AREAS = (
+    Parameter("area_a", "m^2", "piston area on the bore side, A_A in (4.9)", lowest=0.0, positive=True),
+    Parameter("area_b", "m^2", "piston area on the rod side, A_B in (4.9)", lowest=0.0, positive=True),
+)
+_DISPLACEMENTS = (
+    Parameter("area_a", "m^3/rad", "displacement of side A", lowest=0.0, positive=True),
+    Parameter("area_b", "m^3/rad", "displacement of side B", lowest=0.0, positive=True),
+)
+_SMOOTHED = "below this Coulomb friction is smoothed"
+_SLIDING_FRICTION = (
+    Parameter("viscous_friction", "N s/m", "viscous friction of the seals, B_D in (4.9)", lowest=0.0),
+    Parameter("friction_velocity", "m/s", _SMOOTHED, lowest=0.0, positive=True),
+)
+_TURNING_FRICTION = (
+    Parameter("viscous_friction", "N m s/rad", "viscous friction of the seals", lowest=0.0),
+    Parameter("friction_velocity", "rad/s", _SMOOTHED, lowest=0.0, positive=True),
+)
 STAGE = Stage(
     "cylinder",
     "oil flow to force",
     (),
     {
         "cylinder": (
-            Parameter(
-                "area_a", "m^2", "piston area on the bore side, A_A in (4.9)", lowest=0.0, positive=True
-            ),
-            Parameter(
-                "area_b", "m^2", "piston area on the rod side, A_B in (4.9)", lowest=0.0, positive=True
-            ),
+            *_AREAS,
             *_CHAMBERS,
             Parameter(
                 "stroke", "m", "stroke over which side B's oil volume is counted, S in (4.9)", lowest=0.0
             ),
-            Parameter("viscous_friction", "N s/m", "viscous friction of the seals, B_D in (4.9)", lowest=0.0),
-            Parameter(
-                "friction_velocity",
-                "m/s",
-                "below this Coulomb friction is smoothed",
-                lowest=0.0,
-                positive=True,
-            ),
+            *_SLIDING_FRICTION,
             Parameter("rod_mass", "kg", "rod and piston, M_R in (4.9)", neutral=0.0, lowest=0.0),
             Parameter(
                 "stop_penetration",
@@ -57,18 +62,10 @@ STAGE = Stage(
             ),
         ),
         "vane": (
-            Parameter("area_a", "m^3/rad", "displacement of side A", lowest=0.0, positive=True),
-            Parameter("area_b", "m^3/rad", "displacement of side B", lowest=0.0, positive=True),
+            *_DISPLACEMENTS,
             *_CHAMBERS,
             Parameter("stroke", "rad", "travel over which side B's oil volume is counted", lowest=0.0),
-            Parameter("viscous_friction", "N m s/rad", "viscous friction of the seals", lowest=0.0),
-            Parameter(
-                "friction_velocity",
-                "rad/s",
-                "below this Coulomb friction is smoothed",
-                lowest=0.0,
-                positive=True,
-            ),
+            *_TURNING_FRICTION,
             Parameter(
                 "stop_penetration",
                 "N m s/rad^2",
@@ -77,19 +74,7 @@ STAGE = Stage(
                 lowest=0.0,
             ),
         ),
-        "hydraulic_motor": (
-            Parameter("area_a", "m^3/rad", "displacement of side A", lowest=0.0, positive=True),
-            Parameter("area_b", "m^3/rad", "displacement of side B", lowest=0.0, positive=True),
-            *_CHAMBERS,
-            Parameter("viscous_friction", "N m s/rad", "viscous friction of the seals", lowest=0.0),
-            Parameter(
-                "friction_velocity",
-                "rad/s",
-                "below this Coulomb friction is smoothed",
-                lowest=0.0,
-                positive=True,
-            ),
-        ),
+        "hydraulic_motor": (*_DISPLACEMENTS, *_CHAMBERS, *_TURNING_FRICTION),
         "electric_motor": (Parameter("force_constant", "N/V", "force over command voltage", lowest=0.0),),
     },
 )

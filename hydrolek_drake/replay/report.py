@@ -5,8 +5,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from hydrolek_drake.errors import InputError
-from hydrolek_drake.files import write_whole
+from hydrolek_drake.files import results_folder, write_whole
 from hydrolek_drake.recordings import write_signals
 from hydrolek_drake.replay.comparison import Comparison
 from hydrolek_drake.replay.page import page
@@ -29,14 +28,11 @@ def write_report(replay: Replay, comparisons: tuple[Comparison, ...], folder: Pa
         InputError: the folder cannot be made or written to.
     """
     title = f"{replay.rig.name} driven with {'/'.join(replay.recording.source.parts[-2:])}"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    with results_folder(folder):
         write_signals(folder / "signals.parquet", replay.recording.time, *_signals(replay))
         write_whole(folder / "replay.png", picture(replay, comparisons, title))
         write_whole(folder / "replay.json", json.dumps(as_json(replay, comparisons), indent=1).encode())
         write_whole(folder / "replay.html", page(replay, comparisons, title).encode())
-    except OSError as error:
-        raise InputError(f"--out {folder}: cannot write there: {error.strerror or error}") from None
     return folder / "replay.html"
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import yaml
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.rigs.reading import rig_from_tree
 from hydrolek_drake.rigs.rig import Rig
 
 _TOP_KEYS = (
@@ -39,7 +40,7 @@ def load_rig(name_or_path: str | Path, settings: Mapping[str, str] | None = None
     """
     try:
         path = _find(name_or_path)
-        rig = Rig.from_tree(_resolve(path, ()), path)
+        rig = rig_from_tree(_resolve(path, ()), path)
         return rig.with_settings(settings) if settings else rig
     except InputError as error:  # a value that is quoted from the file may hold line breaks
         raise InputError(" ".join(str(error).split())) from None

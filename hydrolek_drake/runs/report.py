@@ -1,13 +1,13 @@
 """What a run leaves in its folder: signals, picture, page, 3-D replay, and what was run."""
 
+import errno
 import json
 import os
 from pathlib import Path
 from typing import Any
 
 from hydrolek_drake import __version__
-from hydrolek_drake.errors import InputError
-from hydrolek_drake.files import write_whole
+from hydrolek_drake.files import results_folder, write_whole
 from hydrolek_drake.recordings import write_signals
 from hydrolek_drake.replay.picture import plots_png
 from hydrolek_drake.runs.page import page
@@ -23,12 +23,9 @@ def prepare_folder(folder: Path) -> None:
     Raises:
         InputError: it cannot be made or written to.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"--out {folder}: cannot write there: {error.strerror or error}") from None
-    if not os.access(folder, os.W_OK):
-        raise InputError(f"--out {folder}: cannot write there: permission denied")
+    with results_folder(folder):
+        if not os.access(folder, os.W_OK):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
 
 
 def write_run(
@@ -39,7 +36,7 @@ def write_run(
     Args:
         done: the run.
         joints: its summary.
-        folder: that exists.
+        folder: made if it is not there.
         replay3d: stand-alone page of the 3-D replay, or None.
 
     Returns:
@@ -49,15 +46,13 @@ def write_run(
         InputError: the folder cannot be written to.
     """
     title = f"{done.scenario.name}: {done.scenario.title}"
-    try:
+    with results_folder(folder):
         write_signals(folder / "signals.parquet", done.run.time, *named_signals(done))
         write_whole(folder / "run.json", json.dumps(as_json(done, joints), indent=1).encode())
         write_whole(folder / "signals.png", plots_png(overview(done), title, sentence(done, joints)))
         if replay3d is not None:
             write_whole(folder / "replay3d.html", replay3d.encode())
         write_whole(folder / "simulate.html", page(done, joints, replay3d is not None).encode())
-    except OSError as error:
-        raise InputError(f"--out {folder}: cannot write there: {error.strerror or error}") from None
     return folder / "simulate.html"
 
 

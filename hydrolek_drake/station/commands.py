@@ -10,7 +10,8 @@ import numpy as np
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings import read_recording, require
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.station.fields import number, quantity, refuse_unknown, required, signal
+from hydrolek_drake.rigs.keys import refuse_unknown
+from hydrolek_drake.station.fields import number, quantity, required, signal
 
 KINDS = ("constant", "steps", "random", "recording")
 

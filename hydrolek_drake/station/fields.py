@@ -1,6 +1,5 @@
 """Single entries of a scenario file, checked and converted to SI."""
 
-import difflib
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,21 +10,6 @@ from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.rigs.entries import parse_quantity
 
 _FULL_SIGNAL = 100.0  # percent
-
-
-def refuse_unknown(raw: Any, allowed: tuple[str, ...], where: str) -> None:
-    """Refuse what is not a mapping or has other keys than `allowed`.
-
-    Raises:
-        InputError: naming the key and the nearest allowed one.
-    """
-    if not isinstance(raw, Mapping):
-        raise InputError(f"{where} must be a mapping with {', '.join(allowed)}")
-    for key in raw:
-        if key not in allowed:
-            near = difflib.get_close_matches(str(key), allowed, n=1)
-            hint = f" (did you mean {near[0]}?)" if near else ""
-            raise InputError(f"{where}.{key}: unknown key{hint}; there are {', '.join(allowed)}")
 
 
 def required(raw: Mapping[str, Any], key: str, where: str) -> Any:

@@ -31,9 +31,10 @@ import hydrolek_drake
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rigs.entries import parse_quantity
+from hydrolek_drake.rigs.keys import refuse_unknown
 from hydrolek_drake.rigs.rig import declaration
 from hydrolek_drake.station.commands import Command, parse_command
-from hydrolek_drake.station.fields import quantity, refuse_unknown, required
+from hydrolek_drake.station.fields import quantity, required
 from hydrolek_drake.station.simulation import command_source
 from hydrolek_drake.station.station import StepSizes
 

@@ -5,7 +5,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from pydrake.multibody.plant import MultibodyPlant
+from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.multibody.plant import MultibodyPlant, Propeller, PropellerInfo
+from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import Diagram, DiagramBuilder, OutputPort, System
 from pydrake.systems.primitives import Adder, Gain, LogVectorOutput, VectorLogSink
 
@@ -189,7 +191,12 @@ def _wire_mechanics(
     load = add(Load(joints, chain, plant.num_velocities(), by_moment))
     builder.Connect(plant.get_state_output_port(), link.plant_state)
     if mounts:
-        builder.Connect(link.mount_force, plant.get_applied_spatial_force_input_port())
+        pushers = add(_pushers(link.ends))
+        builder.Connect(link.mount_force, pushers.get_command_input_port())
+        builder.Connect(plant.get_body_poses_output_port(), pushers.get_body_poses_input_port())
+        builder.Connect(
+            pushers.get_spatial_forces_output_port(), plant.get_applied_spatial_force_input_port()
+        )
     builder.Connect(plant.get_state_output_port(), load.plant_state)
     builder.Connect(load.torque, plant.get_applied_generalized_force_input_port())
     side, sensed, moment = link.joint_motion, link.joint_motion, link.moment
@@ -218,6 +225,19 @@ def _wire_mechanics(
     return _Mechanics(link, sensed)
 
 
+def _pushers(ends: list[tuple[BodyIndex, np.ndarray]]) -> Propeller:
+    """Drake's own system that puts forces on bodies, here without any spin: three along the axes of each mount.
+
+    Forces as Python objects would take longer than all else that is done in a step.
+    """
+    axes = [RotationMatrix.MakeFromOneVector(axis, axis_index=2) for axis in np.eye(3)]
+    pushers = Propeller(
+        [PropellerInfo(body, RigidTransform(axis, point)) for body, point in ends for axis in axes]
+    )
+    pushers.set_name("mounts")
+    return pushers
+
+
 def _wire_hydraulics(
     builder: DiagramBuilder,
     add: _Add,
@@ -231,7 +251,7 @@ def _wire_hydraulics(
     amplifier = add(ProportionalAmplifier(joints))
     spool = add(SolenoidSpool(joints, sizes.step, round(rig.value("integration.spool_steps"))))
     valve, supply, actuator = add(FourWayValve(joints)), add(Supply(joints)), add(Actuator(joints, ahead))
-    builder.Connect(delay.voltage, amplifier.voltage)
+    builder.Connect(delay.arriving, amplifier.voltage)
     builder.Connect(amplifier.current, spool.current)
     builder.Connect(spool.position, valve.spool)
     builder.Connect(actuator.pressure, valve.pressure)

@@ -4,9 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from pydrake.common.value import AbstractValue, Value
-from pydrake.multibody.math import SpatialForce
-from pydrake.multibody.plant import ExternallyAppliedSpatialForce
+from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from hydrolek_drake.physics.linkage import stroke_and_lever
@@ -25,15 +23,15 @@ class Mount:
     """
 
     joint: int
-    parent: int | None
-    child: int
+    parent: BodyIndex | None
+    child: BodyIndex
     p_parent: np.ndarray
     p_child: np.ndarray
 
 
 @dataclass(frozen=True)
 class Chain:
-    """The moving bodies as a tree, in the rig's order of joints; enough to turn forces into the world frame.
+    """The moving bodies as a tree, in the rig's order of joints; enough to turn forces into the bodies' frames.
 
     Attributes:
         position_index: of each joint in the plant's positions, shape (n,).
@@ -77,7 +75,6 @@ def _pushes(
     state: np.ndarray,
     position_index: np.ndarray,
     force: np.ndarray,
-    parent: np.ndarray,
     frame_rotation: np.ndarray,
     frame_origin: np.ndarray,
     axis: np.ndarray,
@@ -85,70 +82,45 @@ def _pushes(
     mount_joint: np.ndarray,
     p_parent: np.ndarray,
     p_child: np.ndarray,
+    child_end: np.ndarray,
+    parent_end: np.ndarray,
     out: np.ndarray,
 ) -> None:
-    """Each cylinder's force [N] on its child body in the world frame, shape (mounts, 3).
+    """Each cylinder's force [N] on its two bodies, each in that body's frame, along the line between the mounts.
 
-    World poses of the moving bodies by Rodrigues' formula along the tree, then the unit vector between mounts.
+    `child_end` and `parent_end` say which three of `out` an end has; -1 for one on a body that never moves. The
+    joint turns the child's frame against the parent's by Rodrigues' formula.
     """
-    n = len(position_index)
-    rotation = np.empty((n, 3, 3))
-    origin = np.empty((n, 3))
-    turn = np.empty((3, 3))
-    for i in range(n):
-        a = axis[i]
-        up = parent[i]
-        for r in range(3):
-            for c in range(3):
-                turn[r, c] = 1.0 if r == c else 0.0
-        q = state[position_index[i]]
-        slide = q if prismatic[i] else 0.0
-        if not prismatic[i]:
-            sin, cos = np.sin(q), np.cos(q)
-            for r in range(3):
-                for c in range(3):
-                    turn[r, c] = cos * turn[r, c] + (1.0 - cos) * a[r] * a[c]
-            turn[0, 1] -= sin * a[2]
-            turn[0, 2] += sin * a[1]
-            turn[1, 0] += sin * a[2]
-            turn[1, 2] -= sin * a[0]
-            turn[2, 0] -= sin * a[1]
-            turn[2, 1] += sin * a[0]
-        for r in range(3):
-            origin[i, r] = frame_origin[i, r]
-            for c in range(3):
-                rotation[i, r, c] = 0.0
-                for k in range(3):
-                    rotation[i, r, c] += frame_rotation[i, r, k] * turn[k, c]
-                origin[i, r] += frame_rotation[i, r, c] * a[c] * slide
-        if up >= 0:
-            own_rotation, own_origin = rotation[i].copy(), origin[i].copy()
-            for r in range(3):
-                origin[i, r] = origin[up, r]
-                for c in range(3):
-                    rotation[i, r, c] = 0.0
-                    origin[i, r] += rotation[up, r, c] * own_origin[c]
-                    for k in range(3):
-                        rotation[i, r, c] += rotation[up, r, k] * own_rotation[k, c]
+    turned = np.empty((3, 3))
     along = np.empty(3)
     for m in range(len(mount_joint)):
         i = mount_joint[m]
-        up = parent[i]
+        a = axis[i]
+        fixed = frame_rotation[i]
+        q = state[position_index[i]]
+        sin, cos, slide = np.sin(q), np.cos(q), 0.0
+        if prismatic[i]:
+            sin, cos, slide = 0.0, 1.0, q
+        for r in range(3):
+            on_axis = fixed[r, 0] * a[0] + fixed[r, 1] * a[1] + fixed[r, 2] * a[2]
+            for c in range(3):
+                next_c, last_c = (c + 1) % 3, (c + 2) % 3
+                crossed = fixed[r, next_c] * a[last_c] - fixed[r, last_c] * a[next_c]
+                turned[r, c] = cos * fixed[r, c] + (1.0 - cos) * on_axis * a[c] + sin * crossed
+            along[r] = frame_origin[i, r] + on_axis * slide - p_parent[m, r]
         square = 0.0
         for r in range(3):
-            along[r] = origin[i, r]
-            if up >= 0:
-                along[r] -= origin[up, r]
-            else:
-                along[r] -= p_parent[m, r]
             for c in range(3):
-                along[r] += rotation[i, r, c] * p_child[m, c]
-                if up >= 0:
-                    along[r] -= rotation[up, r, c] * p_parent[m, c]
+                along[r] += turned[r, c] * p_child[m, c]
             square += along[r] * along[r]
         scale = force[i] / np.sqrt(square)
         for r in range(3):
-            out[m, r] = along[r] * scale
+            if parent_end[m] >= 0:
+                out[3 * parent_end[m] + r] = -scale * along[r]
+            child = 0.0
+            for c in range(3):
+                child += turned[c, r] * along[c]
+            out[3 * child_end[m] + r] = scale * child
 
 
 class Linkage(LeafSystem):
@@ -166,7 +138,7 @@ class Linkage(LeafSystem):
         out `joint_motion` (2n): positions, then velocities of the joints [rad or m, 1/s].
         out `rod_motion` (2n): strokes, then velocities [m, m/s].
         out `moment` (n): force times lever [N m].
-        out `mount_force`: list of forces on bodies, for the plant's `applied_spatial_force`.
+        out `mount_force` (3 per entry of `ends`): force on each mount [N] in its body's frame.
     """
 
     def __init__(self, joints: np.ndarray, chain: Chain, mounts: list[Mount], states: int, has_side: bool):
@@ -184,11 +156,15 @@ class Linkage(LeafSystem):
         n = len(joints)
         self._joints = joints
         self._chain = chain
-        self._mounts = mounts
         self._mount_joint = np.array([mount.joint for mount in mounts], dtype=np.int64)
         self._p_parent = np.array([mount.p_parent for mount in mounts]).reshape(-1, 3)
         self._p_child = np.array([mount.p_child for mount in mounts]).reshape(-1, 3)
-        self._forces = self._force_templates()
+        self.ends: list[tuple[BodyIndex, np.ndarray]] = []
+        """Body index and mount in its frame [m] of each end that `mount_force` pushes."""
+        self._child_end = np.array([self._add_end(mount.child, mount.p_child) for mount in mounts], np.int64)
+        self._parent_end = np.array(
+            [self._add_end(mount.parent, mount.p_parent) for mount in mounts], np.int64
+        )
         self.plant_state = self.DeclareVectorInputPort("plant_state", states)
         self.side = self.DeclareVectorInputPort("side_motion", 2 * n)
         self.force = self.DeclareVectorInputPort("rod_force", n)
@@ -204,30 +180,18 @@ class Linkage(LeafSystem):
         )
         both = {source.ticket(), self.force.ticket()}
         self.moment = self.DeclareVectorOutputPort("moment", n, self._calc_moment, prerequisites_of_calc=both)
-        self.mount_force = self.DeclareAbstractOutputPort(
+        self.mount_force = self.DeclareVectorOutputPort(
             "mount_force",
-            lambda: Value[list[ExternallyAppliedSpatialForce]](),
+            3 * len(self.ends),
             self._calc_mount_force,
             prerequisites_of_calc={self.plant_state.ticket(), self.force.ticket()},
         )
 
-    def _force_templates(self) -> list[ExternallyAppliedSpatialForce]:
-        forces, rows, signs = [], [], []
-        for row, mount in enumerate(self._mounts):
-            for body, point, sign in (
-                (mount.child, mount.p_child, 1.0),
-                (mount.parent, mount.p_parent, -1.0),
-            ):
-                if body is not None:
-                    force = ExternallyAppliedSpatialForce()
-                    force.body_index = body
-                    force.p_BoBq_B = point
-                    forces.append(force)
-                    rows.append(row)
-                    signs.append(sign)
-        self._row = np.array(rows, dtype=int)
-        self._sign = np.array(signs).reshape(-1, 1)
-        return forces
+    def _add_end(self, body: BodyIndex | None, point: np.ndarray) -> int:
+        if body is None:
+            return -1
+        self.ends.append((body, point))
+        return len(self.ends) - 1
 
     def _calc_joint_motion(self, context: Context, output: BasicVector) -> None:
         state = self.plant_state.Eval(context)
@@ -242,14 +206,12 @@ class Linkage(LeafSystem):
         state, force = self._source.Eval(context), self.force.Eval(context)
         _moments(self._joints, state, self._q, force, output.get_mutable_value())
 
-    def _calc_mount_force(self, context: Context, output: AbstractValue) -> None:
+    def _calc_mount_force(self, context: Context, output: BasicVector) -> None:
         chain = self._chain
-        pushes = np.empty((len(self._mounts), 3))
         _pushes(
             self.plant_state.Eval(context),
             chain.position_index,
             self.force.Eval(context),
-            chain.parent_joint,
             chain.frame_rotation,
             chain.frame_origin,
             chain.axis,
@@ -257,9 +219,7 @@ class Linkage(LeafSystem):
             self._mount_joint,
             self._p_parent,
             self._p_child,
-            pushes,
+            self._child_end,
+            self._parent_end,
+            output.get_mutable_value(),
         )
-        no_torque = np.zeros(3)
-        for force, push in zip(self._forces, list(pushes[self._row] * self._sign), strict=True):
-            force.F_Bq_W = SpatialForce(no_torque, push)
-        output.set_value(self._forces)

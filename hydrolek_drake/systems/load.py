@@ -58,6 +58,7 @@ class Load(LeafSystem):
         self._chain = chain
         self._place = chain.velocity_index - velocities
         self._acts = by_moment.astype(float)
+        self._moments = bool(by_moment.any())
         self._none = np.zeros(n)
         self.plant_state = self.DeclareVectorInputPort("plant_state", 2 * velocities)
         self.moment = self.DeclareVectorInputPort("moment", n)
@@ -71,7 +72,7 @@ class Load(LeafSystem):
             self.plant_state.Eval(context),
             self._chain.position_index,
             self._chain.velocity_index,
-            self.moment.Eval(context) if self.moment.HasValue(context) else self._none,
+            self.moment.Eval(context) if self._moments else self._none,
             self._acts,
             context.get_time(),
             self._place,

@@ -5,25 +5,48 @@ from numba import njit
 from pydrake.systems.framework import Context, DiscreteValues, LeafSystem
 
 from hydrolek_drake.physics.solenoid import advance
+from hydrolek_drake.systems.transport_delay import whole_steps_and_rest
 
 
 @njit(cache=True)
 def _advance(
-    joints: np.ndarray, state: np.ndarray, current: np.ndarray, step: float, substeps: int, mean: np.ndarray
+    joints: np.ndarray,
+    state: np.ndarray,
+    before: np.ndarray,
+    current: np.ndarray,
+    rest: np.ndarray,
+    step: float,
+    substeps: int,
+    mean: np.ndarray,
 ) -> None:
-    """Advance positions and velocities in place; `mean` becomes the mean position over the step."""
+    """Advance positions and velocities in place; `mean` becomes the mean position over the step.
+
+    For its share `rest` of the step the currents `before` go on, then come those of `current`.
+    """
     n = len(joints)
     for i in range(n):
-        x, v = advance(state[i], state[n + i], current[i], current[n + i], step, substeps, joints[i])
-        mean[i] = 0.5 * (state[i] + x)
-        state[i], state[n + i] = x, v
+        x, v = state[i], state[n + i]
+        area = 0.0
+        left = 1.0 - rest[i]
+        if rest[i] > 0.0:
+            a, b = before[i], before[n + i]
+            if np.isnan(a):  # nothing ran before the first step
+                a, b = current[i], current[n + i]
+            following, v = advance(x, v, a, b, rest[i] * step, substeps, joints[i])
+            area += 0.5 * rest[i] * (x + following)
+            x = following
+        following, v = advance(x, v, current[i], current[n + i], left * step, substeps, joints[i])
+        mean[i] = area + 0.5 * left * (x + following)
+        state[i], state[n + i] = following, v
+        before[i], before[n + i] = current[i], current[n + i]
 
 
 class SolenoidSpool(LeafSystem):
     """Coil currents to spool position, equations (4.5), (4.6).
 
     The spool depends on the currents alone and is stiff where it sticks, so it advances in steps of its own
-    with the same one-step method as the rollout. Its output is the mean position over the running step.
+    with the same one-step method as the rollout. Its output is the mean position over the running step. Where
+    the transport delay is no multiple of the step, new currents begin within it, as they do in the rollout.
 
     Ports:
         in `coil_current` (2n) [A].
@@ -38,14 +61,23 @@ class SolenoidSpool(LeafSystem):
         self._joints = joints
         self._step = step
         self._substeps = substeps
+        _, self._rest = whole_steps_and_rest(joints, step)
         self.current = self.DeclareVectorInputPort("coil_current", 2 * n)
         self._state = self.DeclareDiscreteState(np.zeros(2 * n))
         self._mean = self.DeclareDiscreteState(np.zeros(n))
+        self._before = self.DeclareDiscreteState(np.full(2 * n, np.nan))
         self.DeclarePeriodicDiscreteUpdateEvent(step, 0.0, self._update)
         self.position = self.DeclareStateOutputPort("spool_position", self._mean)
 
     def _update(self, context: Context, values: DiscreteValues) -> None:
-        state = values.get_mutable_value(self._state)
-        state[:] = context.get_discrete_state(self._state).get_value()
-        mean = values.get_mutable_value(self._mean)
-        _advance(self._joints, state, self.current.Eval(context), self._step, self._substeps, mean)
+        """`values` begins as a copy of the state."""
+        _advance(
+            self._joints,
+            values.get_mutable_value(self._state),
+            values.get_mutable_value(self._before),
+            self.current.Eval(context),
+            self._rest,
+            self._step,
+            self._substeps,
+            values.get_mutable_value(self._mean),
+        )

@@ -1,10 +1,19 @@
-"""Transport delay of the command, exact in the mean although the diagram runs in steps."""
+"""Transport delay of the command, exact although the diagram runs in steps."""
 
 import numpy as np
 from numba import njit
-from pydrake.systems.framework import Context, LeafSystem, State
+from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
 
 from hydrolek_drake.physics.command import drive_voltage, transport_delay
+
+
+def whole_steps_and_rest(joints: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """Each joint's delay as a number of steps and a share of one more, shape (n,) each."""
+    delays = np.empty(len(joints))
+    _delays(joints, delays)
+    whole = np.floor(delays / step + 1e-9).astype(int)
+    rest = delays / step - whole
+    return whole, np.where(rest > 1e-9, rest, 0.0)
 
 
 @njit(cache=True)
@@ -35,15 +44,31 @@ def _take_in(
     row[0] = (newest + 1) % length
 
 
+@njit(cache=True)
+def _arriving(
+    joints: np.ndarray, command: np.ndarray, whole: np.ndarray, newest: int, line: np.ndarray, out: np.ndarray
+) -> None:
+    n = len(joints)
+    length = len(line) // n
+    for i in range(n):
+        if whole[i] == 0:
+            out[i] = drive_voltage(command[i], joints[i])
+        else:
+            out[i] = line[((newest - whole[i]) % length) * n + i]
+
+
 class TransportDelay(LeafSystem):
     """Delays each joint's command and turns it into the amplifier's voltage (thesis 6.1.3).
 
-    The command is sampled at every step and held. The output is the mean of the delayed command over the
-    running step, so a delay that is no multiple of the step is met exactly in the integral of the voltage.
+    The command is sampled at every step and held. A delay of so many steps and a rest lets a sample arrive that
+    rest after a step's beginning.
 
     Ports:
         in `command` (n): recorded or commanded voltage [V].
-        out `voltage_delayed` (n): at the amplifiers, positive towards chamber A, limited [V].
+        out `voltage_delayed` (n): at the amplifiers, positive towards chamber A, limited; its mean over the
+            running step [V].
+        out `voltage_arriving` (n): the sample that arrives within the step that begins now [V], for what is
+            updated at its beginning.
     """
 
     def __init__(self, joints: np.ndarray, step: float):
@@ -52,27 +77,31 @@ class TransportDelay(LeafSystem):
         self.set_name("transport_delay")
         n = len(joints)
         self._joints = joints
-        delays = np.empty(n)
-        _delays(joints, delays)
-        self._whole = np.floor(delays / step + 1e-9).astype(int)
-        self._rest = np.maximum(delays / step - self._whole, 0.0)
+        self._whole, self._rest = whole_steps_and_rest(joints, step)
         self._length = int(self._whole.max()) + 2
         self.command = self.DeclareVectorInputPort("command", n)
         self._row = self.DeclareDiscreteState(np.zeros(1))
+        self._none = np.zeros(n)
         self._line = self.DeclareDiscreteState(np.zeros(self._length * n))
         self._out = self.DeclareDiscreteState(np.zeros(n))
-        self.DeclareInitializationUnrestrictedUpdateEvent(self._fill)
-        # Unrestricted updates come before discrete ones at the same time, so the spool sees this step's voltage.
-        self.DeclarePeriodicUnrestrictedUpdateEvent(step, 0.0, self._update)
+        self.DeclareInitializationDiscreteUpdateEvent(self._fill)
+        self.DeclarePeriodicDiscreteUpdateEvent(step, 0.0, self._update)
         self.voltage = self.DeclareStateOutputPort("voltage_delayed", self._out)
+        self._at_once = bool(np.any(self._whole == 0))
+        self.arriving = self.DeclareVectorOutputPort(
+            "voltage_arriving",
+            n,
+            self._calc_arriving,
+            prerequisites_of_calc={self.discrete_state_ticket(self._line)}
+            | ({self.command.ticket()} if self._at_once else set()),
+        )
 
-    def _fill(self, context: Context, state: State) -> None:
+    def _fill(self, context: Context, values: DiscreteValues) -> None:
         """Before the start the first command stood."""
         for _ in range(self._length):
-            self._update(context, state)
+            self._update(context, values)
 
-    def _update(self, context: Context, state: State) -> None:
-        values = state.get_mutable_discrete_state()
+    def _update(self, context: Context, values: DiscreteValues) -> None:
         _take_in(
             self._joints,
             self.command.Eval(context),
@@ -81,4 +110,15 @@ class TransportDelay(LeafSystem):
             values.get_mutable_value(self._row),
             values.get_mutable_value(self._line),
             values.get_mutable_value(self._out),
+        )
+
+    def _calc_arriving(self, context: Context, output: BasicVector) -> None:
+        state = context.get_discrete_state()
+        _arriving(
+            self._joints,
+            self.command.Eval(context) if self._at_once else self._none,
+            self._whole,
+            int(state.get_value(self._row)[0]),
+            state.get_value(self._line),
+            output.get_mutable_value(),
         )

@@ -6,7 +6,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.growing import POLISH, gain_needed
-from hydrolek_drake.diagnosis.search import Search, _prune
+from hydrolek_drake.diagnosis.search import Search, _prune, _widen
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -31,3 +31,26 @@ def test_coulomb_friction_is_tried_where_stribeck_friction_was_found(bench, reco
     # two parameters more gain no more than chance
     assert special.fit.objective - general.fit.objective < gain_needed(special.fit)
     assert found.best.ids == special.ids
+
+
+STRIBECK = {"coulomb_N": 600.0, "stribeck_N": 900.0, "stribeck_velocity_m_per_s": 0.006}
+
+
+def test_stribeck_friction_is_tried_from_where_coulomb_friction_was_found(bench, recorded) -> None:
+    path = "effects.cylinder.stribeck_friction"
+    machine = bench.with_values({f"{path}.{name}": value for name, value in STRIBECK.items()})
+    experiments = recorded(machine, bench)
+    candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
+    known = {c.id: c for c in candidates}
+    stribeck, coulomb = (known[f"cylinder.{name}_friction"] for name in ("stribeck", "coulomb"))
+    with ThreadPoolExecutor(2) as pool:
+        work = Workbench(bench, free_parameters(bench, ["load.gravity_cos"]), experiments, pool)
+        found = Search()
+        found.keep(work.fit((coulomb,), coulomb.starts[0], work.fine, POLISH))
+        special = found.best
+        _widen(work, found, special, candidates)
+    wider = found.hypotheses[frozenset({stribeck.size_path})]
+    assert found.best.ids == wider.ids
+    assert special.fit.objective - wider.fit.objective > gain_needed(special.fit)
+    for name, value in STRIBECK.items():
+        assert wider.values[f"{stribeck.path}.{name}"] == pytest.approx(value, rel=0.1)

@@ -1,12 +1,18 @@
 """Fits: planted values come back, with intervals that hold them, from any start."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.intervals import intervals_of
-from hydrolek_drake.identification.least_squares import fit_from, multi_start
+from hydrolek_drake.identification.experiment import experiments_of
+from hydrolek_drake.identification.least_squares import fit_from, fit_from_afar, multi_start
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.recordings import read_recording
+
+BENCH = Path(__file__).parents[1] / "data" / "bench"
 
 PATHS = ["supply.pressure", "valve.max_area_a", "load.gravity_cos", "command.delay"]
 
@@ -43,6 +49,14 @@ def test_the_same_optimum_from_several_starts(bench, planted) -> None:
     rng = np.random.default_rng(3)
     ends = [fit_from(problem, rng.uniform(0.1, 0.9, len(parameters))).chi_squared for _ in range(3)]
     assert max(ends) - min(ends) < 1.0
+
+
+def test_random_starts_end_at_the_noise_with_all_parameters_free(bench) -> None:
+    parameters = ParameterSet(bench, free_parameters(bench))
+    recording = read_recording(BENCH / "practice_02" / "train.csv", bench.columns)
+    problem = Problem(parameters, [e.until(12.0) for e in experiments_of(bench, recording)], 1e-3)
+    starts = np.random.default_rng(1).uniform(size=(3, len(parameters)))
+    assert [fit_from_afar(problem, start).over_noise < 1.05 for start in starts] == [True] * 3
 
 
 def test_several_starts_end_early_at_the_noise(bench, planted) -> None:

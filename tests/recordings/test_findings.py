@@ -135,8 +135,12 @@ def emps_like(write_lines):
     )
 
 
-def test_require_is_satisfied(emps_like):
-    require(emps_like, ["j.command", "j.angle"], units={"j.command": "V", "j.absent": "m"})
+def test_require_is_satisfied_whatever_the_unit_of_an_absent_signal(emps_like):
+    keys, units = ["j.command", "j.angle"], {"j.command": "V", "j.absent": "m"}
+    assert set(emps_like.signals) == set(keys)
+    require(emps_like, keys, units=units)
+    with pytest.raises(InputError, match=r"j\.command is in V; A is needed"):
+        require(emps_like, keys, units={**units, "j.command": "A"})
 
 
 def test_require_names_what_is_missing_and_how_to_map_it(emps_like):

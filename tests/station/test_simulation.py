@@ -165,10 +165,11 @@ def test_divergence_is_told_with_a_remedy():
 # --- ports, feedthrough, interruption ------------------------------------------------------------------------
 
 N = 14
+ENDS = 18  # ten linear cylinders push two links each, but those of joint 1 stand on the fixed base
 PORTS = {
     "operator_computer": ({"signal_commanded": N}, {"channel_voltage": 32}),
     "field_point": ({"channel_voltage": 32}, {"command": N}),
-    "transport_delay": ({"command": N}, {"voltage_delayed": N}),
+    "transport_delay": ({"command": N}, {"voltage_delayed": N, "voltage_arriving": N}),
     "proportional_amplifier": ({"voltage_delayed": N}, {"coil_current": 2 * N}),
     "solenoid_spool": ({"coil_current": 2 * N}, {"spool_position": N}),
     "four_way_valve": (
@@ -179,8 +180,9 @@ PORTS = {
     "actuator": ({"oil_flow": 3 * N, "rod_motion": 2 * N}, {"pressure": 2 * N, "rod_force": N}),
     "linkage": (
         {"plant_state": 2 * N, "side_motion": 2 * N, "rod_force": N},
-        {"joint_motion": 2 * N, "rod_motion": 2 * N, "moment": N, "mount_force": 0},
+        {"joint_motion": 2 * N, "rod_motion": 2 * N, "moment": N, "mount_force": 3 * ENDS},
     ),
+    "mounts": ({"command": 3 * ENDS, "body_poses": 0}, {"spatial_forces": 0}),
     "load": ({"plant_state": 2 * N, "moment": N}, {"joint_torque": N}),
     "potentiometer": (
         {"motion": 2 * N},
@@ -208,6 +210,7 @@ FEEDS_THROUGH = {
         ("rod_force", "moment"),
         ("rod_force", "mount_force"),
     },
+    "mounts": {("command", "spatial_forces"), ("body_poses", "spatial_forces")},
     "load": {("plant_state", "joint_torque"), ("moment", "joint_torque")},
     "potentiometer": {
         ("motion", "position_measured"),

@@ -57,25 +57,33 @@ def test_operator_computer_refuses_shared_channels_and_uncalibrated_rigs():
         OperatorComputer(load_rig("joint_bench").records())
 
 
-def test_transport_delay_keeps_the_integral_of_the_voltage():
-    """A pulse delayed by 18.4 steps comes out spread over two steps with the same area."""
-    step = 1e-3
-    joints = load_rig("joint_bench").with_values({"command.delay": 18.4e-3}).records()
+def pulse_through_the_delay(delay, step=1e-3, at=3, steps=40):
+    """What a pulse of 5 V in step `at` gives: means over each step, and samples arriving in each."""
+    joints = load_rig("joint_bench").with_values({"command.delay": delay}).records()
     system = TransportDelay(joints, step)
     context = system.CreateDefaultContext()
-    port = system.GetInputPort("command")
-    port.FixValue(context, [0.0])
-    out = []
-    for k in range(40):
-        port.FixValue(context, [5.0 if k == 3 else 0.0])
-        context.SetTime(k * step)
-        state = context.Clone().get_mutable_state()
-        system._update(context, state)
-        for group in range(3):
-            context.SetDiscreteState(group, state.get_discrete_state().get_value(group))
-        out.append(system.GetOutputPort("voltage_delayed").Eval(context)[0])
-    np.testing.assert_allclose([out[21], out[22]], [0.6 * 5.0, 0.4 * 5.0], rtol=1e-9)
-    assert sum(out) == pytest.approx(5.0)
+    means, arriving = [], []
+    for k in range(steps):
+        system.GetInputPort("command").FixValue(context, [5.0 if k == at else 0.0])
+        arriving.append(system.GetOutputPort("voltage_arriving").Eval(context)[0])
+        values = context.get_discrete_state().Clone()
+        system._update(context, values)
+        context.get_mutable_discrete_state().SetFrom(values)
+        means.append(system.GetOutputPort("voltage_delayed").Eval(context)[0])
+    return np.array(means), np.array(arriving)
+
+
+def test_transport_delay_keeps_the_integral_of_the_voltage():
+    """A pulse delayed by 18.4 steps comes out spread over two steps with the same area."""
+    means, _ = pulse_through_the_delay(18.4e-3)
+    np.testing.assert_allclose(means[[21, 22]], [0.6 * 5.0, 0.4 * 5.0], rtol=1e-9)
+    assert sum(means) == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize(("delay", "step_of_arrival"), [(18.4e-3, 21), (18e-3, 21), (0.4e-3, 3), (0.0, 3)])
+def test_a_sample_arrives_in_the_step_in_which_its_delay_ends(delay, step_of_arrival):
+    _, arriving = pulse_through_the_delay(delay)
+    assert list(np.flatnonzero(arriving)) == [step_of_arrival]
 
 
 def test_proportional_amplifier_is_equation_4_4():
@@ -97,6 +105,27 @@ def test_solenoid_spool_advances_with_the_shared_step():
     ]
     np.testing.assert_array_equal(values.get_vector(0).get_value(), np.array(expected).T.ravel())
     np.testing.assert_array_equal(values.get_vector(1).get_value(), 0.5 * np.array(expected)[:, 0])
+
+
+def test_new_currents_reach_the_spool_where_the_delay_ends():
+    """With a delay of 18.4 steps the currents of the step before act for 0.4 of a step."""
+    step, first, second = 1e-3, np.array([0.9, 0.2]), np.array([0.2, 0.7])
+    joints = load_rig("hydrolek_right_j2").with_values({"command.delay": 18.4e-3}).records()
+    system = SolenoidSpool(joints, step, 1)
+    context = system.CreateDefaultContext()
+    for currents in (first, second):
+        system.GetInputPort("coil_current").FixValue(context, currents)
+        values = context.get_discrete_state().Clone()
+        system._update(context, values)
+        context.get_mutable_discrete_state().SetFrom(values)
+    x, v = 0.0, 0.0
+    places = []
+    for currents, share in ((first, 0.4), (first, 0.6), (first, 0.4), (second, 0.6)):
+        x, v = solenoid.advance(x, v, *currents, share * step, 1, joints[0])
+        places.append(x)
+    np.testing.assert_allclose(values.get_vector(0).get_value(), [x, v], rtol=1e-9)
+    mean = 0.4 * 0.5 * (places[1] + places[2]) + 0.6 * 0.5 * (places[2] + places[3])
+    np.testing.assert_allclose(values.get_vector(1).get_value(), [mean], rtol=1e-9)
 
 
 def test_four_way_valve_conserves_oil():

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from hydrolek_drake.identification.two_step.settings import two_step_data, with_ranges
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rigs.reading import rig_from_tree
 from hydrolek_drake.units import si_factor
 
 REPLACED = ("amplifier", "solenoid", "valve", "cylinder", "linkage")
@@ -45,7 +46,7 @@ def gain_rig(rig: Rig, joint: str) -> Rig:
     way = {"value": 1.0, "unit": "1", "source": "a positive command moves a joint in its positive direction"}
     sections["linkage"] = {"variant": "direct", "zero_stroke_position": zero, "direction": way}
     sections.pop("effects", None)
-    bare = Rig.from_tree(tree, rig.path)
+    bare = rig_from_tree(tree, rig.path)
     kept = {
         path: rig.entries[path]
         for path in bare.entries

@@ -1,0 +1,69 @@
+"""Whether physics in no list is named, and beside which model."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from hydrolek_drake.diagnosis.conclusion import MATERIAL, Conclusion
+from hydrolek_drake.diagnosis.evidence import Judged
+from hydrolek_drake.diagnosis.law_problem import FoundLaw
+from hydrolek_drake.diagnosis.unlisted import find_law
+from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.effects.scales import Scales
+from hydrolek_drake.identification.experiment import Experiment
+
+SIMPLER = 1.1
+"""A law beside the nominal model may leave so many times what it leaves beside known effects, and is preferred."""
+
+MANY = 3
+"""So many effects at once are less likely than one in no list, which they may only imitate: where one law predicts
+the held-out data as well, it is preferred."""
+
+
+def with_law(
+    bench: Workbench,
+    conclusion: Conclusion,
+    judged: Sequence[Judged],
+    held_out: Sequence[Experiment],
+    scales: Scales,
+    say: Callable[[str], None],
+) -> tuple[Conclusion, FoundLaw | None]:
+    """The conclusion with a law where known effects do not explain the data, or only too many of them do.
+
+    Args:
+        bench: data and fits.
+        conclusion: from known effects alone.
+        judged: all hypotheses that were held against held-out data.
+        held_out: what decides.
+        scales: natural scales of the joint.
+        say: told what is being done.
+    """
+    nominal = next(j for j in judged if not j.hypothesis.effects)
+    if conclusion.verdict == "unlisted_physics":
+        say("searching a law for physics that is in no list")
+        law, named = _law_and_model(bench, conclusion.best, nominal, held_out, scales)
+        return replace(conclusion, best=named), law
+    if len(conclusion.best.hypothesis.effects) >= MANY:
+        say("searching one law that could stand for so many effects")
+        law = find_law(bench, nominal, held_out, scales)
+        if law is not None and law.held_out_over_noise <= conclusion.best.over_noise:
+            return replace(conclusion, verdict="unlisted_physics", best=nominal, groups=()), law
+    return conclusion, None
+
+
+def _law_and_model(
+    bench: Workbench, best: Judged, nominal: Judged, held_out: Sequence[Experiment], scales: Scales
+) -> tuple[FoundLaw | None, Judged]:
+    """A law for physics that is in no list, and the model that it adds to.
+
+    Known effects that were fitted without the law may only have made up for it: the law is searched beside the
+    nominal model too, which is preferred unless the effects make it predict better by `SIMPLER`. Effects that take
+    no material part of the error are left out from the beginning.
+    """
+    if best.half_chi_squared > MATERIAL * nominal.half_chi_squared:
+        return find_law(bench, nominal, held_out, scales), nominal
+    law = find_law(bench, best, held_out, scales)
+    alone = find_law(bench, nominal, held_out, scales)
+    to_beat = SIMPLER * law.held_out_over_noise if law is not None else best.over_noise
+    if alone is not None and alone.held_out_over_noise < to_beat:
+        return alone, nominal
+    return law, best
