@@ -15,6 +15,8 @@ from hydrolek_drake.station.simulation import command_source
 from hydrolek_drake.station.simulation import run as run_diagram
 from hydrolek_drake.station.station import make_station
 
+pytestmark = pytest.mark.xdist_group("practice pairs")  # each is diagnosed once
+
 DATA = Path(__file__).parents[1] / "data" / "bench"
 LABELS = {label["id"]: label for label in json.loads((DATA / "practice_labels.json").read_text())}
 ALLOWED = 1.2

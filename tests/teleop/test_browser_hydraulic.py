@@ -28,6 +28,7 @@ pytestmark = pytest.mark.xdist_group(
 
 PICTURES = os.environ.get("HYDROLEK_PICTURES")
 REQUIRED = 5e-3  # m, at the grasp
+PACE = 0.5  # simulated seconds a second: other tests run beside these, and a plant that falls behind is steered late
 PATIENCE = 240.0  # s; on a busy computer the plant falls behind the clock and the task waits for it
 
 
@@ -39,9 +40,9 @@ def plants(served_console, tmp_path_factory):
     def make():
         if not made:
             pipe, folder = make_pipe(), tmp_path_factory.mktemp("trials", numbered=False)
-            plant = PlantProcess(home_posture(), meshcat=True, pipe=pipe)
+            plant = PlantProcess(home_posture(), meshcat=True, pipe=pipe, realtime_rate=PACE)
             served = served_console(
-                lambda: Machine(home_posture(), plant=plant),
+                lambda: Machine(home_posture(), plant=plant, realtime_rate=PACE),
                 lambda: SimulatedKinect(pipe, np.random.default_rng(1)),
                 view_port=plant.view_port,
                 trials=TrialLog(folder),

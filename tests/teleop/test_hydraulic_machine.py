@@ -16,6 +16,10 @@ from hydrolek_drake.teleop.sequencer import Mode, Order
 from hydrolek_drake.workcell.pipe import make_pipe
 from hydrolek_drake.workcell.scene import home_posture
 
+pytestmark = pytest.mark.xdist_group(
+    "console on the hydraulic plant"
+)  # two plants at once fall behind the clock
+
 STILL = np.radians(1.0)  # tolerance of the task: trapped oil still swings a little, and readings have noise
 PATIENCE = 120.0  # s; on a busy computer the task waits for the plant
 DEAD_TIME = 0.5  # s: joint 4's dead time of 0.24 s, and until its oil is at rest
