@@ -51,6 +51,11 @@ class Machine(NamedTuple):
     k_stop: float
     c_stop: float
     t_d: float
+    p_b_0: float
+    v_dry: float
+    j_play: float
+    k_play: float
+    c_play: float
     delay_s: float = 0.0
     fade: float = 0.0
     fade_s: float = 1.0
@@ -154,6 +159,11 @@ def nominal_machine(rig: Rig) -> Machine:
         k_stop=v("load.stop_stiffness"),
         c_stop=v("load.stop_damping"),
         t_d=v("command.delay"),
+        p_b_0=v("cylinder.initial_pressure_b"),
+        v_dry=v("cylinder.friction_velocity"),
+        j_play=v("linkage.play_inertia"),
+        k_play=v("linkage.play_stiffness"),
+        c_play=v("linkage.play_damping"),
     )
 
 
@@ -219,8 +229,8 @@ def _derivative(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) 
     if p_b <= 0.0 and out[3] < 0.0:
         out[3] = 0.0
     ratio = v / g.stribeck_v
-    dry = (g.coulomb_n + g.stribeck_n * math.exp(-ratio * ratio)) * math.tanh(v / 5e-4)
-    dry += g.tight_n * (s / 0.15) ** 2 * math.tanh(v / 5e-4)
+    dry = (g.coulomb_n + g.stribeck_n * math.exp(-ratio * ratio)) * math.tanh(v / g.v_dry)
+    dry += g.tight_n * (s / 0.15) ** 2 * math.tanh(v / g.v_dry)
     rod = g.a_a * p_a - g.a_b * p_b - g.c_cyl * (1.0 - s_warm) * v - dry
     if g.cushion > 0.0 and s < g.cushion_m and v < 0.0:
         rod -= g.cushion * v * (1.0 - s / g.cushion_m)
@@ -238,12 +248,12 @@ def _derivative(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) 
         half = 0.5 * g.gap_rad
         through = 0.0
         if lead > half:
-            through = 2e5 * (lead - half) + 400.0 * closing
+            through = g.k_play * (lead - half) + g.c_play * closing
         elif lead < -half:
-            through = 2e5 * (lead + half) + 400.0 * closing
+            through = g.k_play * (lead + half) + g.c_play * closing
         out[5] = (through + rest) / g.inertia
         out[7] = cqd
-        out[8] = (moment - through) / 2.0
+        out[8] = (moment - through) / g.j_play
     else:
         out[5] = (moment + rest) / g.inertia
         out[7] = 0.0
@@ -320,7 +330,7 @@ def play(
     y = np.zeros(11)
     _, lever = _cylinder(machine, start)
     moment = machine.mgl * math.cos(start)
-    y[3] = 3e6
+    y[3] = machine.p_b_0
     y[4] = y[7] = start
     if machine.base_k > 0.0:  # at rest the base leans against the load
         y[9] = -moment / machine.base_k

@@ -124,9 +124,8 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
         lambda h: bench.refit(h, finer, FINISH) if _decides(h, found) else h,
         chosen,
     )
-    if (
-        min(h.fit.over_noise for h in refitted) < AT_NOISE
-    ):  # else what no model explains outweighs what is left to gain
+    # farther from the noise, what no model explains outweighs what is left to gain
+    if min(h.fit.over_noise for h in refitted) < AT_NOISE:
         refitted = _finished(bench, refitted)
     paying = [h for h in refitted if pays(h, refitted)]
     judged = bench.side_by_side(lambda h: _predicted(bench, h, held_out, counted, finer), paying)

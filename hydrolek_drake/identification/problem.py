@@ -1,5 +1,6 @@
 """The residuals of recordings as a function of the searched parameters."""
 
+import copy
 from collections.abc import Sequence
 from concurrent.futures import Executor
 
@@ -62,8 +63,10 @@ class Problem:
 
     def pulled(self) -> "Problem":
         """The same with rollouts that are pulled to what was measured."""
-        prior = np.where(self._prior_weight > 0.0, 1.0 / np.maximum(self._prior_weight, 1e-300), np.inf)
-        return Problem(self.parameters, self.experiments, self.longest_step, self.pool, prior, PULL_S)
+        other = copy.copy(self)
+        other.pull_time, other.evaluations = PULL_S, 0
+        other._anchor = None
+        return other
 
     def residuals(self, unit: np.ndarray) -> np.ndarray:
         """Measured minus model over noise, of all experiments.

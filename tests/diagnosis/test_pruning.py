@@ -1,6 +1,7 @@
 """What is found is held against less: without an effect, and with the special case of one."""
 
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 
 import pytest
 
@@ -14,14 +15,19 @@ from hydrolek_drake.identification.parameter_set import free_parameters
 COULOMB = 600.0
 
 
-def test_coulomb_friction_is_tried_where_stribeck_friction_was_found(bench, recorded) -> None:
-    machine = bench.with_values({"effects.cylinder.coulomb_friction.coulomb_N": COULOMB})
-    experiments = recorded(machine, bench)
+@contextmanager
+def _searched(bench, experiments):
+    """A workbench, every candidate, and Stribeck and Coulomb friction among them."""
     candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
     known = {c.id: c for c in candidates}
-    stribeck, coulomb = (known[f"cylinder.{name}_friction"] for name in ("stribeck", "coulomb"))
     with ThreadPoolExecutor(2) as pool:
         work = Workbench(bench, free_parameters(bench, ["load.gravity_cos"]), experiments, pool)
+        yield work, candidates, *(known[f"cylinder.{name}_friction"] for name in ("stribeck", "coulomb"))
+
+
+def test_coulomb_friction_is_tried_where_stribeck_friction_was_found(bench, recorded) -> None:
+    machine = bench.with_values({"effects.cylinder.coulomb_friction.coulomb_N": COULOMB})
+    with _searched(bench, recorded(machine, bench)) as (work, candidates, stribeck, coulomb):
         found = Search()
         found.keep(work.fit((stribeck,), stribeck.starts[0], work.fine, POLISH))
         general = found.best
@@ -39,12 +45,7 @@ STRIBECK = {"coulomb_N": 600.0, "stribeck_N": 900.0, "stribeck_velocity_m_per_s"
 def test_stribeck_friction_is_tried_from_where_coulomb_friction_was_found(bench, recorded) -> None:
     path = "effects.cylinder.stribeck_friction"
     machine = bench.with_values({f"{path}.{name}": value for name, value in STRIBECK.items()})
-    experiments = recorded(machine, bench)
-    candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
-    known = {c.id: c for c in candidates}
-    stribeck, coulomb = (known[f"cylinder.{name}_friction"] for name in ("stribeck", "coulomb"))
-    with ThreadPoolExecutor(2) as pool:
-        work = Workbench(bench, free_parameters(bench, ["load.gravity_cos"]), experiments, pool)
+    with _searched(bench, recorded(machine, bench)) as (work, candidates, stribeck, coulomb):
         found = Search()
         found.keep(work.fit((coulomb,), coulomb.starts[0], work.fine, POLISH))
         special = found.best

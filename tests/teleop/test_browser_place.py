@@ -2,25 +2,12 @@
 
 import numpy as np
 import pytest
+from loose_pipe_scene import GRASP, PIPE, PLACE, RAISED, TABLE, pixel
 
-from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.place_plan import PLACE_STEPS
-from hydrolek_drake.vision.camera import camera_pose, thesis_camera
 from hydrolek_drake.workcell.scene import home_posture
 from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
-from hydrolek_drake.workcell.table import make_loose_pipe, make_table
-
-TABLE = make_table()
-PIPE = make_loose_pipe(TABLE)
-RAISED, GRASP = (PIPE.point + np.array([0, 0, up]) for up in (0.1, 0.2))
-PLACE = np.array([1.85, 0.20, TABLE.top[2]])
-
-
-def _pixel(point):
-    pose = camera_pose()
-    on_plate = in_frame(point, given_in="world", wanted_in="plate")
-    return thesis_camera().pixel((on_plate - pose[:3, 3]) @ pose[:3, :3])
 
 
 @pytest.fixture
@@ -47,7 +34,7 @@ def test_pick_and_place_in_a_browser(browser, served):
 
     def click(point):
         page.wait_for_selector("#colour.wants")
-        box, (u, v) = page.locator("#colour").bounding_box(), _pixel(np.array(point))
+        box, (u, v) = page.locator("#colour").bounding_box(), pixel(np.array(point))
         page.mouse.click(
             box["x"] + (u + 0.5) / 640 * box["width"], box["y"] + (v + 0.5) / 480 * box["height"]
         )

@@ -4,30 +4,17 @@ import time
 
 import numpy as np
 import pytest
+from loose_pipe_scene import GRASP, PIPE, PLACE, RAISED, TABLE, pixel
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.place_plan import PLACE_STEPS
 from hydrolek_drake.teleop.plan import STEPS
 from hydrolek_drake.teleop.sequencer import Order
 from hydrolek_drake.teleop.session import OperatorSession
-from hydrolek_drake.vision.camera import camera_pose, thesis_camera
 from hydrolek_drake.workcell.pipe import make_pipe
 from hydrolek_drake.workcell.scene import home_posture
 from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect, as_machine_stands
-from hydrolek_drake.workcell.table import make_loose_pipe, make_table
-
-TABLE = make_table()
-PIPE = make_loose_pipe(TABLE)
-RAISED, GRASP = (PIPE.point + np.array([0, 0, up]) for up in (0.1, 0.2))
-PLACE = np.array([1.85, 0.20, TABLE.top[2]])
-
-
-def _pixel(point):
-    pose = camera_pose()
-    on_plate = in_frame(point, given_in="world", wanted_in="plate")
-    return thesis_camera().pixel((on_plate - pose[:3, 3]) @ pose[:3, :3])
 
 
 @pytest.fixture
@@ -60,7 +47,7 @@ def _until(condition, seconds=180.0):
 
 def _click(session, *points):
     for point in points:
-        session.click(*_pixel(point))
+        session.click(*pixel(point))
 
 
 def _click_all(session):
@@ -83,11 +70,11 @@ def test_the_pipe_is_carried_to_the_place_and_seen_there_and_nothing_is_held_aft
     np.testing.assert_allclose(machine.state().position, home_posture(), atol=np.radians(1.0))
     assert not state["can_release"]
     session.snapshot()
-    session.click(*_pixel(pipe.point))  # the camera sees it there
+    session.click(*pixel(pipe.point))  # the camera sees it there
     assert session.state()["stage"] == "grasp"
     session.back()
     with pytest.raises(InputError, match=r"not on an object|nothing within reach"):
-        session.click(*_pixel(PIPE.point))  # and no longer here
+        session.click(*pixel(PIPE.point))  # and no longer here
 
 
 @pytest.mark.parametrize("machine", [5.0], indirect=True)  # slow enough to be caught on the way
