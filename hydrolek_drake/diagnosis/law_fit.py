@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, LawProblem
+from hydrolek_drake.diagnosis.law_problem import SCAN_S, FoundLaw, Law, LawProblem
 from hydrolek_drake.diagnosis.laws import Span
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -38,21 +38,20 @@ def glance(
     """
     bench.alive()
     parameters = bench.parameters(left.effects)
-    part = [experiment.until(GLANCE_S) for experiment in bench.training]
     own = {path: value for path, value in left.values.items() if ".effects." in path}
     ended = []
     for values in (left.values, own):
         unit = parameters.unit(values)
-        records = parameters.records(unit)
-        step = COARSE * bench.fine
-        trajectories = [e.simulate(records, step).signals for e in part]
-        problem = LawProblem(parameters, part, step, law, trajectories, span)
-        start = problem.start(unit, law.input.scale * np.array(law.amplitudes))
-        fit = fit_from(problem, start, most_steps=GLANCE, tolerance=1e-3)
-        bench.evaluations += problem.evaluations
-        ended.append((fit.objective, fit.unit, problem.law_values(fit.unit)))
+        amplitudes = law.input.scale * np.array(law.amplitudes)
+        for seconds in (SCAN_S, GLANCE_S) if law.term is None else (GLANCE_S,):
+            part = [experiment.until(seconds) for experiment in bench.training]
+            problem = LawProblem(parameters, part, COARSE * bench.fine, law, span)
+            fit = fit_from(problem, problem.start(unit, amplitudes), most_steps=GLANCE, tolerance=1e-3)
+            unit, amplitudes = fit.unit[: len(parameters)], problem.law_values(fit.unit)
+            bench.evaluations += problem.evaluations
+        ended.append((fit.objective, unit, amplitudes))
     objective, unit, amplitudes = min(ended, key=lambda end: end[0])
-    return objective, parameters.values(unit[: len(parameters)]), amplitudes
+    return objective, parameters.values(unit), amplitudes
 
 
 def fitted(
@@ -73,26 +72,12 @@ def fitted(
         span: what the law's variables are told in.
         begin: nominal parameters and the law's values (SI).
     """
+    bench.alive()
     parameters = bench.parameters(left.effects)
-    nominal = parameters.unit(begin[0])
-    records = parameters.records(nominal)
     step = FINER * bench.fine
-    trajectories = [e.simulate(records, step).signals for e in bench.training]
-    best: tuple[LawProblem, Fit] | None = None
-    for _ in range(2):  # the terms follow the trajectory that the law itself bends
-        bench.alive()
-        problem = LawProblem(parameters, bench.training, step, law, trajectories, span)
-        if best is None:
-            own = problem.start(nominal, begin[1])
-            fit = fit_from(problem, own, most_steps=STEPS, tolerance=1e-4)
-        else:
-            fit = fit_from(problem, best[1].unit, most_steps=STEPS, tolerance=1e-4)
-        best = (problem, fit)
-        if law.term is None:
-            break
-        trajectories = problem.signals(fit.unit)
-    assert best is not None
-    problem, fit = best
+    problem = LawProblem(parameters, bench.training, step, law, span)
+    start = problem.start(parameters.unit(begin[0]), begin[1])
+    fit = fit_from(problem, start, most_steps=STEPS, tolerance=1e-4)
     count = len(parameters)
     values = problem.law_values(fit.unit)
     without = bench.training[0].simulate(parameters.records(fit.unit[:count]), step).signals
@@ -112,10 +97,8 @@ def _ahead(
 ) -> float:
     """Held-out root mean square over the noise; the phase of a periodic law is fitted to each recording."""
     total, counted = 0.0, 0
-    records = parameters.records(fit.unit[: len(parameters)])
     for experiment in held_out:
-        trajectories = [experiment.simulate(records, step).signals]
-        own = LawProblem(parameters, [experiment], step, problem.law, trajectories, span)
+        own = LawProblem(parameters, [experiment], step, problem.law, span)
         unit = fit.unit.copy()
         if problem.law.term is None:
             values = problem.law_values(fit.unit)

@@ -6,16 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.laws import CONSTANT, Input, Span, Term, probe_rows, variables_of
+from hydrolek_drake.diagnosis.laws import CONSTANT, Input, Span, Term, law_record
 from hydrolek_drake.diagnosis.workbench import SPREAD
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.rollout.rollout import Signals
-
-GRID_S = 0.005
-"""Spacing of the samples of an unknown input [s]."""
 
 SCAN_S = 12.0
 """Frequencies are first looked for in so many seconds."""
@@ -92,21 +89,16 @@ class LawProblem(Problem):
         experiments: Sequence[Experiment],
         step: float,
         law: Law,
-        trajectories: Sequence[Signals],
         span: Span,
     ) -> None:
-        """Prepare; the terms are taken along given trajectories."""
+        """Prepare."""
         prior = np.where([".effects." in path for path in parameters.paths], np.inf, SPREAD)
         super().__init__(parameters, experiments, step, prior=prior)
         self.law = law
+        self.span = span
         self._nominal = len(parameters)
         self._prior_mean = np.concatenate([self._prior_mean, np.full(law.size, 0.5)])
         self._prior_weight = np.concatenate([self._prior_weight, np.zeros(law.size)])
-        self._grids = [grid_of(experiment) for experiment in experiments]
-        self._terms = [
-            term_on_grid(law.term, experiment, grid, signals, span) if law.term is not None else None
-            for experiment, grid, signals in zip(experiments, self._grids, trajectories, strict=True)
-        ]
 
     def law_values(self, unit: np.ndarray) -> np.ndarray:
         """Amplitudes (SI) and frequency [Hz] at a place in the unit cube."""
@@ -128,17 +120,8 @@ class LawProblem(Problem):
     def signals(self, unit: np.ndarray) -> list[Signals]:
         """What the model with the law does in every experiment."""
         records = self.parameters.records(unit[: self._nominal])
-        values = self.law_values(unit)
-        done = []
-        for experiment, grid, term in zip(self.experiments, self._grids, self._terms, strict=True):
-            if term is None:
-                angle = 2.0 * math.pi * values[2] * grid
-                series = values[0] * np.sin(angle) + values[1] * np.cos(angle)
-            else:
-                series = values[0] * term
-            rows = probe_rows(self.law.input.probe, series)
-            done.append(experiment.simulate(records, self.longest_step, (GRID_S, rows)).signals)
-        return done
+        law = law_record(self.law.input.probe, self.span, self.law.term, *self.law_values(unit))
+        return [e.simulate(records, self.longest_step, law=law).signals for e in self.experiments]
 
     def residuals(self, unit: np.ndarray) -> np.ndarray:
         """Measured minus model over noise, of all experiments."""
@@ -149,17 +132,3 @@ class LawProblem(Problem):
 
     def _keep(self, unit: np.ndarray, base: np.ndarray) -> None:
         """Nothing is kept: a law's own parameters change every rollout."""
-
-
-def grid_of(experiment: Experiment) -> np.ndarray:
-    """Times since the start at which an input is given [s]."""
-    return np.arange(int(np.ptp(experiment.time) / GRID_S) + 2) * GRID_S
-
-
-def term_on_grid(
-    term: Term, experiment: Experiment, grid: np.ndarray, signals: Signals, span: Span
-) -> np.ndarray:
-    """A term along a rollout, at the times of `grid_of`. # (k,)."""
-    since = experiment.time - experiment.time[0]
-    values = term.values(since / span.seconds, variables_of(signals, span))
-    return np.interp(grid, since, values)

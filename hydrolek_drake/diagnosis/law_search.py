@@ -1,12 +1,11 @@
 """Which laws could explain what a model leaves, from rollouts and linear algebra alone (as in `score`)."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.law_problem import GRID_S, SCAN_S, Law, grid_of, term_on_grid
-from hydrolek_drake.diagnosis.laws import TERMS, Input, Span, probe_rows
+from hydrolek_drake.diagnosis.law_problem import SCAN_S, Law
+from hydrolek_drake.diagnosis.laws import TERMS, Input, Span, Term, law_record
 from hydrolek_drake.diagnosis.score import Across
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -41,27 +40,23 @@ def promising(bench: Workbench, left: Hypothesis, inputs: Sequence[Input], span:
     across = Across(left.fit)
     off = left.fit.off_prior
 
-    def response(experiments: Sequence[Experiment], probe: str, series: Sequence[np.ndarray]) -> np.ndarray:
-        parts = []
-        for experiment, values in zip(experiments, series, strict=True):
-            probes = (GRID_S, probe_rows(probe, values))
-            parts.append(experiment.residuals(experiment.simulate(records, step, probes).signals))
+    def response(
+        experiments: Sequence[Experiment], given: Input, term: Term | None, *sizes: float
+    ) -> np.ndarray:
+        scaled = (given.scale * sizes[0], *(given.scale * s for s in sizes[1:2]), *sizes[2:])
+        law = law_record(given.probe, span, term, *scaled)
+        parts = [e.residuals(e.simulate(records, step, law=law).signals) for e in experiments]
         return np.nan_to_num(np.concatenate(parts))
 
     def of_terms(given: Input) -> list[Law]:
         bench.alive()
-        here = response(bench.training, given.probe, [np.zeros(grid_of(e).size) for e in bench.training])
+        here = response(bench.training, given, TERMS[0], 0.0)
         rest = across(np.concatenate([here, off]))
-        trajectories = [e.simulate(records, step).signals for e in bench.training]
         found = []
         for term in (term for term in TERMS if given.stage in term.stages):
-            shapes = [
-                given.scale * term_on_grid(term, e, grid_of(e), s, span)
-                for e, s in zip(bench.training, trajectories, strict=True)
-            ]
 
-            def moved(size: float, shapes: Sequence[np.ndarray] = shapes) -> np.ndarray:
-                there = response(bench.training, given.probe, [size * shape for shape in shapes])
+            def moved(size: float, term: Term = term) -> np.ndarray:
+                there = response(bench.training, given, term, size)
                 return across(np.concatenate([there - here, np.zeros(off.size)]))
 
             gain, amplitudes = _gain(moved(TRIED)[:, None], rest)
@@ -78,8 +73,7 @@ def promising(bench: Workbench, left: Hypothesis, inputs: Sequence[Input], span:
     def of_frequencies(given: Input) -> list[Law]:
         bench.alive()
         part = [e.until(SCAN_S) for e in bench.training[:1]]
-        zero = np.zeros(grid_of(part[0]).size)
-        here = response(part, given.probe, [zero])
+        here = response(part, given, TERMS[0], 0.0)
         own = Problem(parameters, part, step)
         base = own.residuals(parameters.unit(left.values))
         nearby = Across(
@@ -94,14 +88,12 @@ def promising(bench: Workbench, left: Hypothesis, inputs: Sequence[Input], span:
             )
         )
         rest = nearby(np.concatenate([here, off]))
-        grid = grid_of(part[0])
         spacing = 0.5 / SCAN_S
         found = []
         for frequency in np.arange(2.0 * spacing, HIGHEST_HZ, spacing):
             columns = []
-            for wave in (np.sin, np.cos):
-                series = TRIED * given.scale * wave(2.0 * math.pi * frequency * grid)
-                moved = response(part, given.probe, [series]) - here
+            for sine, cosine in ((TRIED, 0.0), (0.0, TRIED)):
+                moved = response(part, given, None, sine, cosine, float(frequency)) - here
                 columns.append(nearby(np.concatenate([moved, np.zeros(off.size)])))
             found.append(Law(given, None, float(frequency), *_gain(np.stack(columns, axis=1), rest)))
         whole = sum(e.counted for e in bench.training) / max(own.counted, 1)

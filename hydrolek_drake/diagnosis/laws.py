@@ -1,21 +1,21 @@
 """Short laws in a stage's own variables, for physics that is in no list.
 
-A law gives one unknown input of the rollout (`kernel.PROBES`) as a function of time or of the joint's movement.
-Every law is one term with an amplitude; a periodic one has a frequency and a phase besides.
+A law gives one unknown input of the rollout (`probes.PROBES`) as a function of time or of the joint's movement.
+Every law is one term with an amplitude; a periodic one has a frequency and a phase besides. What the factors of a
+term mean stands in `rollout.law`, which evaluates them.
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from hydrolek_drake.effects.scales import Scales
-from hydrolek_drake.rollout.kernel import PROBES
+from hydrolek_drake.physics import linkage
+from hydrolek_drake.rollout.law import LAW, OTHERS, PLACES, SPEEDS, TIMES
+from hydrolek_drake.rollout.probes import PROBES
 from hydrolek_drake.rollout.rollout import Signals
-
-SLOW = 0.02
-"""The sign of a speed is smoothed below this fraction of the largest speed."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Input:
 
     Attributes:
         stage: where it enters.
-        probe: as what; one of `kernel.PROBES`.
+        probe: as what; one of `probes.PROBES`.
         symbol: how a law names it.
         unit: SI unit, "1" for a relative change.
         scale: a large amplitude for this machine.
@@ -71,17 +71,27 @@ def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str)
 
 @dataclass(frozen=True)
 class Term:
-    """A function of time and movement, of size about one.
+    """A function of time and movement, of size about one: a product of factors of `rollout.law`.
 
     Attributes:
-        name: as in an equation.
         stages: at which it has a physical meaning: a friction is no business of the pump's.
-        values: (time since the start over the span's, variables) -> values. # (n,)
+        time: factor of `TIMES`.
+        place: of `PLACES`.
+        speed: of `SPEEDS`.
+        other: of `OTHERS`.
     """
 
-    name: str
     stages: tuple[str, ...]
-    values: Callable[[np.ndarray, Mapping[str, np.ndarray]], np.ndarray]
+    time: str = "1"
+    place: str = "1"
+    speed: str = "1"
+    other: str = "1"
+
+    @property
+    def name(self) -> str:
+        """As in an equation."""
+        factors = [f for f in (self.time, self.place, self.speed, self.other) if f != "1"]
+        return " ".join(factors) or CONSTANT
 
 
 CONSTANT = "1"
@@ -93,29 +103,27 @@ _FLOWS = ("supply", "valve")
 _ALL = ("command", "amplifier", "supply", "valve", "fluid", "cylinder", "load", "sensor")
 
 TERMS = (
-    Term(CONSTANT, _ALL, lambda t, s: np.ones(t.size)),
-    Term("t/T", _ALL, lambda t, s: t),
-    Term("(t/T)^2", _ALL, lambda t, s: t * t),
-    Term("sign(v)", _MOVED, lambda t, s: s["sign"]),
-    Term("v", (*_MOVED, *_FLOWS), lambda t, s: s["v"]),
-    Term("|v|", _FLOWS, lambda t, s: np.abs(s["v"])),
-    Term("v |v|", (*_FORCES, *_FLOWS), lambda t, s: s["v"] * np.abs(s["v"])),
-    Term("z", (*_MOVED, "fluid"), lambda t, s: s["z"]),
-    Term("z^2", _MOVED, lambda t, s: s["z"] ** 2),
-    Term("z sign(v)", _FORCES, lambda t, s: s["z"] * s["sign"]),
-    Term("z^2 sign(v)", _FORCES, lambda t, s: s["z"] ** 2 * s["sign"]),
-    Term("(1 - z^2) sign(v)", _FORCES, lambda t, s: (1.0 - s["z"] ** 2) * s["sign"]),
-    Term("((1 + z)/2)^2 sign(v)", _FORCES, lambda t, s: (0.5 * (1.0 + s["z"])) ** 2 * s["sign"]),
-    Term("((1 - z)/2)^2 sign(v)", _FORCES, lambda t, s: (0.5 * (1.0 - s["z"])) ** 2 * s["sign"]),
-    Term("z v", _FORCES, lambda t, s: s["z"] * s["v"]),
-    Term("p_A", ("valve", "fluid", *_MOVED), lambda t, s: s["pa"]),
-    Term("p_B", ("valve", "fluid", *_MOVED), lambda t, s: s["pb"]),
-    Term("p_A - p_B", ("valve", *_MOVED), lambda t, s: s["pa"] - s["pb"]),
-    Term("x", ("command", "amplifier", *_FLOWS), lambda t, s: s["x"]),
-    Term("|x|", ("command", "amplifier", *_FLOWS), lambda t, s: np.abs(s["x"])),
+    Term(_ALL),
+    Term(_ALL, time="t/T"),
+    Term(_ALL, time="(t/T)^2"),
+    Term(_MOVED, speed="sign(v)"),
+    Term((*_MOVED, *_FLOWS), speed="v"),
+    Term(_FLOWS, speed="|v|"),
+    Term((*_FORCES, *_FLOWS), speed="v |v|"),
+    Term((*_MOVED, "fluid"), place="z"),
+    Term(_MOVED, place="z^2"),
+    Term(_FORCES, place="z", speed="sign(v)"),
+    Term(_FORCES, place="z^2", speed="sign(v)"),
+    Term(_FORCES, place="(1 - z^2)", speed="sign(v)"),
+    Term(_FORCES, place="((1 + z)/2)^2", speed="sign(v)"),
+    Term(_FORCES, place="((1 - z)/2)^2", speed="sign(v)"),
+    Term(_FORCES, place="z", speed="v"),
+    Term(("valve", "fluid", *_MOVED), other="p_A"),
+    Term(("valve", "fluid", *_MOVED), other="p_B"),
+    Term(("valve", *_MOVED), other="(p_A - p_B)"),
+    Term(("command", "amplifier", *_FLOWS), other="x"),
+    Term(("command", "amplifier", *_FLOWS), other="|x|"),
 )
-"""t: time, T: duration of the longest training recording, v: speed over its largest in these, z: position from -1 to 1
-over what they show, x: spool over its largest, p: pressure over the supply's (`Span`)."""
 
 
 @dataclass(frozen=True)
@@ -123,7 +131,9 @@ class Span:
     """What the variables of the terms are told in, so that a law means the same in every recording.
 
     Attributes:
-        speed: the largest [rad/s or m/s].
+        speed: the largest of the joint [rad/s or m/s].
+        slow: below which the sign of a speed is smoothed, as the rig's friction is [rad/s or m/s].
+        direction: 1 if the rod extends where the joint's position rises, else -1.
         low: end of the positions [rad or m].
         high: the other end.
         opening: the spool's largest [m].
@@ -132,6 +142,8 @@ class Span:
     """
 
     speed: float
+    slow: float
+    direction: float
     low: float
     high: float
     opening: float
@@ -139,35 +151,57 @@ class Span:
     seconds: float
 
 
-def span_of(signals: Sequence[Signals], pressure: float, seconds: float) -> Span:
-    """The span of some rollouts."""
+def span_of(signals: Sequence[Signals], record: np.void, seconds: float) -> Span:
+    """The span of some rollouts.
+
+    Args:
+        signals: of the training recordings.
+        record: the joint's parameters.
+        seconds: of the longest recording.
+    """
     position = np.concatenate([np.nan_to_num(s.position) for s in signals])
+    low, high = float(position.min()), float(position.max())
+    pressure = float(record["supply"]["pressure"])
+    smoothed = float(record["cylinder"]["friction_velocity"])
+    lever = 1.0
+    if math.isfinite(smoothed):
+        _, lever = linkage.stroke_and_lever(0.5 * (low + high), record)
+    else:
+        smoothed = float(record["load"]["friction_velocity"])
+        lever = float(record["linkage"]["direction"])
     return Span(
         speed=max(float(np.abs(np.nan_to_num(s.velocity)).max()) for s in signals) or 1.0,
-        low=float(position.min()),
-        high=float(position.max()),
+        slow=smoothed / abs(lever),
+        direction=math.copysign(1.0, lever),
+        low=low,
+        high=high if high > low else low + 1.0,
         opening=max(float(np.abs(np.nan_to_num(s.spool)).max()) for s in signals) or 1.0,
         pressure=pressure if pressure > 0.0 else 1.0,
         seconds=seconds,
     )
 
 
-def variables_of(signals: Signals, span: Span) -> dict[str, np.ndarray]:
-    """The variables of the terms, without units, along a rollout. # (n,) each."""
-    v = np.nan_to_num(signals.velocity) / span.speed
-    position = np.nan_to_num(signals.position)
-    return {
-        "v": v,
-        "sign": np.tanh(v / SLOW),
-        "z": 2.0 * (position - span.low) / max(span.high - span.low, np.finfo(float).tiny) - 1.0,
-        "x": np.nan_to_num(signals.spool) / span.opening,
-        "pa": np.nan_to_num(signals.pressure_a) / span.pressure,
-        "pb": np.nan_to_num(signals.pressure_b) / span.pressure,
-    }
+def law_record(
+    probe: str, span: Span, term: Term | None, sine: float, cosine: float = 0.0, frequency: float = 0.0
+) -> np.ndarray:
+    """A law as the rollout takes it. # (1,) of `rollout.law.LAW`.
 
-
-def probe_rows(probe: str, values: np.ndarray) -> np.ndarray:
-    """One input over time as rows of `kernel.PROBES`. # (n, 10)."""
-    rows = np.zeros((values.size, len(PROBES)))
-    rows[:, PROBES.index(probe)] = values
-    return rows
+    Args:
+        probe: what it gives; one of `probes.PROBES`.
+        span: what its variables are told in.
+        term: its form; None for a periodic one.
+        sine: amplitude [SI].
+        cosine: of the cosine, for a periodic one.
+        frequency: of a periodic one [Hz].
+    """
+    record = np.zeros(1, LAW)
+    record["probe"] = PROBES.index(probe)
+    if term is not None:
+        record["time"] = TIMES.index(term.time)
+        record["place"] = PLACES.index(term.place)
+        record["speed_shape"] = SPEEDS.index(term.speed)
+        record["other"] = OTHERS.index(term.other)
+    record["sine"], record["cosine"], record["frequency"] = sine, cosine, frequency
+    for name in ("seconds", "low", "high", "speed", "slow", "direction", "opening", "pressure"):
+        record[name] = getattr(span, name)
+    return record

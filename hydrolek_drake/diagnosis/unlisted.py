@@ -49,7 +49,7 @@ def find_law(
     records = parameters.records(parameters.unit(left.values))
     span = span_of(
         [e.simulate(records, COARSE * bench.fine).signals for e in bench.training],
-        pressure,
+        records[bench.training[0].index],
         max(float(np.ptp(e.time)) for e in bench.training),
     )
     laws = sorted(promising(bench, left, inputs, span), key=lambda law: -law.gain)

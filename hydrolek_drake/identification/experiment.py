@@ -12,6 +12,7 @@ from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import measured_position, position_key
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.kernel import PULLED
+from hydrolek_drake.rollout.law import NO_LAW
 from hydrolek_drake.rollout.rollout import Outcome, Signals, rest_state_at_reading, roll_out
 
 STANDS_STILL = 3.0
@@ -117,6 +118,7 @@ class Experiment:
         longest_step: float | None = None,
         probes: tuple[float, np.ndarray] | None = None,
         pull_time: float | None = None,
+        law: np.ndarray = NO_LAW,
     ) -> Outcome:
         """Roll the joint out under the recorded command.
 
@@ -126,6 +128,7 @@ class Experiment:
             probes: unknown inputs, as in `rollout.roll_out`.
             pull_time: with which reading and pressures are pulled to what was measured [s]; None for a free
                 rollout.
+            law: for an unknown input, as in `rollout.roll_out`.
         """
         record = records[self.index : self.index + 1]
         state = None if self.start is None else rest_state_at_reading(record, self.start)
@@ -139,6 +142,7 @@ class Experiment:
             spool_steps=self.spool_steps,
             probes=self._with_others(probes),
             pull=None if pull_time is None else (pull_time, self._to_follow()),
+            law=law,
         )
 
     def _with_others(self, probes: tuple[float, np.ndarray] | None) -> tuple[float, np.ndarray] | None:

@@ -13,7 +13,7 @@ from scipy.signal import savgol_filter
 
 from hydrolek_drake.physics import linkage, load
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.kernel import PROBES
+from hydrolek_drake.rollout.probes import PROBES
 
 SPACING_S = 0.01
 """Spacing of the samples of what the others do [s]."""
@@ -65,7 +65,7 @@ def effects_of_others(
         measured: joint -> times [s] and position [rad or m], of every joint that moves.
 
     Returns:
-        Joint -> spacing [s] and rows of `kernel.PROBES`, from the joint's first sample on; empty if fewer than two
+        Joint -> spacing [s] and rows of `probes.PROBES`, from the joint's first sample on; empty if fewer than two
         joints move or the joints are driven by motors of their own.
     """
     hydraulic = [j for j in measured if rig.variant(j, "cylinder") != "electric_motor"]

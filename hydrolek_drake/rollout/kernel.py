@@ -26,6 +26,8 @@ from hydrolek_drake.physics import (
     valve,
 )
 from hydrolek_drake.physics.solenoid import GAMMA
+from hydrolek_drake.rollout.law import braking_slope, felt
+from hydrolek_drake.rollout.probes import Probe, probe_at
 
 SIGNALS = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool", "supply_pressure", "force")
 
@@ -54,27 +56,6 @@ class Slopes(NamedTuple):
     lead_w: float
 
 
-class Probe(NamedTuple):
-    """Inputs from outside the model, all zero otherwise.
-
-    Unknown ones, one a stage, with which a diagnosis asks where physics is missing; and what other joints do.
-    """
-
-    command: float  # added to the command [V]
-    amplifier: float  # relative change of the coil currents
-    valve: float  # relative change of the openings
-    supply: float  # added to the supply pressure [Pa]
-    cylinder: float  # force added at the rod [N]
-    load: float  # moment added at the joint [N m]
-    sensor: float  # added to the reading [rad or m]
-    flow: float  # that other joints draw from the supply [m^3/s]
-    capacity_a: float  # added to the oil's on side A: volume that it takes per pressure [m^3/Pa]
-    capacity_b: float  # the same on side B
-
-
-PROBES = Probe._fields
-NO_PROBE = np.zeros((0, len(PROBES)))
-
 LEAST_CAPACITY = 0.1
 """A search may ask for less capacity than the oil has, down to this share: none at all has no solution."""
 
@@ -83,33 +64,18 @@ NOT_PULLED = np.zeros((0, len(PULLED)))
 
 
 @njit
-def _probe_at(time: float, begin: float, spacing: float, values: np.ndarray) -> Probe:
-    """Probes at a time, on straight lines between samples of uniform spacing."""
-    if len(values) == 0:
-        return Probe(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    place = min(max((time - begin) / spacing, 0.0), len(values) - 1.0)
-    i = min(int(place), len(values) - 2)
-    f = place - i
-    a, b = values[i], values[i + 1]
-    return Probe(
-        a[0] + f * (b[0] - a[0]),
-        a[1] + f * (b[1] - a[1]),
-        a[2] + f * (b[2] - a[2]),
-        a[3] + f * (b[3] - a[3]),
-        a[4] + f * (b[4] - a[4]),
-        a[5] + f * (b[5] - a[5]),
-        a[6] + f * (b[6] - a[6]),
-        a[7] + f * (b[7] - a[7]),
-        a[8] + f * (b[8] - a[8]),
-        a[9] + f * (b[9] - a[9]),
-    )
-
-
-@njit
 def rates(
-    s: State, x: float, voltage: float, time: float, inertia: float, probe: Probe, joint: Any
+    s: State,
+    x: float,
+    voltage: float,
+    time: float,
+    inertia: float,
+    outside: Probe,
+    law: np.ndarray,
+    joint: Any,
 ) -> tuple[State, Slopes, float, float]:
     """Rates of the state, their stiff slopes, the supply pressure [Pa] and the rod force [N]."""
+    probe = felt(outside, law, time, s.q, s.w, s.p_a, s.p_b, x)
     rocking = hooks.base_stiffness(joint) > 0.0
     playing = hooks.linkage_gap(joint) > 0.0
     side_q = s.lead_q if playing else s.q
@@ -152,6 +118,7 @@ def rates(
     moment = force * lever
     resisting, slope_r = load.resisting_load(s.q, s.w, time, joint)
     resisting -= probe.load
+    slope_r -= braking_slope(law, lever, time, s.q, s.w, s.p_a, s.p_b, x)
     lead_acceleration = slope_lead = 0.0
     if playing:
         side_inertia = joint.linkage.play_inertia
@@ -196,10 +163,11 @@ def _step(
     inertia: float,
     probe: Probe,
     probe_next: Probe,
+    law: np.ndarray,
     joint: Any,
 ) -> State:
     """One Rosenbrock-W step of `h` seconds; the spool goes from `x` to `x_next` meanwhile."""
-    k, slope, _, _ = rates(s, x, voltage, time, inertia, probe, joint)
+    k, slope, _, _ = rates(s, x, voltage, time, inertia, probe, law, joint)
     c_a = 1.0 / (1.0 - GAMMA * h * slope.p_a)
     c_b = 1.0 / (1.0 - GAMMA * h * slope.p_b)
     c_w = 1.0 / (1.0 - GAMMA * h * slope.w)
@@ -217,7 +185,7 @@ def _step(
         s.lead_q + h * k.lead_q,
         s.lead_w + h * k_l,
     )
-    m, _, _, _ = rates(middle, x_next, voltage, time + h, inertia, probe_next, joint)
+    m, _, _, _ = rates(middle, x_next, voltage, time + h, inertia, probe_next, law, joint)
     half = 0.5 * h
     return State(
         max(s.p_a + half * (3.0 * k_a + (m.p_a - 2.0 * k_a) * c_a), 0.0),
@@ -277,6 +245,7 @@ def integrate(
     probe_values: np.ndarray,
     pull_time: float,
     measured: np.ndarray,
+    law: np.ndarray,
     out: np.ndarray,
 ) -> int:
     """Integrate one joint through a command and write its signals at `times`.
@@ -295,6 +264,7 @@ def integrate(
         pull_time: with this time constant reading and pressures are pulled to what was measured, as in an
             observer [s]; zero or less for a free rollout.
         measured: `PULLED` at `times`, NaN where there is no value, shape (n, 3); no rows for a free rollout.
+        law: how an input from outside follows from the state, `law.LAW`; one row, or none.
         out: `SIGNALS`, before the pull, shape (n, 8).
 
     Returns:
@@ -324,32 +294,35 @@ def integrate(
             until = target
             if following <= last and command_times[following] + delay < target:
                 until = max(command_times[following] + delay, t)
-            probe = _probe_at(t, begin, probe_spacing, probe_values)
-            voltage = command.drive_voltage(command_values[held] + probe.command, joint)
+            probe = probe_at(t, begin, probe_spacing, probe_values)
+            by_command = felt(probe, law, t - on, s.q, s.w, s.p_a, s.p_b, x).command
+            voltage = command.drive_voltage(command_values[held] + by_command, joint)
             steps = max(math.ceil((until - t) / longest_step - 1e-9), 1)
             h = (until - t) / steps
             if h > 0.0:
                 for i in range(steps):
                     time = t + i * h - on
                     drive_a, drive_b = amplifier.coil_currents(voltage, time + 0.5 * h, joint)
-                    probe_next = _probe_at(t + (i + 1) * h, begin, probe_spacing, probe_values)
-                    gain = 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
+                    probe_next = probe_at(t + (i + 1) * h, begin, probe_spacing, probe_values)
+                    by_law = felt(probe, law, time, s.q, s.w, s.p_a, s.p_b, x).amplifier - probe.amplifier
+                    gain = 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier) + by_law
                     x_next, xd = solenoid.advance(
                         x, xd, gain * drive_a, gain * drive_b, h, spool_steps, joint
                     )
                     inertia = _inertia_at(time, rod, joint)
-                    s = _step(s, x, x_next, voltage, time, h, inertia, probe, probe_next, joint)
+                    s = _step(s, x, x_next, voltage, time, h, inertia, probe, probe_next, law, joint)
                     x = x_next
                     probe = probe_next
                     play = sensor.played(play, s.q - s.tilt, joint)
             t = until
         if _out_of_bounds(x, s):
             return row
-        probe = _probe_at(t, begin, probe_spacing, probe_values)
-        voltage = command.drive_voltage(command_values[held] + probe.command, joint)
+        probe = probe_at(t, begin, probe_spacing, probe_values)
+        now = felt(probe, law, t - on, s.q, s.w, s.p_a, s.p_b, x)
+        voltage = command.drive_voltage(command_values[held] + now.command, joint)
         inertia = _inertia_at(t - on, rod, joint)
-        _, _, p_supply, force = rates(s, x, voltage, t - on, inertia, probe, joint)
-        out[row, 0] = sensor.reading(play, t - on, joint) + probe.sensor
+        _, _, p_supply, force = rates(s, x, voltage, t - on, inertia, probe, law, joint)
+        out[row, 0] = sensor.reading(play, t - on, joint) + now.sensor
         out[row, 1] = s.q
         out[row, 2] = s.w
         out[row, 3] = s.p_a

@@ -9,6 +9,8 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import cylinder, hooks, linkage, load, sensor
 from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, flat, position_of
 from hydrolek_drake.rollout import kernel
+from hydrolek_drake.rollout.law import NO_LAW
+from hydrolek_drake.rollout.probes import NO_PROBE
 
 STATE_SIZE = 2 + len(kernel.State._fields) + 2
 
@@ -129,6 +131,7 @@ def roll_out(
     spool_steps: int = 1,
     probes: tuple[float, np.ndarray] | None = None,
     pull: tuple[float, np.ndarray] | None = None,
+    law: np.ndarray = NO_LAW,
 ) -> Outcome:
     """Drive one joint with a recorded command.
 
@@ -140,10 +143,11 @@ def roll_out(
         state: where to start; None for rest at the rig's initial position.
         longest_step: upper bound of the integration step [s].
         spool_steps: steps of the spool within one step of the rest.
-        probes: inputs from outside the model, `kernel.PROBES`: spacing of their samples [s], and the samples,
-            shape (k, 8), the first at the first of `times`; None for none.
+        probes: inputs from outside the model, `probes.PROBES`: spacing of their samples [s], and the samples,
+            shape (k, 10), the first at the first of `times`; None for none.
         pull: reading and pressures are pulled to what was measured, as in an observer: time constant [s], and
             `kernel.PULLED` at `times`, NaN where there is no value, shape (n, 3); None for a free rollout.
+        law: how one input from outside follows from the state, a row of `law.LAW`; no row for none.
 
     Raises:
         InputError: times that do not rise, or not as many command values as command times.
@@ -152,7 +156,7 @@ def roll_out(
     out = np.full((len(times), len(kernel.SIGNALS)), np.nan)
     times = np.ascontiguousarray(times, dtype=float)
     start = np.full(STATE_SIZE, np.nan) if state is None else state.copy()
-    probe_spacing, probe_values = probes or (1.0, kernel.NO_PROBE)
+    probe_spacing, probe_values = probes or (1.0, NO_PROBE)
     changes = np.concatenate(
         [[True], np.diff(command_values) != 0.0]
     )  # what only repeats the command says nothing
@@ -173,6 +177,7 @@ def roll_out(
                 np.ascontiguousarray(probe_values, dtype=float),
                 pull_time,
                 np.ascontiguousarray(measured, dtype=float),
+                law,
                 out,
             )
             if rows < len(times):

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.laws import probe_rows
 from hydrolek_drake.identification.experiment import Experiment, experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig, load_rig
+from hydrolek_drake.rollout.probes import PROBES
 
 
 @pytest.fixture(scope="session")
@@ -40,7 +40,11 @@ def recorded() -> Callable[..., list[Experiment]]:
             {"joint.command": levels, "joint.angle": rng.normal(0.4, 0.1, time.size)},
             Path("made.csv"),
         )
-        probes = None if unknown is None else (1.0, probe_rows(unknown[0], np.full(13, unknown[1])))
+        probes = None
+        if unknown is not None:
+            rows = np.zeros((13, len(PROBES)))
+            rows[:, PROBES.index(unknown[0])] = unknown[1]
+            probes = (1.0, rows)
         played = experiments_of(machine, blank)[0].simulate(machine.records(), 1e-4, probes).signals
         angle = played.reading + np.radians(noise_deg) * rng.standard_normal(time.size)
         signals = {"joint.command": levels, "joint.angle": angle}

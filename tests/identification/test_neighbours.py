@@ -12,7 +12,7 @@ from hydrolek_drake.identification.neighbours import drawn_flow, effects_of_othe
 from hydrolek_drake.kinematics.arms import load_of_joint
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.rollout.kernel import PROBES
+from hydrolek_drake.rollout.probes import PROBES
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import make_station
 
