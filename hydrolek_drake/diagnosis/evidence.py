@@ -20,7 +20,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.growing import AT_NOISE, FIDELITY, NEARLY, gain_needed
+from hydrolek_drake.diagnosis.effort import AT_NOISE, NEARLY
+from hydrolek_drake.diagnosis.growing import FIDELITY, gain_needed
 from hydrolek_drake.diagnosis.search import Search, cost_of
 from hydrolek_drake.diagnosis.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment

@@ -5,24 +5,23 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.diagnosis.effort import (
+    AT_NOISE,
+    BEAM,
+    COARSE,
+    FAR,
+    GLANCE,
+    GLANCE_S,
+    LOOK,
+    NEAR,
+    NEARLY,
+    POLISH,
+)
 from hydrolek_drake.diagnosis.score import Score, gain_of_pair, scores_of
+from hydrolek_drake.diagnosis.unsticking import different, of_another_joint, unstuck
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import PULLED_STEPS, PULLED_TOLERANCE, Fit
-from hydrolek_drake.identification.problem import PULL_S
-
-COARSE = 4.0
-"""Integration step of the first fits over the rig's own: 16 times its error, a quarter of its time."""
-
-FAR, NEAR = 3.0, 1.3
-"""A model this many times above the noise is searched with the coarse step, or with twice the rig's own: the
-error of the step must stay far below what is to be explained."""
-
-GLANCE_S = 20.0
-"""First fits see so many seconds of a recording: errors that grow with time are smaller, and so is the work."""
+from hydrolek_drake.identification.least_squares import Fit
 
 UNDECIDED = 2.0
 """First fits whose squared residuals are within this factor of the best one's are not told apart by so short a part."""
@@ -34,29 +33,14 @@ FIDELITY = 0.004
 """Fall of the squared residuals, as a share of the values, below which an effect is not told from what every
 model leaves out: 0.2 % of the noise's rms."""
 
-AT_NOISE = 1.03
-"""A model within 3 % of the noise: the estimate of the noise itself is good to 1 to 2 %."""
-
 MOST_EFFECTS = 3
 """At most so many effects are searched together."""
-
-NEARLY = 1.5
-"""A third effect is looked for only if two leave at most this many times the noise: it would be a small one."""
-
-BEAM = 3
-"""So many hypotheses are extended by a further effect, and only the best once it is near the noise."""
-
-GLANCE, LOOK, POLISH = 4, 15, 8
-"""Trust-region steps of a first fit, of one that is followed up, and of one with the rig's own step."""
 
 FOLLOWED = 5
 """So many of the first fits are followed up."""
 
 MOST_UNDECIDED = 15
 """At most so many of them go on with the whole recording."""
-
-TRIED_PULLED = 12
-"""So many of the first fits are tried with pulled rollouts too."""
 
 HOPELESS = 4.0
 """First fits whose squared residuals are so many times the best one's are not followed up."""
@@ -123,7 +107,7 @@ def grow(
                 far and not parent.effects
             ):  # the parent's values may have gone far astray to make up for what is missing
                 joints = bench.joints_of(effects)
-                kept = {k: v for k, v in parent.values.items() if _of_another_joint(k, joints)}
+                kept = {k: v for k, v in parent.values.items() if of_another_joint(k, joints)}
                 starts.append((math.inf, {**kept, **score.start}))
     if not work:
         return Grown([], {})
@@ -153,7 +137,7 @@ def grow(
     looks = bench.side_by_side(lambda h: bench.refit(h, step, LOOK, tolerance=1e-4, alone=True), followed)
     looks.sort(key=lambda h: h.fit.objective)
     if looks[0].fit.over_noise > NEARLY:
-        looks = unstuck(bench, glances[:TRIED_PULLED], looks, step)
+        looks = unstuck(bench, glances, looks, step)
     behind |= {h.ids: h for h in looks}
     nearest = looks[0].fit.over_noise
     near = [h for h in looks if h.fit.over_noise < max(1.5 * nearest, AT_NOISE)][:BEAM]
@@ -186,66 +170,6 @@ def _pairs(parent: Hypothesis, scored: Sequence[Score]) -> list[_Start]:
     return [start for _, start in promised[:FOLLOWED]]
 
 
-def unstuck(
-    bench: Workbench, glances: Sequence[Hypothesis], looks: Sequence[Hypothesis], step: float
-) -> list[Hypothesis]:
-    """Fits that got stuck, begun again where rollouts that are pulled to the measurements fit best.
-
-    The residuals of a free rollout pile up what went wrong before: a joint that sticks at the wrong moment is
-    wrong from then on, and least squares ends in the next hollow. Pulled rollouts forget within `PULL_S`, as the
-    prediction errors of an observer do (Ljung, System Identification, 1999, chapter 7), so that the same fit goes
-    its way from far off; what drifts slowly they do not see, and so the free fits stand beside them.
-    """
-    part = [experiment.until(GLANCE_S) for experiment in bench.training]
-
-    def pulled(glance: Hypothesis) -> Hypothesis:
-        joints = bench.joints_of(glance.effects)
-        others = {k: v for k, v in glance.values.items() if _of_another_joint(k, joints)}
-        starts = [{**others, **start} for start in ({}, *_starts_of(glance.effects))]
-        return fit_pulled(bench, glance.effects, starts, step, part)
-
-    ahead = sorted(bench.side_by_side(pulled, glances), key=lambda h: h.fit.objective)
-
-    def followed(glance: Hypothesis) -> Hypothesis:
-        near = bench.fit(
-            glance.effects, glance.values, step, LOOK, tolerance=1e-4, pull_time=PULL_S, alone=True
-        )
-        return bench.refit(near, step, LOOK, tolerance=1e-4, alone=True)
-
-    again = bench.side_by_side(followed, ahead[:BEAM])
-    best = {h.ids: h for h in sorted([*looks, *again], key=lambda h: -h.fit.objective)}
-    return sorted(best.values(), key=lambda h: h.fit.objective)
-
-
-def fit_pulled(
-    bench: Workbench,
-    effects: Sequence[Candidate],
-    starts: Sequence[dict[str, float]],
-    step: float,
-    experiments: Sequence[Experiment],
-) -> Hypothesis:
-    """A fit with pulled rollouts, from the start at which they fit best."""
-    problem = bench.problem(effects, step, experiments, PULL_S)
-    units = [problem.parameters.unit(start) for start in starts]
-    errors = [float(np.sum(problem.residuals(unit) ** 2)) for unit in units]
-    return bench.fit(
-        effects,
-        starts[int(np.argmin(errors))],
-        step,
-        PULLED_STEPS,
-        tolerance=PULLED_TOLERANCE,
-        experiments=experiments,
-        pull_time=PULL_S,
-        alone=True,
-    )
-
-
-def _starts_of(effects: Sequence[Candidate]) -> list[dict[str, float]]:
-    """Every combination of the places where searches of these effects begin."""
-    combinations = itertools.product(*(candidate.starts for candidate in effects))
-    return [{path: value for start in chosen for path, value in start.items()} for chosen in combinations]
-
-
 def _first(start: tuple[float, dict[str, float]]) -> float:
     return start[0]
 
@@ -260,20 +184,6 @@ def _glance(
         for start in different(starts)[:2]
     ]
     return min(fits, key=lambda h: h.fit.objective)
-
-
-def _of_another_joint(path: str, joints: set[str]) -> bool:
-    """Whether a parameter belongs to a joint, and to none of these."""
-    return path.startswith("joints.") and path.split(".")[1] not in joints
-
-
-def different(starts: Sequence[dict[str, float]]) -> list[dict[str, float]]:
-    """Starts, each once."""
-    kept: list[dict[str, float]] = []
-    for start in starts:
-        if not any(start == other for other in kept):
-            kept.append(start)
-    return kept
 
 
 def _redundant(parent: Hypothesis, candidate: Candidate) -> bool:

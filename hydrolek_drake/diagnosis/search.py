@@ -8,23 +8,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.diagnosis.growing import (
-    AT_NOISE,
-    BEAM,
-    COARSE,
-    FAR,
-    HOPELESS,
-    LOOK,
-    MOST_EFFECTS,
-    NEAR,
-    NEARLY,
-    POLISH,
-    different,
-    fit_pulled,
-    gain_needed,
-    grow,
-)
+from hydrolek_drake.diagnosis.effort import AT_NOISE, BEAM, COARSE, FAR, LOOK, NEAR, NEARLY, POLISH
+from hydrolek_drake.diagnosis.growing import HOPELESS, MOST_EFFECTS, gain_needed, grow
 from hydrolek_drake.diagnosis.score import Score, scores_of
+from hydrolek_drake.diagnosis.unsticking import different, fit_pulled, led_on, starts_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
 MATERIAL_GAIN = 0.3
@@ -34,6 +21,12 @@ as on real machines."""
 FIRST_SHARE = 0.1
 """A first effect must take this share of the squared residuals of a nominal model that is far from the noise, or no
 second one is looked for: of two effects, one alone takes much of what both do."""
+
+ALMOST = 2.0
+"""A model that leaves at most so many times the noise may be the right one, its fit stuck."""
+
+LED = 2
+"""So many models are led on in a round if the first does not get to the noise."""
 
 
 @dataclass
@@ -46,6 +39,7 @@ class Search:
         left: gains of the effects that the best model has not.
         rounds: how many effects at once were searched.
         given_up: sets of effects that were too far behind after a few steps.
+        led: sets of effects whose fits were led on.
     """
 
     hypotheses: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
@@ -53,6 +47,7 @@ class Search:
     left: list[Score] = field(default_factory=list)
     rounds: int = 0
     given_up: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
+    led: set[frozenset[str]] = field(default_factory=set)
 
     def keep(self, hypothesis: Hypothesis) -> None:
         """Remember it if it is the best fit of these effects."""
@@ -110,6 +105,7 @@ def search(
         _prune(bench, found, found.best, candidates)
         if found.best.fit.over_noise > AT_NOISE:
             _widen(bench, found, found.best, candidates)
+            _lead_on(bench, found)
         beam = [h for h in grown if h.fit.objective < HOPELESS * grown[0].fit.objective][:BEAM]
         beam = [found.best] if found.best.fit.over_noise < NEAR else beam
         found.left = scores_of(bench, found.best, candidates, bench.fine)
@@ -172,7 +168,7 @@ def _widen(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: 
     """Fit the best hypothesis again with what contains one of its effects, from where that effect has led.
 
     The wider effect may have been tried from far off and got stuck; the special case leads near. Pulled rollouts
-    lead on, see `growing.unstuck`.
+    lead on, see `unsticking.unstuck`.
     """
     work: list[tuple[tuple[Candidate, ...], dict[str, float]]] = []
     for effect in hypothesis.effects:
@@ -192,6 +188,19 @@ def _widen(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: 
         ahead.setdefault(near.ids, near)
     for fitted in bench.side_by_side(lambda h: bench.refit(h, bench.fine, LOOK), list(ahead.values())):
         found.keep(fitted)
+
+
+def _lead_on(bench: Workbench, found: Search) -> None:
+    """Fit the best hypotheses again where they are near the noise but not at it, see `unsticking.led_on`."""
+    ranked = sorted(found.hypotheses.values(), key=cost_of)
+    for hypothesis in [h for h in ranked if h.effects and h.fit.over_noise < ALMOST][:LED]:
+        if found.best.fit.over_noise <= AT_NOISE:
+            return
+        if hypothesis.ids in found.led:
+            continue
+        found.led.add(hypothesis.ids)
+        again = [{**hypothesis.values, **start} for start in starts_of(hypothesis.effects)]
+        found.keep(led_on(bench, hypothesis.effects, [hypothesis.values, *again]))
 
 
 def _carried_over(effect: Candidate, other: Candidate, values: dict[str, float]) -> dict[str, float]:

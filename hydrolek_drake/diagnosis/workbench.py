@@ -12,7 +12,7 @@ from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.identification.experiment import Experiment, faithful
 from hydrolek_drake.identification.least_squares import Fit, fit_from
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
-from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.problem import DIFFERENCE, Problem
 from hydrolek_drake.physics import supply
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.rigs import Rig
@@ -115,13 +115,20 @@ class Workbench:
         step: float,
         experiments: Sequence[Experiment] | None = None,
         pull_time: float | None = None,
+        difference: float = DIFFERENCE,
     ) -> Problem:
         """Residuals of this model, on the training data unless others are given."""
         parameters = self.parameters(effects)
         prior = np.full(len(parameters), np.inf)
         prior[: len(self.nominal)] = SPREAD
         return Problem(
-            parameters, experiments or self.training, step, pool=self.pool, prior=prior, pull_time=pull_time
+            parameters,
+            experiments or self.training,
+            step,
+            pool=self.pool,
+            prior=prior,
+            pull_time=pull_time,
+            difference=difference,
         )
 
     def fit(
@@ -134,6 +141,7 @@ class Workbench:
         experiments: Sequence[Experiment] | None = None,
         pull_time: float | None = None,
         alone: bool = False,
+        difference: float = DIFFERENCE,
     ) -> Hypothesis:
         """Fit the nominal model with these effects.
 
@@ -146,10 +154,11 @@ class Workbench:
             experiments: to be fitted; None for all training data.
             pull_time: of the rollouts, as in `Problem`; None for free ones.
             alone: leave joints on which none of the effects acts as they start.
+            difference: of the Jacobian, as in `Problem`.
         """
         self.alive()
         effects = tuple(effects)
-        problem = self.problem(effects, step, experiments, pull_time)
+        problem = self.problem(effects, step, experiments, pull_time, difference)
         parameters = problem.parameters
         fit = fit_from(
             problem,

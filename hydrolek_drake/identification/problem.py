@@ -36,6 +36,7 @@ class Problem:
         pool: Executor | None = None,
         prior: np.ndarray | None = None,
         pull_time: float | None = None,
+        difference: float = DIFFERENCE,
     ) -> None:
         """Prepare.
 
@@ -49,6 +50,7 @@ class Problem:
                 infinite for those of which nothing is known; None for none of them. # (n,)
             pull_time: with which rollouts are pulled to what was measured [s], so that errors do not pile up:
                 residuals then are prediction errors over that time; None for free rollouts.
+            difference: step of the Jacobian's differences, as a fraction of a parameter's range.
         """
         self.parameters = parameters
         self.experiments = tuple(experiments)
@@ -57,6 +59,7 @@ class Problem:
         self._prior_mean = parameters.unit()
         self._prior_weight = np.zeros(len(parameters)) if prior is None else 1.0 / prior
         self.pull_time = pull_time
+        self.difference = difference
         self._anchor: list[tuple[bytes, np.ndarray]] | None = None
         self.evaluations = 0
         self.counted = sum(experiment.counted for experiment in self.experiments)
@@ -107,7 +110,7 @@ class Problem:
     def jacobian(
         self, unit: np.ndarray, at: np.ndarray | None = None, moving: np.ndarray | None = None
     ) -> np.ndarray:
-        """Jacobian of the residuals by forward differences (backward at the upper end).
+        """Jacobian of the residuals by forward differences (backward near the upper end).
 
         Args:
             unit: place in the unit cube. # (n,)
@@ -120,7 +123,7 @@ class Problem:
         base = self.residuals(unit) if at is None else at
         if len(self.experiments) > 1:
             self._keep(unit, base)
-        steps = np.where(unit + DIFFERENCE <= 1.0, DIFFERENCE, -DIFFERENCE)
+        steps = np.where(unit + self.difference <= 1.0, self.difference, -self.difference)
 
         def column(i: int) -> np.ndarray:
             moved = unit.copy()

@@ -5,8 +5,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+from hydrolek_drake.diagnosis.effort import POLISH
 from hydrolek_drake.diagnosis.evidence import Judged
-from hydrolek_drake.diagnosis.growing import POLISH
 from hydrolek_drake.diagnosis.laws import Term, law_record, span_of
 from hydrolek_drake.diagnosis.search import fit_baseline
 from hydrolek_drake.diagnosis.unlisted import find_law

@@ -6,7 +6,8 @@ from contextlib import contextmanager
 import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
-from hydrolek_drake.diagnosis.growing import POLISH, gain_needed
+from hydrolek_drake.diagnosis.effort import POLISH
+from hydrolek_drake.diagnosis.growing import gain_needed
 from hydrolek_drake.diagnosis.search import Search, _prune, _widen
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales

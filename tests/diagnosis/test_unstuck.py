@@ -5,7 +5,8 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
-from hydrolek_drake.diagnosis.growing import COARSE, GLANCE, LOOK, unstuck
+from hydrolek_drake.diagnosis.effort import COARSE, GLANCE, LOOK
+from hydrolek_drake.diagnosis.unsticking import unstuck
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters

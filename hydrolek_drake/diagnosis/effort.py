@@ -1,0 +1,23 @@
+"""How much work the search for effects spends, and how near the noise is near."""
+
+COARSE = 4.0
+"""Integration step of the first fits over the rig's own: 16 times its error, a quarter of its time."""
+
+FAR, NEAR = 3.0, 1.3
+"""A model this many times above the noise is searched with the coarse step, or with twice the rig's own: the
+error of the step must stay far below what is to be explained."""
+
+NEARLY = 1.5
+"""A third effect is looked for only if two leave at most this many times the noise: it would be a small one."""
+
+AT_NOISE = 1.03
+"""A model within 3 % of the noise: the estimate of the noise itself is good to 1 to 2 %."""
+
+GLANCE_S = 20.0
+"""First fits see so many seconds of a recording: errors that grow with time are smaller, and so is the work."""
+
+GLANCE, LOOK, POLISH = 4, 15, 8
+"""Trust-region steps of a first fit, of one that is followed up, and of one with the rig's own step."""
+
+BEAM = 3
+"""So many hypotheses are extended by a further effect, and only the best once it is near the noise."""

@@ -1,0 +1,130 @@
+"""Fits that got stuck, led on.
+
+Where a joint sticks and slips, the squared residuals have many hollows, and least squares ends in the next one. Three
+ways lead out: rollouts that are pulled to the measurements; other starts; and a Jacobian of wide differences that
+become narrower, which sees the slope of the land and not that of the hollow (Kelley, Implicit Filtering, SIAM, 2011,
+chapter 3).
+"""
+
+import itertools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.diagnosis.effort import BEAM, GLANCE_S, LOOK, POLISH
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import PULLED_STEPS, PULLED_TOLERANCE
+from hydrolek_drake.identification.problem import PULL_S
+
+TRIED_PULLED = 12
+"""So many of the first fits are tried with pulled rollouts too."""
+
+WIDTHS = (0.3, 0.1, 0.03, 0.01)
+"""Differences, as fractions of the ranges, from the widest that is not the whole range to what residuals of a
+sticking joint still bend over."""
+
+LED_STEP = 2.0
+"""Integration step over the rig's own while differences are wide."""
+
+MOST_LED = 5
+"""So many fits are led on, from different places; the better half goes on to the next width."""
+
+LED_TO_THE_END = 2
+"""At least so many of them."""
+
+
+def unstuck(
+    bench: Workbench, glances: Sequence[Hypothesis], looks: Sequence[Hypothesis], step: float
+) -> list[Hypothesis]:
+    """Fits that got stuck, begun again where rollouts that are pulled to the measurements fit best.
+
+    The residuals of a free rollout pile up what went wrong before: a joint that sticks at the wrong moment is
+    wrong from then on, and least squares ends in the next hollow. Pulled rollouts forget within `PULL_S`, as the
+    prediction errors of an observer do (Ljung, System Identification, 1999, chapter 7), so that the same fit goes
+    its way from far off; what drifts slowly they do not see, and so the free fits stand beside them.
+    """
+    part = [experiment.until(GLANCE_S) for experiment in bench.training]
+
+    def pulled(glance: Hypothesis) -> Hypothesis:
+        joints = bench.joints_of(glance.effects)
+        others = {k: v for k, v in glance.values.items() if of_another_joint(k, joints)}
+        starts = [{**others, **start} for start in ({}, *starts_of(glance.effects))]
+        return fit_pulled(bench, glance.effects, starts, step, part)
+
+    ahead = sorted(bench.side_by_side(pulled, glances[:TRIED_PULLED]), key=lambda h: h.fit.objective)
+
+    def followed(glance: Hypothesis) -> Hypothesis:
+        near = bench.fit(
+            glance.effects, glance.values, step, LOOK, tolerance=1e-4, pull_time=PULL_S, alone=True
+        )
+        return bench.refit(near, step, LOOK, tolerance=1e-4, alone=True)
+
+    again = bench.side_by_side(followed, ahead[:BEAM])
+    best = {h.ids: h for h in sorted([*looks, *again], key=lambda h: -h.fit.objective)}
+    return sorted(best.values(), key=lambda h: h.fit.objective)
+
+
+def fit_pulled(
+    bench: Workbench,
+    effects: Sequence[Candidate],
+    starts: Sequence[dict[str, float]],
+    step: float,
+    experiments: Sequence[Experiment],
+) -> Hypothesis:
+    """A fit with pulled rollouts, from the start at which they fit best."""
+    problem = bench.problem(effects, step, experiments, PULL_S)
+    units = [problem.parameters.unit(start) for start in starts]
+    errors = [float(np.sum(problem.residuals(unit) ** 2)) for unit in units]
+    return bench.fit(
+        effects,
+        starts[int(np.argmin(errors))],
+        step,
+        PULLED_STEPS,
+        tolerance=PULLED_TOLERANCE,
+        experiments=experiments,
+        pull_time=PULL_S,
+        alone=True,
+    )
+
+
+def starts_of(effects: Sequence[Candidate]) -> list[dict[str, float]]:
+    """Every combination of the places where searches of these effects begin."""
+    combinations = itertools.product(*(candidate.starts for candidate in effects))
+    return [{path: value for start in chosen for path, value in start.items()} for chosen in combinations]
+
+
+def led_on(bench: Workbench, effects: Sequence[Candidate], starts: Sequence[dict[str, float]]) -> Hypothesis:
+    """The best fit of some effects from several places, with differences from wide to narrow.
+
+    Args:
+        bench: data and fits.
+        effects: what is added to the nominal model.
+        starts: places to begin, the most promising first.
+    """
+    ahead = different(starts)[:MOST_LED]
+    for width in WIDTHS:
+
+        def led(values: dict[str, float], width: float = width) -> Hypothesis:
+            return bench.fit(effects, values, LED_STEP * bench.fine, POLISH, tolerance=1e-3, difference=width)
+
+        ended = sorted(bench.side_by_side(led, ahead), key=lambda h: h.fit.objective)
+        ahead = [h.values for h in ended[: max(math.ceil(len(ended) / 2), LED_TO_THE_END)]]
+    fits = bench.side_by_side(lambda values: bench.fit(effects, values, bench.fine, LOOK), ahead)
+    return min(fits, key=lambda h: h.fit.objective)
+
+
+def of_another_joint(path: str, joints: set[str]) -> bool:
+    """Whether a parameter belongs to a joint, and to none of these."""
+    return path.startswith("joints.") and path.split(".")[1] not in joints
+
+
+def different(starts: Sequence[dict[str, float]]) -> list[dict[str, float]]:
+    """Starts, each once."""
+    kept: list[dict[str, float]] = []
+    for start in starts:
+        if not any(start == other for other in kept):
+            kept.append(start)
+    return kept
