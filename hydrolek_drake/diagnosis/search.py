@@ -25,8 +25,9 @@ second one is looked for: of two effects, one alone takes much of what both do."
 ALMOST = 2.0
 """A model that leaves at most so many times the noise may be the right one, its fit stuck."""
 
-LED = 2
-"""So many models are led on in a round if the first does not get to the noise."""
+STUCK = 0.1
+"""A fit was stuck if leading it on takes this share of what it leaves above the noise; if it was not, the land is
+smooth, and no further one is led on."""
 
 
 @dataclass
@@ -39,7 +40,7 @@ class Search:
         left: gains of the effects that the best model has not.
         rounds: how many effects at once were searched.
         given_up: sets of effects that were too far behind after a few steps.
-        led: sets of effects whose fits were led on.
+        smooth: whether a fit that was led on proved not to have been stuck.
     """
 
     hypotheses: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
@@ -47,7 +48,7 @@ class Search:
     left: list[Score] = field(default_factory=list)
     rounds: int = 0
     given_up: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
-    led: set[frozenset[str]] = field(default_factory=set)
+    smooth: bool = False
 
     def keep(self, hypothesis: Hypothesis) -> None:
         """Remember it if it is the best fit of these effects."""
@@ -191,16 +192,14 @@ def _widen(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: 
 
 
 def _lead_on(bench: Workbench, found: Search) -> None:
-    """Fit the best hypotheses again where they are near the noise but not at it, see `unsticking.led_on`."""
-    ranked = sorted(found.hypotheses.values(), key=cost_of)
-    for hypothesis in [h for h in ranked if h.effects and h.fit.over_noise < ALMOST][:LED]:
-        if found.best.fit.over_noise <= AT_NOISE:
-            return
-        if hypothesis.ids in found.led:
-            continue
-        found.led.add(hypothesis.ids)
-        again = [{**hypothesis.values, **start} for start in starts_of(hypothesis.effects)]
-        found.keep(led_on(bench, hypothesis.effects, [hypothesis.values, *again]))
+    """Fit the best hypothesis again where it is near the noise but not at it, see `unsticking.led_on`."""
+    best = found.best
+    if found.smooth or not best.effects or not AT_NOISE < best.fit.over_noise < ALMOST:
+        return
+    again = [{**best.values, **start} for start in starts_of(best.effects)]
+    led = led_on(bench, best.effects, [best.values, *again])
+    found.keep(led)
+    found.smooth = best.fit.objective - led.fit.objective < STUCK * (best.fit.objective - best.fit.counted)
 
 
 def _carried_over(effect: Candidate, other: Candidate, values: dict[str, float]) -> dict[str, float]:
