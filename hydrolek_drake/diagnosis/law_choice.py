@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from hydrolek_drake.diagnosis.conclusion import MATERIAL, Conclusion
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED, EXPLAINED_AHEAD, MATERIAL, Conclusion
 from hydrolek_drake.diagnosis.evidence import Judged
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.unlisted import find_law
@@ -57,13 +57,18 @@ def _law_and_model(
 
     Known effects that were fitted without the law may only have made up for it: the law is searched beside the
     nominal model too, which is preferred unless the effects make it predict better by `SIMPLER`. Effects that take
-    no material part of the error are left out from the beginning.
+    no material part of the error are left out from the beginning, and so are all where the law alone explains the data.
     """
-    if best.half_chi_squared > MATERIAL * nominal.half_chi_squared:
-        return find_law(bench, nominal, held_out, scales), nominal
-    law = find_law(bench, best, held_out, scales)
     alone = find_law(bench, nominal, held_out, scales)
+    immaterial = best.half_chi_squared > MATERIAL * nominal.half_chi_squared
+    if immaterial or (alone is not None and _explains(alone)):
+        return alone, nominal
+    law = find_law(bench, best, held_out, scales)
     to_beat = SIMPLER * law.held_out_over_noise if law is not None else best.over_noise
     if alone is not None and alone.held_out_over_noise < to_beat:
         return alone, nominal
     return law, best
+
+
+def _explains(law: FoundLaw) -> bool:
+    return law.fit.over_noise <= EXPLAINED and law.held_out_over_noise <= EXPLAINED_AHEAD

@@ -22,9 +22,6 @@ FIRST_SHARE = 0.1
 """A first effect must take this share of the squared residuals of a nominal model that is far from the noise, or no
 second one is looked for: of two effects, one alone takes much of what both do."""
 
-ALMOST = 2.0
-"""A model that leaves at most so many times the noise may be the right one, its fit stuck."""
-
 STUCK = 0.1
 """A fit was stuck if leading it on takes this share of what it leaves above the noise; if it was not, the land is
 smooth, and no further one is led on."""
@@ -194,7 +191,7 @@ def _widen(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: 
 def _lead_on(bench: Workbench, found: Search) -> None:
     """Fit the best hypothesis again where it is near the noise but not at it, see `unsticking.led_on`."""
     best = found.best
-    if found.smooth or not best.effects or not AT_NOISE < best.fit.over_noise < ALMOST:
+    if found.smooth or not best.effects or not AT_NOISE < best.fit.over_noise < FAR:
         return
     again = [{**best.values, **start} for start in starts_of(best.effects)]
     led = led_on(bench, best.effects, [best.values, *again])
