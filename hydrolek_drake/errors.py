@@ -7,3 +7,7 @@ class InputError(ValueError):
     The message is one line that names what is wrong, where, and what would be right. The command line
     prints it without a traceback and ends with exit status 2.
     """
+
+
+class UninformativeError(InputError):
+    """A recording that is as it should be, but shows nothing of what is asked: a command or a signal without content."""

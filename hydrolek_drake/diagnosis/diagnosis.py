@@ -6,11 +6,8 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from hydrolek_drake.diagnosis.candidates import Candidate, candidates_of
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, Conclusion, conclude
-from hydrolek_drake.diagnosis.data_quality import reasons_against
 from hydrolek_drake.diagnosis.evidence import FINER, Judged, judge, judge_given_up
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
 from hydrolek_drake.diagnosis.law_choice import with_law
@@ -19,23 +16,13 @@ from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
 from hydrolek_drake.diagnosis.score import Score
 from hydrolek_drake.diagnosis.search import Search, search
+from hydrolek_drake.diagnosis.splitting import mixed, prepared
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
-from hydrolek_drake.errors import InputError
-from hydrolek_drake.identification.experiment import Experiment, experiments_of
+from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import Free, free_parameters
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
-
-BLOCKS = 6
-"""Without a held-out recording, each recording is cut into so many blocks ..."""
-
-HELD_BLOCKS = (2, 5)
-"""... of which these are held out: one in the middle and the last."""
-
-SHORT_BLOCKS = 18
-"""A held-out recording that shows what the training data do not is cut into so many blocks, of which every third
-stays held out: short ones, so that what it shows is in both parts."""
 
 FAR_AHEAD = 3.0
 """A model that leaves this many times more on held-out data than on training data was not told by these what matters
@@ -133,7 +120,7 @@ def diagnose(
     """
     begun = clock.perf_counter()
     say("looking at the data")
-    training, held_out, reasons = _prepared(rig, recordings, holdout, between)
+    training, held_out, reasons = prepared(rig, recordings, holdout, between)
     if reasons:
         return _refused(rig, reasons, clock.perf_counter() - begun)
     nominal = _nominal(rig, training)
@@ -150,8 +137,8 @@ def diagnose(
     )  # the held-out data are of another kind, not blocks among the rest
     if ahead and not known.interrupted and _unexcited(known.conclusion):
         say("the held-out recording shows more than the training data: fitting parts of both")
-        mixed, kept = _mixed(bench.training, known.held_out)
-        second = _attempt(Workbench(rig, nominal, mixed, pool), candidates, kept, say)
+        both, kept = mixed(bench.training, known.held_out)
+        second = _attempt(Workbench(rig, nominal, both, pool), candidates, kept, say)
         if second.interrupted:
             remarks = [INTERRUPTED]
         else:
@@ -236,16 +223,6 @@ def _unexcited(conclusion: Conclusion) -> bool:
     return conclusion.verdict == "unlisted_physics" and best.hypothesis.fit.over_noise <= enough
 
 
-def _mixed(
-    training: Sequence[Experiment], held_out: Sequence[Experiment]
-) -> tuple[tuple[Experiment, ...], tuple[Experiment, ...]]:
-    """All recordings for training but for some blocks of those that were held out."""
-    blocks = [_every_third(e) for e in held_out]
-    fitted = [e.split(e.used & ~held) for e, held in zip(held_out, blocks, strict=True)]
-    kept = [e.split(e.used & held) for e, held in zip(held_out, blocks, strict=True)]
-    return (*training, *fitted), tuple(kept)
-
-
 def _refused(rig: Rig, reasons: Sequence[str], seconds: float) -> Diagnosis:
     """What is left to say about data that cannot be diagnosed."""
     return Diagnosis(
@@ -264,67 +241,6 @@ def _refused(rig: Rig, reasons: Sequence[str], seconds: float) -> Diagnosis:
         proposal=None,
         seconds=seconds,
     )
-
-
-def _prepared(
-    rig: Rig,
-    recordings: Sequence[Recording],
-    holdout: Sequence[Recording],
-    between: tuple[float, float] | None,
-) -> tuple[tuple[Experiment, ...], tuple[Experiment, ...], list[str]]:
-    """Training data, held-out data, and reasons against them."""
-    sets: list[list[Experiment]] = []
-    reasons: list[str] = []
-    for group in (recordings, holdout):
-        experiments: list[Experiment] = []
-        for recording in group:
-            try:
-                own = experiments_of(rig, recording)
-            except InputError as error:
-                if "constant" not in str(error) and "no value" not in str(error):
-                    raise
-                reasons.append(str(error))
-                continue
-            reasons += reasons_against(recording, own)
-            experiments += own
-        sets.append(experiments)
-    training, held_out = sets
-    if training and not held_out and not reasons:
-        held = [_held_blocks(e) if between is None else ~_within(e, between) for e in training]
-        held_out = [e.split(e.used & h) for e, h in zip(training, held, strict=True)]
-        training = [e.split(e.used & ~h) for e, h in zip(training, held, strict=True)]
-    elif between is not None:
-        training = [e.split(e.used & _within(e, between)) for e in training]
-    return tuple(training), tuple(held_out), reasons
-
-
-def _within(experiment: Experiment, between: tuple[float, float]) -> np.ndarray:
-    """Samples of the part that is fitted. # (n,).
-
-    Raises:
-        InputError: there is none, or the recording has nothing else.
-    """
-    start, end = between
-    inside = (experiment.time >= start) & (experiment.time <= end)
-    if not start < end or not inside.any() or inside.all():
-        first, last = experiment.time[[0, -1]]
-        raise InputError(
-            f"--between {start:g} {end:g}: must be a part of recording {experiment.name} and leave another part of "
-            f"it; it has samples from {first:g} to {last:g} s"
-        )
-    return inside
-
-
-def _held_blocks(experiment: Experiment) -> np.ndarray:
-    """Samples of the blocks that are held out. # (n,)."""
-    block = np.floor(BLOCKS * np.arange(experiment.time.size) / experiment.time.size)
-    return np.isin(block, HELD_BLOCKS)
-
-
-def _every_third(experiment: Experiment) -> np.ndarray:
-    """Every third of `SHORT_BLOCKS`. # (n,)."""
-    block = np.floor(SHORT_BLOCKS * np.arange(experiment.time.size) / experiment.time.size)
-    return block % 3 == 2
 
 
 def _nominal(rig: Rig, training: Sequence[Experiment]) -> tuple[Free, ...]:

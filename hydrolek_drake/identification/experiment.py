@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.errors import InputError
+from hydrolek_drake.errors import UninformativeError
 from hydrolek_drake.identification.neighbours import effects_of_others, rows_at
 from hydrolek_drake.identification.thinning import Blocks, block_size
 from hydrolek_drake.recordings import Recording, require
@@ -235,7 +235,7 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
     require(recording, [], complete=[key], units={key: "V"})
     command = np.asarray(recording.signal(key), dtype=float)
     if np.ptp(command) <= CONSTANT * max(float(np.abs(command).max()), 1.0):
-        raise InputError(
+        raise UninformativeError(
             f"{recording.source}: {key} is constant at {command[0]:g} V, so nothing can be identified; "
             "record the joint while its command changes"
         )
@@ -243,7 +243,7 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
     place = position_key(rig, joint)
     position = np.asarray(measured_position(rig, joint, recording), dtype=float)
     if not np.isfinite(position).any():
-        raise InputError(f"{recording.source}: {place} has no value at all")
+        raise UninformativeError(f"{recording.source}: {place} has no value at all")
     if "position" in wanted:
         unit = "m" if place.endswith(".position") else "rad"
         noise = _noise(position, rig, joint, "noise")
