@@ -10,4 +10,4 @@ class InputError(ValueError):
 
 
 class UninformativeError(InputError):
-    """A recording that is as it should be, but shows nothing of what is asked: a command or a signal without content."""
+    """A recording as it should be that shows nothing of what is asked: a command or a signal without content."""
