@@ -6,7 +6,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.effort import COARSE, GLANCE, LOOK
-from hydrolek_drake.diagnosis.unsticking import unstuck
+from hydrolek_drake.diagnosis.unsticking import led_on, starts_of, unstuck
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -29,3 +29,19 @@ def test_a_fit_of_strong_stick_slip_that_got_stuck_gets_on(bench, recorded) -> N
     # what is left is the error of the coarse step
     assert best.fit.over_noise < 0.25 * stuck.fit.over_noise
     assert found == {name: pytest.approx(value, rel=0.15) for name, value in STRIBECK.items()}
+
+
+def test_differences_from_wide_to_narrow_lead_out_of_a_hollow_near_the_noise(bench, recorded) -> None:
+    planted = {"coulomb_N": 806.0, "stribeck_N": 1613.0, "stribeck_velocity_m_per_s": 0.0055}
+    paths = {f"effects.cylinder.stribeck_friction.{name}": value for name, value in planted.items()}
+    experiments = recorded(bench.with_values(paths), bench, largest_V=3.0, seed=4)
+    scales = natural_scales(bench, "joint", experiments)
+    stribeck = {c.id: c for c in candidates_of(bench, "joint", scales)}["cylinder.stribeck_friction"]
+    with ThreadPoolExecutor(2) as pool:
+        workbench = Workbench(bench, free_parameters(bench), experiments, pool)
+        stuck = [workbench.fit((stribeck,), stribeck.starts[i], workbench.fine, LOOK) for i in (0, 3)]
+        led = led_on(workbench, (stribeck,), starts_of((stribeck,)))
+    assert min(h.fit.over_noise for h in stuck) > 1.3
+    assert led.fit.over_noise < 1.05  # of 1200 values chance moves it by 2 %
+    found = {path.rpartition(".")[2]: value for path, value in led.values.items() if "stribeck" in path}
+    assert found == {name: pytest.approx(value, rel=0.2) for name, value in planted.items()}
