@@ -115,7 +115,9 @@ class FeedforwardLaw:
         ahead = memory.angle + self.sample_s * sent.to_come
         distance = set_point_deg + velocity * (sent.whole + sent.rest) * self.sample_s - ahead
         same = set_point_deg == memory.set_point
-        if velocity == 0.0 and self._arrived(memory, sent, distance, set_point_deg - mean, moving, same, hold):
+        if velocity == 0.0 and self._arrived(
+            memory, sent, distance, set_point_deg - mean, moving, same, hold
+        ):
             wanted = 0.0
         else:
             memory.standing = 0.0

@@ -43,7 +43,12 @@ def saturated_rate(memory: Memory, rates: RateMap, sign: float) -> float:
 
 
 def learn_rates(
-    memory: Memory, rates: RateMap, tuning: FeedforwardTuning, sent: UnderWay, moved_deg: float, sample_s: float
+    memory: Memory,
+    rates: RateMap,
+    tuning: FeedforwardTuning,
+    sent: UnderWay,
+    moved_deg: float,
+    sample_s: float,
 ) -> None:
     """Compare the way of the last samples with what the voltages that acted then should have given.
 
@@ -80,7 +85,11 @@ def learn_rates(
         newer = sent.whole + 1 + round(sent.rest)  # acted long enough ago for the joint to have followed
         should_deg = sign * (sent.rates[newer] + sent.rates[newer + 1]) * sample_s
         coasting = max(map(abs, sent.rates[newer : newer + window + 1])) >= saturated
-        if not coasting and should_deg >= limit("stalled") and sign * moved_deg < limit("standing") * should_deg:
+        if (
+            not coasting
+            and should_deg >= limit("stalled")
+            and sign * moved_deg < limit("standing") * should_deg
+        ):
             edge = max(edge, min(abs(sent.voltages[newer]), abs(sent.voltages[newer + 1])) - side.edge_V)
         bound = limit("edge") * side.edge_V
         memory.learn_edge(sign, clipped(edge, (-bound, bound)))

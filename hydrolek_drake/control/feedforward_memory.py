@@ -1,6 +1,7 @@
 """What the feedforward law remembers from sample to sample, as a flat state and by name."""
 
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -57,7 +58,8 @@ class Memory:
         """From a flat state with that many past voltages."""
         values = state.tolist()
         rest = values[SCALARS:]
-        return cls(*values[:SCALARS], rest[:voltages], rest[voltages:])
+        arguments: list[Any] = [*values[:SCALARS], rest[:voltages], rest[voltages:]]
+        return cls(*arguments)
 
     @classmethod
     def at_rest(cls, angle: float, voltages: int, estimates: int) -> "Memory":

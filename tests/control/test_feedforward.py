@@ -10,7 +10,7 @@ from hydrolek_drake.control.closed_loop import loop_on_model, loop_on_rollout
 from hydrolek_drake.control.conditions import Condition, machine, span_deg
 from hydrolek_drake.control.feedforward import FeedforwardLaw
 from hydrolek_drake.control.feedforward_tuning import limit, tuning
-from hydrolek_drake.control.metrics import step_measures
+from hydrolek_drake.control.metrics import step_measures, switching
 from hydrolek_drake.control.rate_map import map_from_model, rate_at, voltage_for
 from hydrolek_drake.control.rig_model import fit_law, one_joint, step_tests
 from hydrolek_drake.control.sdp_model import thesis_model
@@ -185,7 +185,9 @@ def test_the_difference_equation_written_out_plainly():
             s = float(np.sign(v))
             end = side[s].voltages[0] + edge[s]
             ready = abs(sent[0]) >= tune.closed * end - 1e-9
-            v = s * min(abs(v), abs(sent[0]) + tune.opening_V if ready else min(abs(sent[0]) + tune.crossing_V, end))
+            v = s * min(
+                abs(v), abs(sent[0]) + tune.opening_V if ready else min(abs(sent[0]) + tune.crossing_V, end)
+            )
         # dead time from a stop
         if standing == 1 and braked:
             landing = (ahead, rates[2])
@@ -212,27 +214,33 @@ def _changed(model, *, extra_delay=0, wider=1.0):
     return replace(model, alpha=tuple(a), delay_samples=model.delay_samples + extra_delay)
 
 
+def _there_and_back(law, model, joint):
+    """Two steps there and two back, 6 s each, without noise; signals and what is remembered at the end."""
+    low, high = span_deg(f"right_{joint}")
+    watched = _Watched(law)
+    wanted = np.tile(np.repeat([high, low], 120), 2)
+    signals = loop_on_model(watched, model, wanted, 0.05, initial_deg=low)
+    return signals, law.memory(watched.last)
+
+
 @pytest.mark.parametrize("joint", JOINTS)
 @pytest.mark.parametrize("extra", (2, 4))
-def test_a_longer_dead_time_is_learned_from_a_start_and_a_stop(joint, extra):
-    """0.02 and 0.04 s longer; found within a model sample, 0.01 s, after one step there and back."""
+def test_a_longer_dead_time_is_learned_from_starts_and_stops(joint, extra):
+    """Found within half a sample of the model; an SDP model's delay of n samples is a dead time of n - 1 (6.1)."""
     law, model = _law(joint)
-    changed, states = _changed(model, extra_delay=extra), _Watched(law)
-    loop_on_model(states, changed, np.repeat([25.0, 0.0], 80), 0.05)
-    memory = law.memory(states.last)
+    _, memory = _there_and_back(law, _changed(model, extra_delay=extra), joint)
     for late in (memory.late_down, memory.late_up):
-        assert late == pytest.approx(extra * model.sample_s, abs=model.sample_s)
+        assert late == pytest.approx((extra - 1) * model.sample_s, abs=0.5 * model.sample_s)
 
 
 @pytest.mark.parametrize("joint", JOINTS)
 def test_a_wider_dead_zone_is_learned(joint):
-    """30 % wider: what is learned leaves a rate error below that at which the joint counts as arrived, and it is there."""
+    """30 % wider: objective met on the first step, aim (0.1 deg) on the next two; most of the shift is found."""
     law, model = _law(joint)
-    changed, states = _changed(model, wider=1.3), _Watched(law)
-    signals = loop_on_model(states, changed, np.repeat([25.0, 0.0], 120), 0.05)
-    for end, target in ((600, 25.0), (1200, 0.0)):
-        assert np.max(np.abs(signals.angle_deg[end - 200 : end] - target)) <= 0.1  # the aim of the issue
-    memory = law.memory(states.last)
+    signals, memory = _there_and_back(law, _changed(model, wider=1.3), joint)
+    off = np.abs(signals.angle_deg - signals.set_point_deg).reshape(4, 600)[:, 400:]
+    assert np.all(off.max(axis=1) < 0.5)
+    assert np.all(off[2:].max(axis=1) < 0.1)
     for sign, found in ((-1.0, memory.edge_down), (1.0, memory.edge_up)):
         true = 0.3 * law.map.side(sign).edge_V
         assert 0.5 * true < found < 1.2 * true
@@ -281,7 +289,9 @@ class _Watched:
 
 @pytest.fixture(scope="module")
 def settings():
-    return {j: rig_setting(load_rig(f"hydrolek_{j}"), j) for j in ("right_j2", "right_j3", "left_j5")}
+    return {
+        j: rig_setting(load_rig(f"hydrolek_{j}"), j) for j in ("right_j2", "right_j3", "right_j4", "left_j5")
+    }
 
 
 CONDITIONS = (
@@ -323,6 +333,77 @@ def test_the_aim_is_met_on_the_full_model(settings, joint, condition):
         assert reached.rise_s < 1.15 * possible.rise_s
         assert reached.overshoot_percent < 2.0
         assert reached.error_deg < 0.1
+
+
+def _answered(setting, record, wanted, begin, seed):
+    """Signals of a joint of the full model with sensor noise."""
+    rng = np.random.default_rng(seed)
+    return loop_on_rollout(
+        build_law("feedforward", setting, noisy=True),
+        record,
+        wanted,
+        0.05,
+        rows_per_sample=5,
+        longest_step=5e-4,
+        initial_deg=begin,
+        noise=lambda angle: angle + float(rng.normal(0.0, 0.05)),
+    )
+
+
+@pytest.mark.parametrize("joint", ("right_j3", "left_j5"))
+def test_a_first_step_with_a_wider_dead_zone_rises_within_the_aim(settings, joint):
+    """30 % wider, nothing learned: within 15 % of full voltage, because far errors are driven at saturation."""
+    record = machine(joint, Condition(dead_zone=1.3))
+    for begin, end in (span_deg(joint), span_deg(joint)[::-1]):
+        wanted = np.full(120, end)
+        signals = _answered(settings[joint], record, wanted, begin, 4)
+        full = loop_on_rollout(
+            _Full(10.0 * np.sign(end - begin)),
+            record,
+            wanted[:40],
+            0.05,
+            rows_per_sample=5,
+            longest_step=5e-4,
+            initial_deg=begin,
+        )
+        reached = step_measures(signals.time_s, signals.angle_deg, begin, end, last_s=2.0, still_deg=0.4)
+        possible = step_measures(full.time_s, full.angle_deg, begin, end, last_s=0.1, still_deg=99.0)
+        assert reached.rise_s < 1.15 * possible.rise_s
+        assert reached.overshoot_percent < 2.0
+
+
+def test_the_fastest_joint_with_a_longer_delay_stays_within_the_objective_and_learns(settings):
+    """Joint 4, delay 15 % longer: overshoot under 10 % (objective) at first, under 2 % (aim) on the third step."""
+    record = machine("right_j4", Condition(load_kg=25.0))
+    record["command"]["delay"] *= 1.15
+    for begin, end in (span_deg("right_j4"), span_deg("right_j4")[::-1]):
+        wanted = np.repeat([end, begin, end], 120)
+        signals = _answered(settings["right_j4"], record, wanted, begin, 2)
+        for rows, most in ((slice(0, 600), 10.0), (slice(1200, 1800), 2.0)):
+            share = (signals.angle_deg[rows] - begin) / (end - begin)
+            assert 100.0 * (np.max(share) - 1.0) < most
+
+
+def test_the_valve_switches_less_than_with_forward_path_c(settings):
+    """The issue's requirement, joint by joint on the full model: two steps with noise."""
+    ours, theirs = [], []
+    for joint, setting in settings.items():
+        record = machine(joint, Condition())
+        low, high = span_deg(joint)
+        for name, found in (("feedforward", ours), ("pip_forward_c", theirs)):
+            rng = np.random.default_rng(3)
+            signals = loop_on_rollout(
+                build_law(name, setting, noisy=True),
+                record,
+                np.repeat([high, low], 120),
+                0.05,
+                rows_per_sample=5,
+                longest_step=5e-4,
+                initial_deg=low,
+                noise=lambda angle, rng=rng: angle + float(rng.normal(0.0, 0.05)),
+            )
+            found.append(switching(signals.voltage_V[::5]))
+    assert np.mean(ours) < np.mean(theirs)
 
 
 class _Full:
