@@ -78,7 +78,7 @@ def tune(
 
     from hydrolek_drake.cli.output import console
     from hydrolek_drake.control.conditions import Condition, conditions_data, judged_conditions
-    from hydrolek_drake.control.feedforward import FeedforwardTuning, tuning
+    from hydrolek_drake.control.feedforward_tuning import FeedforwardTuning, tuning
     from hydrolek_drake.control.judging import make_cases
     from hydrolek_drake.control.rate_map import rig_rate_map
     from hydrolek_drake.control.rig_model import one_joint, rig_model

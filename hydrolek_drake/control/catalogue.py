@@ -9,7 +9,8 @@ from typing import Any
 import yaml
 
 from hydrolek_drake.control.design import integrator, lq_gains
-from hydrolek_drake.control.feedforward import FeedforwardLaw, tuning
+from hydrolek_drake.control.feedforward import FeedforwardLaw
+from hydrolek_drake.control.feedforward_tuning import tuning
 from hydrolek_drake.control.forward_path import ForwardPathLaw
 from hydrolek_drake.control.fuzzy import SingleInputFuzzyLaw, TwoInputFuzzyLaw
 from hydrolek_drake.control.guard import GuardedLaw, guarded

@@ -1,67 +1,23 @@
 """Rate control with model-based feedforward: inverse rate map, delay compensation, learning of what differs."""
 
 from dataclasses import dataclass
-from functools import cache
-from importlib.resources import files
-from math import copysign, sqrt
-from typing import Any
+from math import copysign
 
-import numpy as np
-import yaml
-
-from hydrolek_drake.control.law import Array
+from hydrolek_drake.control.feedforward_learning import (
+    UnderWay,
+    grow_push,
+    learn_landing,
+    learn_onset,
+    learn_rates,
+    saturated_rate,
+)
+from hydrolek_drake.control.feedforward_memory import SCALARS, Memory
+from hydrolek_drake.control.feedforward_tuning import FeedforwardTuning, limit
+from hydrolek_drake.control.law import Array, clipped
 from hydrolek_drake.control.rate_map import RateMap, rate_at, voltage_for
 from hydrolek_drake.errors import InputError
 
-
-@dataclass(frozen=True)
-class FeedforwardTuning:
-    """Free numbers of the law.
-
-    Attributes:
-        gain: rate per predicted error near the set point [1/s].
-        braking_deg: distance over which the joint is braked from its saturation rate, so that the deceleration
-            grows with the joint's speed.
-        extra_delay_s: dead time beyond the measured one that the prediction counts with.
-        correction: share of the reading's deviation that the angle's estimate takes up in a sample.
-        learn_rate: share of the saturation rate's deviation that is learned in a sample.
-        learn_edge: share of the dead-zone's deviation that is learned in a sample.
-        slowest: least rate while the set point is not reached [deg/s].
-        stop_within_deg: predicted error at which the valve closes.
-        start_beyond_deg: error at which it opens again.
-        overdrive: factor on the saturation voltage while the saturation rate is wanted, so that a joint whose
-            dead-zone has grown still reaches it.
-        opening_V: how much further the valve may open in a sample once beyond its dead-zone; closing is free.
-    """
-
-    gain: float
-    braking_deg: float
-    extra_delay_s: float
-    correction: float
-    learn_rate: float
-    learn_edge: float
-    slowest: float
-    stop_within_deg: float
-    start_beyond_deg: float
-    overdrive: float
-    opening_V: float
-
-
-@cache
-def tuning_data() -> dict[str, Any]:
-    """Content of `feedforward.yaml`."""
-    return yaml.safe_load(files(__package__).joinpath("feedforward.yaml").read_text(encoding="utf-8"))
-
-
-def tuning() -> FeedforwardTuning:
-    """The tuning found on perturbed machines (docs/control.md)."""
-    return FeedforwardTuning(**{key: float(item["value"]) for key, item in tuning_data()["tuning"].items()})
-
-
-_RUNNING, _STANDING, _ANGLE, _SET_POINT, _SLOPE = range(5)
-_SHARE = {-1.0: 5, 1.0: 6}
-_EDGE = {-1.0: 7, 1.0: 8}
-_VOLTAGES = 9
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -70,14 +26,15 @@ class FeedforwardLaw:
 
     - Prediction: where the joint will stand when the voltages that are still on their way have acted
       (the dead time of section 6.1.3, as a Smith predictor does for an integrating plant).
-    - Wanted rate: gain times the predicted distance near the set point, farther off with its square root, as
-      constant deceleration needs, the saturation rate at most; plus the set point's own velocity
-      when it moves steadily.
+    - Wanted rate: far off the saturation rate, where the dead-zone does not matter. A joint at that rate is braked in
+      equal steps so that it stops a little before the set point; then the valve waits, just closed, until it has been
+      seen where the joint stopped. The rest, and small distances, are moved at a rate of gain times the predicted
+      distance. A set point that moves steadily adds its own velocity.
     - Feedforward: the rate map's inverse gives the voltage, dead-zone and all; lever and gravity are in the
       map's share over the angle.
-    - Learning: at saturation, how much faster or slower than its map the joint is (load, supply pressure);
-      below, how far its dead-zone's edge lies from the map's. Both per direction, both bounded.
-      This takes the integrator's place: nothing can wind up.
+    - Voltage: through the dead-zone and when opening it moves by bounded steps; closing is free.
+    - Learning (`feedforward_learning.py`): how fast the joint saturates, where its dead-zone ends, its dead time. All
+      per direction and bounded. This takes the integrator's place: nothing can wind up.
 
     Attributes:
         map: measured rates.
@@ -93,119 +50,175 @@ class FeedforwardLaw:
 
     def __post_init__(self) -> None:
         """Refuse a dead time that is negative."""
-        if self.map.dead_time_s + self.tuning.extra_delay_s < 0.0:
+        if self.map.dead_time_s < 0.0:
             raise InputError("feedforward control needs a dead time of at least 0 s")
 
-    @property
-    def _delay(self) -> tuple[int, float]:
+    def _samples(self, late_s: float) -> tuple[int, float]:
         """Dead time in whole samples, and the rest as a share of one."""
-        samples = (self.map.dead_time_s + self.tuning.extra_delay_s) / self.sample_s
-        whole = int(samples + 1e-9)
+        samples = (self.map.dead_time_s + late_s) / self.sample_s
+        whole = int(samples + _ROUNDING)
         return whole, samples - whole
 
     @property
     def _window(self) -> int:
         """Samples over which a rate is measured."""
-        return int(tuning_data()["limits"]["window"]["value"])
+        return int(limit("window"))
+
+    @property
+    def _kept(self) -> int:
+        """Past voltages that are kept: of the longest dead time, and of the window in which they are judged."""
+        return self._samples(limit("late"))[0] + self._window + 3
 
     @property
     def size(self) -> int:
-        """Flags, estimate, set point and its slope, what is learned, past voltages, past estimates."""
-        return _VOLTAGES + self._delay[0] + self._window + 2 + self._window
+        """Numbers of a `Memory`."""
+        return SCALARS + self._kept + self._window
+
+    def memory(self, state: Array) -> Memory:
+        """A state by name."""
+        return Memory.unpack(state, self._kept)
 
     def initial(self, measured_deg: float) -> Array:
         """At rest, nothing on its way, nothing learned."""
-        state = np.zeros(self.size)
-        state[_ANGLE] = state[_SET_POINT] = measured_deg
-        state[_SHARE[-1.0]] = state[_SHARE[1.0]] = 1.0
-        state[self.size - self._window :] = measured_deg
-        return state
+        return Memory.at_rest(measured_deg, self._kept, self._window).pack()
 
-    def _rate(self, state: Array, voltage: float, angle: float) -> float:
+    def _rate(self, memory: Memory, voltage: float) -> float:
         """Rate that a voltage gives once it acts [deg/s], with what has been learned."""
         if voltage == 0.0:
             return 0.0
         sign = copysign(1.0, voltage)
-        size = rate_at(self.map.side(sign), abs(voltage) - float(state[_EDGE[sign]]))
-        return sign * size * self.map.share(sign, angle) * float(state[_SHARE[sign]])
+        size = rate_at(self.map.side(sign), abs(voltage) - memory.edge(sign))
+        return sign * size * self.map.share(sign, memory.angle) * memory.share(sign)
+
+    def _edge(self, memory: Memory, sign: float) -> float:
+        """Where the dead-zone ends, with what has been learned [V]."""
+        return self.map.side(sign).edge_V + memory.edge(sign)
 
     def step(self, state: Array, set_point_deg: float, measured_deg: float) -> tuple[Array, float, float]:
         """See `ControlLaw.step`; the output is the wanted rate [deg/s]."""
-        new = state.copy()
-        whole, rest = self._delay
-        window = self._window
-        voltages = state[_VOLTAGES : self.size - window]
-        angle = float(state[_ANGLE])
-        rates = [self._rate(state, float(v), angle) for v in voltages]
-        acted = (1.0 - rest) * rates[whole] + rest * rates[whole + 1]
-        angle += acted * self.sample_s
-        angle += self.tuning.correction * (measured_deg - angle)
-        past = state[self.size - window :]
-        self._learn(new, rates, (angle - float(past[-1])) / (window * self.sample_s))
-        ahead = angle + self.sample_s * (sum(rates[:whole]) + rest * rates[whole])
+        memory = self.memory(state)
+        rates = [self._rate(memory, voltage) for voltage in memory.voltages]
+        moving = next((r for r in reversed(rates[: self._samples(0.0)[0] + 2]) if r != 0.0), 0.0)
+        sent = UnderWay(memory.voltages, rates, *self._samples(memory.late(moving)))
+        hold = sent.whole + 1 + self._window  # samples until what was sent has acted and been seen
+        self._estimate(memory, sent, measured_deg)
+        mean = (memory.angle + sum(memory.estimates)) / (1 + self._window)
+        moved = memory.angle - memory.estimates[-1]
+        grow_push(
+            memory, self.tuning, sent, moved, set_point_deg - memory.angle,
+            self.map.dead_time_s + self._window * self.sample_s, self.sample_s,
+        )  # fmt: skip
 
-        slope = (set_point_deg - float(state[_SET_POINT])) / self.sample_s
-        limits = tuning_data()["limits"]
-        steady = abs(slope - float(state[_SLOPE])) <= float(limits["slope_change"]["value"])
-        velocity = slope if steady and float(state[_RUNNING]) else 0.0
-        lead = self.map.dead_time_s + self.tuning.extra_delay_s
-        distance = set_point_deg + velocity * lead - ahead
-        wanted = self._wanted(new, distance, set_point_deg - angle, velocity)
-        voltage = 0.0
-        if wanted != 0.0:
-            sign = copysign(1.0, wanted)
-            scale = self.map.share(sign, ahead) * float(new[_SHARE[sign]])
-            side = self.map.side(sign)
-            size = voltage_for(side, abs(wanted) / scale) + float(new[_EDGE[sign]])
-            if abs(wanted) / scale >= side.fastest:
-                size = max(size, self.tuning.overdrive * side.voltages[-1])
-            before = max(sign * float(voltages[0]), side.edge_V + float(new[_EDGE[sign]]))
-            voltage = sign * min(size, before + self.tuning.opening_V, self.limit_V)
-        new[_RUNNING] = 1.0
-        new[_ANGLE], new[_SET_POINT], new[_SLOPE] = angle, set_point_deg, slope
-        new[_VOLTAGES : self.size - window] = np.concatenate([[voltage], voltages[:-1]])
-        new[self.size - window :] = np.concatenate([[angle], past[:-1]])
-        return new, wanted, voltage
+        slope = (set_point_deg - memory.set_point) / self.sample_s
+        steady = abs(slope - memory.slope) <= limit("slope_change")
+        velocity = slope if steady and memory.running else 0.0
+        ahead = memory.angle + self.sample_s * sent.to_come
+        distance = set_point_deg + velocity * (sent.whole + sent.rest) * self.sample_s - ahead
+        same = set_point_deg == memory.set_point
+        if velocity == 0.0 and self._arrived(
+            memory, sent, distance, set_point_deg - mean, moving, same, hold
+        ):
+            wanted = 0.0
+        else:
+            memory.standing = 0.0
+            wanted = self._wanted(memory, sent, distance, velocity)
+        voltage = self._slewed(memory, self._voltage(memory, wanted, ahead, hold))
+        if memory.standing == 1.0 and self._braked(memory, sent):
+            memory.rest_deg, memory.landing = ahead, rates[int(limit("steps"))]
+        elif memory.standing == 0.0:
+            memory.landing = 0.0
+        elif memory.standing >= hold and memory.landing != 0.0:
+            learn_landing(memory, self.tuning, mean)
+        memory.running, memory.set_point, memory.slope = 1.0, set_point_deg, slope
+        memory.voltages = [voltage, *memory.voltages[:-1]]
+        memory.estimates = [memory.angle, *memory.estimates[:-1]]
+        return memory.pack(), wanted, voltage
 
-    def _wanted(self, new: Array, distance: float, error: float, velocity: float) -> float:
-        """Rate for a predicted distance; closes the valve within the tolerance, with hysteresis."""
+    def _estimate(self, memory: Memory, sent: UnderWay, measured_deg: float) -> None:
+        """Where the joint stands: prediction and reading, and what the difference teaches.
+
+        Of a deviation that noise or a swinging load explains only a share is believed, of a larger one the rest too.
+        """
+        memory.angle += sent.acted * self.sample_s
+        off = measured_deg - memory.angle
+        explained = clipped(off, (-limit("band"), limit("band")))
+        taken = off - (1.0 - self.tuning.correction) * explained
+        memory.angle += taken
+        moved = memory.angle - memory.estimates[-1]
+        learn_rates(memory, self.map, self.tuning, sent, moved, self.sample_s)
+        learn_onset(memory, self.map, self.tuning, sent.acted, taken, off - taken)
+
+    def _braked(self, memory: Memory, sent: UnderWay) -> bool:
+        """Whether the joint has just been braked from saturation in as many steps as that takes."""
+        steps = int(limit("steps"))
+        sign = copysign(1.0, sum(sent.rates))
+        full = saturated_rate(memory, self.map, sign)
+        return sign * sent.rates[steps] >= full and all(sign * rate < full for rate in sent.rates[:steps])
+
+    def _arrived(
+        self, memory: Memory, sent: UnderWay, distance: float, error: float, moving: float, same: bool, hold: int
+    ) -> bool:  # fmt: skip
+        """Whether the valve is to be closed; counts how long it has been.
+
+        It closes when the joint is predicted to stop within the tolerance or beyond the set point, or has been
+        braked; it opens again when everything sent has acted and the mean error is too large, or for another set point.
+        """
+        if memory.standing and same:
+            memory.standing += 1.0
+            return memory.standing <= hold or abs(error) <= self.tuning.start_beyond_deg
+        passed = same and moving * distance < 0.0
+        if abs(distance) <= self.tuning.stop_within_deg or passed or self._braked(memory, sent):
+            memory.standing = 1.0
+            return True
+        return False
+
+    def _wanted(self, memory: Memory, sent: UnderWay, distance: float, velocity: float) -> float:
+        """Rate for a predicted distance [deg/s]."""
         tune = self.tuning
-        if velocity == 0.0:
-            if new[_STANDING] and abs(error) <= tune.start_beyond_deg:
-                return 0.0
-            if abs(distance) <= tune.stop_within_deg:
-                new[_STANDING] = 1.0
-                return 0.0
-        new[_STANDING] = 0.0
-        far = abs(distance)
-        size = min(tune.gain * far, self.map.side(distance).fastest * sqrt(far / tune.braking_deg))
+        sign, far = copysign(1.0, distance), abs(distance)
+        fast = self.map.side(sign).fastest * memory.share(sign)
+        full = saturated_rate(memory, self.map, sign)
+        left = max(far - fast * tune.landing_s, 0.0) / self.sample_s
+        steps = int(limit("steps"))
+        since = next((i for i in range(steps) if sign * sent.rates[i] >= full), steps)
+        if left > tune.braking * fast * (1.0 if since == 0 else tune.starting):
+            size = limit("fastest") * fast
+        elif since < steps:
+            size = left / (steps - since)
+        else:
+            size = min(tune.gain * far + memory.push, fast)
         if velocity == 0.0:
             size = max(size, tune.slowest)
         rate = copysign(size, distance) + velocity
-        fastest = self.map.side(rate).fastest * float(tuning_data()["limits"]["fastest"]["value"])
-        return min(max(rate, -fastest), fastest)
+        fastest = limit("fastest") * self.map.side(rate).fastest
+        return clipped(rate, (-fastest, fastest))
 
-    def _learn(self, new: Array, rates: list[float], measured: float) -> None:
-        """Compare the rate over the last samples with what the voltages that acted then should have given."""
-        whole, window = self._delay[0], self._window
-        acting = rates[whole : whole + window + 1]
-        low, high = min(acting), max(acting)
-        if low * high < 0.0 or low == high == 0.0:  # both directions, or none
-            return
-        sign = copysign(1.0, low + high)
+    def _voltage(self, memory: Memory, wanted: float, ahead: float, hold: int) -> float:
+        """Voltage for a wanted rate; at rest none, but the valve is held just closed until that is sure."""
+        if wanted == 0.0:
+            before = memory.voltages[0]
+            if not 1.0 <= memory.standing <= hold:
+                return 0.0
+            return copysign(min(abs(before), self.tuning.closed * self._edge(memory, before)), before)
+        sign = copysign(1.0, wanted)
         side = self.map.side(sign)
-        expected = abs(sum(acting) / len(acting))
-        got = measured * sign
-        limits = tuning_data()["limits"]
-        saturated = side.fastest * float(new[_SHARE[sign]]) * float(limits["saturated"]["value"])
-        slowest, fastest = sorted((abs(low), abs(high)))
-        if slowest >= saturated:
-            bound = float(limits["share"]["value"])
-            ratio = min(max(got / expected, 0.0), bound)
-            share = float(new[_SHARE[sign]]) * (1.0 + self.tuning.learn_rate * (ratio - 1.0))
-            new[_SHARE[sign]] = min(max(share, 1.0 / bound), bound)
-        elif fastest < saturated:
-            slope = (side.rates[1] - side.rates[0]) / (side.voltages[1] - side.voltages[0])
-            edge = float(new[_EDGE[sign]]) + self.tuning.learn_edge * (expected - got) / slope
-            bound = float(limits["edge"]["value"]) * side.edge_V
-            new[_EDGE[sign]] = min(max(edge, -bound), bound)
+        size = abs(wanted) / (self.map.share(sign, ahead) * memory.share(sign))
+        if size >= side.fastest:
+            volts = side.voltages[-1] + max(memory.edge(sign), self.tuning.reserve * side.edge_V)
+        else:
+            volts = voltage_for(side, size) + memory.edge(sign)
+        return sign * min(volts, self.limit_V)
+
+    def _slewed(self, memory: Memory, voltage: float) -> float:
+        """A voltage within reach of the last one: opening and crossing the dead-zone go by bounded steps."""
+        tune, before = self.tuning, memory.voltages[0]
+        if voltage * before < 0.0 or abs(voltage) < abs(before):
+            closed = tune.closed * self._edge(memory, before)
+            least = closed if abs(before) > closed else abs(before) - tune.crossing_V
+            return copysign(1.0, before) * max(voltage * copysign(1.0, before), least)
+        edge = self._edge(memory, voltage)
+        if abs(before) >= tune.closed * edge - _ROUNDING:
+            most = abs(before) + tune.opening_V
+        else:
+            most = min(abs(before) + tune.crossing_V, edge)
+        return copysign(min(abs(voltage), most), voltage)

@@ -5,7 +5,8 @@ from dataclasses import asdict, replace
 
 import numpy as np
 
-from hydrolek_drake.control.feedforward import FeedforwardLaw, FeedforwardTuning, tuning_data
+from hydrolek_drake.control.feedforward import FeedforwardLaw
+from hydrolek_drake.control.feedforward_tuning import FeedforwardTuning, tuning_data
 from hydrolek_drake.control.judging import (
     ERROR_DEG,
     OVERSHOOT_PERCENT,
@@ -77,10 +78,7 @@ def tune(
             if generator.random() >= search["changed"]:
                 continue
             low, high = map(float, ranges[key])
-            if low < 0.0:  # a difference, not a size
-                drawn = value + search["last_width"] * generator.standard_normal() * (high - low)
-            else:
-                drawn = value * float(np.exp(width * generator.standard_normal()))
+            drawn = value * float(np.exp(width * generator.standard_normal()))
             changes[key] = float(min(max(drawn, low), high))
         candidate = replace(best, **changes)
         found = evaluate(candidate)
