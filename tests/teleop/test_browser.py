@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from four_clicks import click_the_pipe
 
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.sequencer import Mode
@@ -26,16 +27,7 @@ def test_four_clicks_in_a_browser_do_the_task(browser, served):
     errors = []
     page.on("pageerror", lambda error: errors.append(str(error)))
     page.goto(served.address)
-    page.click("#snapshot")
-    for picture, v, then in (
-        ("edges", 150, "grasp it"),
-        ("colour", 180, "cut it"),
-        ("colour", 110, "confirm"),
-    ):
-        page.wait_for_selector(f"#{picture}.wants")
-        box = page.locator(f"#{picture}").bounding_box()
-        page.mouse.click(box["x"] + box["width"] / 2, box["y"] + v / 480 * box["height"])
-        page.wait_for_function("text => document.querySelector('#say').innerText.includes(text)", arg=then)
+    click_the_pipe(page)
     page.keyboard.press("Enter")
     page.wait_for_function(
         "() => document.querySelector('li.now') !== null", polling=50

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from four_clicks import click_the_pipe, says
 
 from hydrolek_drake.kinematics.forward import tool_pose
 from hydrolek_drake.kinematics.frames import in_frame
@@ -83,27 +84,10 @@ def _keep(page, name, selector=None):
         target.screenshot(path=Path(PICTURES) / f"{name}.png")
 
 
-def _says(page, text):
-    page.wait_for_function("text => document.querySelector('#say').innerText.includes(text)", arg=text)
-
-
 def _step(page, name):
     page.wait_for_function(
         "name => [...document.querySelectorAll('li.now')].some(li => li.innerText === name)", arg=name
     )
-
-
-def _click_the_pipe(page):
-    page.click("#snapshot")
-    for picture, v, then in (
-        ("edges", 150, "grasp it"),
-        ("colour", 180, "cut it"),
-        ("colour", 110, "confirm"),
-    ):
-        page.wait_for_selector(f"#{picture}.wants")
-        box = page.locator(f"#{picture}").bounding_box()
-        page.mouse.click(box["x"] + box["width"] / 2, box["y"] + v / 480 * box["height"])
-        _says(page, then)
 
 
 def _ink(page, canvas):
@@ -226,14 +210,14 @@ def test_drake_s_view_stands_beside_the_pictures(served, page):
 
 def test_the_task_on_the_hydraulic_plant_from_the_browser(served, page):
     pipe, begin = make_pipe(), len(served.states)
-    _click_the_pipe(page)
+    click_the_pipe(page)
     _keep(page, "console_confirm")
     page.keyboard.press("Enter")
     _step(page, "grasp")
     _step(page, "cut")
     page.wait_for_timeout(400)
     _keep(page, "console_moving")
-    _says(page, "Done after")
+    says(page, "Done after")
     assert page.locator("li.done").count() == 6
     page.wait_for_timeout(300)
     _keep(page, "console_charts", "section:has(#charts)")

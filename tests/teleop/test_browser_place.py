@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from four_clicks import says
 from loose_pipe_scene import GRASP, PIPE, PLACE, RAISED, TABLE, pixel
 
 from hydrolek_drake.teleop.machine import Machine
@@ -27,11 +28,6 @@ def test_pick_and_place_in_a_browser(browser, served):
     page.on("pageerror", lambda error: errors.append(str(error)))
     page.goto(served.address)
 
-    def says(text, **named):
-        page.wait_for_function(
-            "text => document.querySelector('#say').innerText.includes(text)", arg=text, **named
-        )
-
     def click(point):
         page.wait_for_selector("#colour.wants")
         box, (u, v) = page.locator("#colour").bounding_box(), pixel(np.array(point))
@@ -44,16 +40,16 @@ def test_pick_and_place_in_a_browser(browser, served):
         "count => document.querySelectorAll('#steps li').length === count", arg=len(PLACE_STEPS)
     )
     page.click("#snapshot")
-    says("Click the pipe")
+    says(page, "Click the pipe")
     click(RAISED)
-    says("grasp it")
+    says(page, "grasp it")
     click(GRASP)
-    says("put it down")
+    says(page, "put it down")
     click(PIPE.point)
-    says("on the pipe itself")
+    says(page, "on the pipe itself")
     click(PLACE)
-    says("confirm")
+    says(page, "confirm")
     page.keyboard.press("Enter")
-    says("Done after")
+    says(page, "Done after")
     assert page.locator("li.done").count() == len(PLACE_STEPS) and not errors
     np.testing.assert_allclose(served.machine.state().pipe.point[:2], PLACE[:2], atol=0.03)
