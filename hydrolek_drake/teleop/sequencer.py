@@ -94,7 +94,7 @@ class TaskSequencer(LeafSystem):
             )
         first = plan.steps[0].trajectory.value(0.0)[:, 0]
         off = np.degrees(np.max(np.abs(np.asarray(posture) - first)))
-        if off > 5.0 * self._values["tolerance_deg"]:
+        if off > self._values["displaced_deg"]:
             raise InputError(
                 f"the arms have moved by {off:.1f} deg since the task was planned; plan it again from where they are"
             )
