@@ -206,6 +206,12 @@ def _inertia_at(time: float, rod: float, joint: Any) -> float:
 
 
 @njit
+def _arrived(command_values: np.ndarray, held: int, joint: Any) -> float:
+    """The command that acts [V]; neutral until the first one has arrived, as in the Diagram's transport delay."""
+    return command_values[held] if held >= 0 else joint.command.neutral
+
+
+@njit
 def _out_of_bounds(x: float, s: State) -> bool:
     """Whether anything is NaN or far beyond what a machine can do."""
     return not (
@@ -255,7 +261,7 @@ def integrate(
         state: x, spool velocity, then `State`, what the sensor's play reads, and the time since switching on [s] at
             the first of `times`; shape (13,); holds the final state afterwards.
         command_times: when the command changes [s], shape (m,).
-        command_values: held from then on [V], shape (m,).
+        command_values: held from then on [V], shape (m,); neutral before the first one has arrived.
         times: when to write [s], shape (n,); the integration starts at the first.
         longest_step: [s].
         spool_steps: spool steps within one step.
@@ -279,7 +285,7 @@ def integrate(
     rod = load.reflected_rod_inertia(joint)
     begin = times[0]
     last = len(command_times) - 1
-    held = 0
+    held = -1  # nothing has arrived yet
     play = state[11]
     on = begin - state[12]
     t = begin
@@ -289,14 +295,14 @@ def integrate(
             while held < last and command_times[held + 1] + delay <= t + 1e-12:
                 held += 1
             following = held + 1
-            while following <= last and command_values[following] == command_values[held]:
+            while held >= 0 and following <= last and command_values[following] == command_values[held]:
                 following += 1
             until = target
             if following <= last and command_times[following] + delay < target:
                 until = max(command_times[following] + delay, t)
             probe = probe_at(t, begin, probe_spacing, probe_values)
             by_command = felt(probe, law, t - on, s.q, s.w, s.p_a, s.p_b, x).command
-            voltage = command.drive_voltage(command_values[held] + by_command, joint)
+            voltage = command.drive_voltage(_arrived(command_values, held, joint) + by_command, joint)
             steps = max(math.ceil((until - t) / longest_step - 1e-9), 1)
             h = (until - t) / steps
             if h > 0.0:
@@ -319,7 +325,7 @@ def integrate(
             return row
         probe = probe_at(t, begin, probe_spacing, probe_values)
         now = felt(probe, law, t - on, s.q, s.w, s.p_a, s.p_b, x)
-        voltage = command.drive_voltage(command_values[held] + now.command, joint)
+        voltage = command.drive_voltage(_arrived(command_values, held, joint) + now.command, joint)
         inertia = _inertia_at(t - on, rod, joint)
         _, _, p_supply, force = rates(s, x, voltage, t - on, inertia, probe, law, joint)
         out[row, 0] = sensor.reading(play, t - on, joint) + now.sensor

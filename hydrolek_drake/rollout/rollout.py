@@ -138,7 +138,7 @@ def roll_out(
     Args:
         joint: parameter record, shape (1,), dtype `physics.records.JOINT`.
         command_times: [s], increasing, shape (m,).
-        command_values: [V], each held until the next, shape (m,).
+        command_values: [V], each held until the next, neutral before the first has arrived, shape (m,).
         times: when signals are wanted [s], increasing, shape (n,).
         state: where to start; None for rest at the rig's initial position.
         longest_step: upper bound of the integration step [s].

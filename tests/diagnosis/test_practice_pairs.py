@@ -23,7 +23,7 @@ ALLOWED = 1.2
 """Held-out error over the noise that issue and contract demand."""
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")  # of a module it would end wherever a test of another one comes between
 def diagnosed(tmp_path_factory):
     """A function: pair -> folder of its report, made once."""
     known: dict[str, Path] = {}

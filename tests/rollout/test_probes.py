@@ -43,11 +43,10 @@ def test_amplifier_probe_is_a_larger_current() -> None:
 
 
 def test_command_probe_is_a_higher_command() -> None:
-    # the transport delay shifts a step of the command, not a constant addition to it
-    always = _run(command=np.full(TIMES.size, 5.0))
-    assert _run(probe="command", size=1.0, command=np.full(TIMES.size, 4.0)).position == pytest.approx(
-        always.position, rel=1e-9
-    )
+    prompt = {"command.delay": 0.0}  # a delay shifts the command, not what is added to it
+    always = _run(prompt, command=np.full(TIMES.size, 5.0))
+    probed = _run(prompt, probe="command", size=1.0, command=np.full(TIMES.size, 4.0))
+    assert probed.position == pytest.approx(always.position, rel=1e-9)
 
 
 def test_sensor_probe_is_added_to_the_reading_alone() -> None:

@@ -49,3 +49,16 @@ def test_a_play_that_nothing_presses_is_not_taken_up(bench, rounding) -> None:
     ).records()[0]
     assert rest_tilt_and_lead(record, READING, rounding)[1] == READING
     assert rest_tilt_and_lead(record, READING, 50.0)[1] > READING + 0.01 - 1e-9
+
+
+def test_nothing_is_driven_before_the_first_command_has_arrived(bench) -> None:
+    """A recording may begin with a command: what stood at rest was not driven before."""
+    delay, volts = 0.1, 6.0
+    records = bench.with_values({"command.delay": delay}).records()
+    at_once = roll_out(records, TIMES, np.full(TIMES.size, volts), TIMES, longest_step=5e-4).signals
+    waited = np.where(TIMES < delay - 1e-9, 0.0, volts)
+    prompt = bench.with_values({"command.delay": 0.0}).records()
+    later = roll_out(prompt, TIMES, waited, TIMES, longest_step=5e-4).signals
+    assert np.ptp(at_once.position[TIMES < delay]) < 1e-6
+    assert at_once.position == pytest.approx(later.position, abs=1e-7)
+    assert np.ptp(at_once.position) > np.radians(10.0)
