@@ -1,0 +1,77 @@
+"""When a law for physics in no list is named, and beside which model."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.diagnosis import law_choice
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED, EXPLAINED_AHEAD, Conclusion
+from hydrolek_drake.diagnosis.evidence import Judged
+from hydrolek_drake.diagnosis.law_choice import MANY, SIMPLER, with_law
+
+VALUES = 1000
+
+
+def _judged(over_noise: float, effects: int = 0) -> Judged:
+    fit = SimpleNamespace(over_noise=over_noise, objective=VALUES * over_noise**2)
+    hypothesis = SimpleNamespace(effects=tuple(range(effects)), fit=fit, ids=frozenset(range(effects)))
+    return Judged(hypothesis, np.full(VALUES, over_noise), VALUES, probability=1.0)
+
+
+def _law(train: float, ahead: float):
+    return SimpleNamespace(fit=SimpleNamespace(over_noise=train), held_out_over_noise=ahead)
+
+
+@pytest.fixture
+def choose(monkeypatch):
+    """(best known, nominal, law beside best, law alone, verdict) -> conclusion, law, what laws were sought beside."""
+
+    def run(best, nominal, beside, alone, verdict="unlisted_physics"):
+        asked = []
+
+        def find(bench, named, held_out, scales):
+            asked.append(named)
+            return alone if named is nominal else beside
+
+        monkeypatch.setattr(law_choice, "find_law", find)
+        known = Conclusion(verdict, best, {}, ())
+        return *with_law(None, known, (best, nominal), (), None, lambda text: None), asked
+
+    return run
+
+
+def test_a_law_that_explains_all_alone_is_not_sought_beside_known_effects(choose) -> None:
+    best, nominal = _judged(2.0, effects=1), _judged(10.0)
+    alone = _law(EXPLAINED, EXPLAINED_AHEAD)
+    conclusion, law, asked = choose(best, nominal, None, alone)
+    assert law is alone and conclusion.best is nominal and asked == [nominal]
+
+
+def test_known_effects_stay_if_the_law_needs_them(choose) -> None:
+    best, nominal = _judged(4.0, effects=1), _judged(10.0)
+    beside = _law(1.5, 2.0)
+    far = _law(3.0, 2.0 * SIMPLER * 1.01)
+    conclusion, law, _ = choose(best, nominal, beside, far)
+    assert law is beside and conclusion.best is best
+    near = _law(3.0, 2.0 * SIMPLER * 0.99)
+    conclusion, law, _ = choose(best, nominal, beside, near)
+    assert law is near and conclusion.best is nominal
+
+
+def test_effects_that_take_no_material_part_are_left_out(choose) -> None:
+    best, nominal = _judged(9.0, effects=1), _judged(10.0)
+    conclusion, law, asked = choose(best, nominal, _law(1.0, 1.0), None)
+    assert law is None and conclusion.best is nominal and asked == [nominal]
+
+
+def test_one_law_that_predicts_as_well_is_preferred_to_many_effects(choose) -> None:
+    best, nominal = _judged(1.1, effects=MANY), _judged(10.0)
+    as_good, worse = _law(1.0, 1.1), _law(1.0, 1.2)
+    conclusion, law, _ = choose(best, nominal, None, as_good, verdict="missing_physics")
+    assert law is as_good and conclusion.verdict == "unlisted_physics" and conclusion.best is nominal
+    conclusion, law, _ = choose(best, nominal, None, worse, verdict="missing_physics")
+    assert law is None and conclusion.verdict == "missing_physics" and conclusion.best is best
+    fewer = _judged(1.1, effects=MANY - 1)
+    conclusion, law, asked = choose(fewer, nominal, None, as_good, verdict="missing_physics")
+    assert law is None and conclusion.best is fewer and not asked
