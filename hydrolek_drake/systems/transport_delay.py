@@ -60,8 +60,8 @@ def _arriving(
 class TransportDelay(LeafSystem):
     """Delays each joint's command and turns it into the amplifier's voltage (thesis 6.1.3).
 
-    The command is sampled at every step and held. A delay of so many steps and a rest lets a sample arrive that
-    rest after a step's beginning.
+    The command is sampled at every step and held; before the first one has arrived nothing is driven. A delay of so
+    many steps and a rest lets a sample arrive that rest after a step's beginning.
 
     Ports:
         in `command` (n): recorded or commanded voltage [V].
@@ -84,7 +84,6 @@ class TransportDelay(LeafSystem):
         self._none = np.zeros(n)
         self._line = self.DeclareDiscreteState(np.zeros(self._length * n))
         self._out = self.DeclareDiscreteState(np.zeros(n))
-        self.DeclareInitializationDiscreteUpdateEvent(self._fill)
         self.DeclarePeriodicDiscreteUpdateEvent(step, 0.0, self._update)
         self.voltage = self.DeclareStateOutputPort("voltage_delayed", self._out)
         self._at_once = bool(np.any(self._whole == 0))
@@ -95,11 +94,6 @@ class TransportDelay(LeafSystem):
             prerequisites_of_calc={self.discrete_state_ticket(self._line)}
             | ({self.command.ticket()} if self._at_once else set()),
         )
-
-    def _fill(self, context: Context, values: DiscreteValues) -> None:
-        """Before the start the first command stood."""
-        for _ in range(self._length):
-            self._update(context, values)
 
     def _update(self, context: Context, values: DiscreteValues) -> None:
         _take_in(
