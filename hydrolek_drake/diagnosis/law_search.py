@@ -41,10 +41,15 @@ def promising(bench: Workbench, left: Hypothesis, inputs: Sequence[Input], span:
     off = left.fit.off_prior
 
     def response(
-        experiments: Sequence[Experiment], given: Input, term: Term | None, *sizes: float
+        experiments: Sequence[Experiment],
+        given: Input,
+        term: Term | None,
+        sine: float,
+        cosine: float = 0.0,
+        frequency: float = 0.0,
     ) -> np.ndarray:
-        scaled = (given.scale * sizes[0], *(given.scale * s for s in sizes[1:2]), *sizes[2:])
-        law = law_record(given.probe, span, term, *scaled)
+        scale = given.scale
+        law = law_record(given.probe, span, term, scale * sine, scale * cosine, frequency)
         parts = [e.residuals(e.simulate(records, step, law=law).signals) for e in experiments]
         return np.nan_to_num(np.concatenate(parts))
 

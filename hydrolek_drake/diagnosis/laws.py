@@ -69,6 +69,10 @@ def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str)
     return tuple(sorted(inputs, key=lambda i: PROBES.index(i.probe)))
 
 
+CONSTANT = "1"
+"""Name of the term that does not vary."""
+
+
 @dataclass(frozen=True)
 class Term:
     """A function of time and movement, of size about one: a product of factors of `rollout.law`.
@@ -93,9 +97,6 @@ class Term:
         factors = [f for f in (self.time, self.place, self.speed, self.other) if f != "1"]
         return " ".join(factors) or CONSTANT
 
-
-CONSTANT = "1"
-"""Name of the term that does not vary."""
 
 _FORCES = ("cylinder", "load")
 _MOVED = (*_FORCES, "sensor")

@@ -310,8 +310,9 @@ def integrate(
                     time = t + i * h - on
                     drive_a, drive_b = amplifier.coil_currents(voltage, time + 0.5 * h, joint)
                     probe_next = probe_at(t + (i + 1) * h, begin, probe_spacing, probe_values)
-                    by_law = felt(probe, law, time, s.q, s.w, s.p_a, s.p_b, x).amplifier - probe.amplifier
-                    gain = 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier) + by_law
+                    gain = 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
+                    if len(law) > 0:
+                        gain += felt(probe, law, time, s.q, s.w, s.p_a, s.p_b, x).amplifier - probe.amplifier
                     x_next, xd = solenoid.advance(
                         x, xd, gain * drive_a, gain * drive_b, h, spool_steps, joint
                     )

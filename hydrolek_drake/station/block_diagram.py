@@ -226,10 +226,10 @@ def _terminal(port: Port) -> str:
     return f"{port.system}_{port.name}"
 
 
-def _end(port: Port, mark: str, compass: str) -> str:
+def _end(port: Port, mark: str, edge: str) -> str:
     if port.system in (_INPUTS, _OUTPUTS):
-        return f'"{_terminal(port)}":{compass}'
-    return f'"{port.system}":"{mark}_{port.name}":{compass}'
+        return f'"{_terminal(port)}":{edge}'
+    return f'"{port.system}":"{mark}_{port.name}":{edge}'
 
 
 def _line(connection: Connection) -> str:
