@@ -106,6 +106,15 @@ class LinkOrder:
     reason: str
 
 
+def silence(realtime_rate: float) -> float:
+    """How long either end waits for the other [s]: `link.silence` of the machine's time, never less by the clock.
+
+    Args:
+        realtime_rate: Simulated seconds a second; 1 for a real machine.
+    """
+    return float(teleop_entries("link")["silence"] / min(1.0, realtime_rate))
+
+
 class SetpointServer:
     """The controllers' end. One client at a time; a second one is refused.
 
@@ -113,11 +122,19 @@ class SetpointServer:
         posture: Set point until the first message, in rad, shape (14,).
         port: TCP port, 0 for any free one.
         host: Address to listen at; the loopback unless told otherwise.
+        realtime_rate: Simulated seconds a second, of a simulated machine.
     """
 
-    def __init__(self, posture: ArrayLike, *, port: int | None = None, host: str = "127.0.0.1") -> None:
+    def __init__(
+        self,
+        posture: ArrayLike,
+        *,
+        port: int | None = None,
+        host: str = "127.0.0.1",
+        realtime_rate: float = 1.0,
+    ) -> None:
         values = teleop_entries("link")
-        self._silence, self._longest = values["silence"], int(values["longest_message"])
+        self._silence, self._longest = silence(realtime_rate), int(values["longest_message"])
         self._lock = threading.Lock()
         self._desired = np.array(posture, dtype=float)
         self._measured = np.array(posture, dtype=float)
@@ -240,12 +257,12 @@ class SetpointClient:
     Args:
         port: TCP port of the controllers' end.
         host: Its address.
+        realtime_rate: Simulated seconds a second, of a simulated machine.
     """
 
-    def __init__(self, port: int, host: str = "127.0.0.1") -> None:
-        timeout = teleop_entries("link")["silence"]
+    def __init__(self, port: int, host: str = "127.0.0.1", *, realtime_rate: float = 1.0) -> None:
         try:
-            self._socket = socket.create_connection((host, port), timeout=timeout)
+            self._socket = socket.create_connection((host, port), timeout=silence(realtime_rate))
         except OSError as error:
             raise InputError(
                 f"link: no controllers answer at {host}:{port}: {error}; start them first"

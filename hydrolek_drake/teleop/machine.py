@@ -97,8 +97,8 @@ class Machine:
             controllers = ("127.0.0.1", plant.port)
         self._arms = ArmsEnd(posture, port=0, pipe=pipe, table=table) if controllers is None else None
         host, port = controllers or ("127.0.0.1", self._arms.server.port if self._arms else 0)
-        self._controllers = host, port
-        self._client: SetpointClient | None = SetpointClient(port, host)
+        self._controllers, self._rate = (host, port), realtime_rate
+        self._client: SetpointClient | None = SetpointClient(port, host, realtime_rate=realtime_rate)
         self._again_at = 0.0
         self._sequencer = TaskSequencer()
         self._simulator = Simulator(self._sequencer)
@@ -277,7 +277,7 @@ class Machine:
             return
         client = None
         try:
-            client = SetpointClient(self._controllers[1], self._controllers[0])
+            client = SetpointClient(self._controllers[1], self._controllers[0], realtime_rate=self._rate)
             measured = client.stop()
         except InputError:
             if client is not None:

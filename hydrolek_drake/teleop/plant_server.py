@@ -92,7 +92,7 @@ def serve(settings: dict[str, Any]) -> None:
     if meshcat is not None:
         near = workcell_entries()["view"]  # nearer than the whole machine, which the view shows otherwise
         meshcat.SetCameraPose(np.array(near["eye"]), np.array(near["target"]))
-    server = SetpointServer(posture, port=0)
+    server = SetpointServer(posture, port=0, realtime_rate=settings["realtime_rate"])
     arms.advance()  # compiles what is not yet compiled
     server.report(arms.measured(), arms.signals())
     print(json.dumps({"port": server.port, "view": meshcat.port() if meshcat else None}), flush=True)

@@ -17,6 +17,7 @@ from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.plant_process import PlantProcess
+from hydrolek_drake.teleop.sequencer import Mode
 from hydrolek_drake.teleop.trial import TrialLog
 from hydrolek_drake.vision.configuration import kinect_entries
 from hydrolek_drake.workcell.pipe import make_pipe, workcell_entries
@@ -221,7 +222,8 @@ def test_the_task_on_the_hydraulic_plant_from_the_browser(served, page):
     assert page.locator("li.done").count() == 6
     page.wait_for_timeout(300)
     _keep(page, "console_charts", "section:has(#charts)")
-    states = served.states[begin:]
+    # from the first step on; before it, a link that was lost on a busy computer may have been found again
+    states = [state for state in served.states[begin:] if state.mode in (Mode.RUNNING, Mode.DONE)]
 
     # the grasp: where the tool stood when the gripper was told to close, and that the gripper closed
     settled = round(teleop_entries("task")["settled"] / teleop_entries("task")["period"])

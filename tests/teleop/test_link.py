@@ -8,7 +8,7 @@ import pytest
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.configuration import teleop_entries
-from hydrolek_drake.teleop.link import SetpointClient, SetpointServer, decode, encode
+from hydrolek_drake.teleop.link import SetpointClient, SetpointServer, decode, encode, silence
 from hydrolek_drake.teleop.signals import Signals, signals_from_line
 from hydrolek_drake.workcell.scene import home_posture
 
@@ -70,6 +70,21 @@ def test_silence_closes_the_valves(server):
     time.sleep(teleop_entries("link")["silence"] + 0.1)
     assert server.command()[1:] == (False, "no message for 0.5 s")
     client.close()
+
+
+def test_silence_is_counted_in_the_time_of_the_machine():
+    assert silence(1.0) == teleop_entries("link")["silence"]
+    assert silence(0.5) == 2 * silence(1.0)
+    assert silence(4.0) == silence(1.0)  # a fast simulation leaves the computers no less time
+    server = SetpointServer(home_posture(), port=0, realtime_rate=0.5)
+    client = SetpointClient(server.port, realtime_rate=0.5)
+    client.send(home_posture())
+    time.sleep(silence(1.0) + 0.1)
+    assert server.command()[1]
+    time.sleep(silence(1.0))
+    assert not server.command()[1]
+    client.close()
+    server.close()
 
 
 @pytest.mark.parametrize(
