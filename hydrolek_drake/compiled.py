@@ -11,6 +11,8 @@ import tempfile
 from pathlib import Path
 
 import numba
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 _COMPILED_PARTS = ("physics", "effects", "rollout", "systems", "kinematics", "vision")
 
@@ -32,3 +34,14 @@ def use_cache_for_this_source() -> None:
     except OSError:  # a read-only home: compile anew in each run rather than fail
         folder = Path(tempfile.mkdtemp(prefix="hydrolek_drake_"))
     numba.config.CACHE_DIR = str(folder)
+
+
+def read_only(values: ArrayLike) -> NDArray[np.float64]:
+    """Values as a compiled function is given them: contiguous and not to be written.
+
+    Numba compiles a function anew for an argument that may be written where before it might not, or the other way
+    round; for the rollout that takes half a minute. The values themselves are not copied if they need not be.
+    """
+    given = np.ascontiguousarray(values, dtype=float).view()
+    given.flags.writeable = False
+    return given

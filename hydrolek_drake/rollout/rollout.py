@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 
+from hydrolek_drake.compiled import read_only
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import cylinder, hooks, linkage, load, sensor
 from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, flat, position_of
@@ -154,7 +155,7 @@ def roll_out(
     """
     _check_times(command_times, command_values, times)
     out = np.full((len(times), len(kernel.SIGNALS)), np.nan)
-    times = np.ascontiguousarray(times, dtype=float)
+    times = read_only(times)
     start = np.full(STATE_SIZE, np.nan) if state is None else state.copy()
     probe_spacing, probe_values = probes or (1.0, NO_PROBE)
     changes = np.concatenate(
@@ -168,15 +169,15 @@ def roll_out(
             rows = kernel.integrate(
                 joint,
                 start,
-                np.ascontiguousarray(command_times[changes], dtype=float),
-                np.ascontiguousarray(command_values[changes], dtype=float),
+                read_only(command_times[changes]),
+                read_only(command_values[changes]),
                 times,
                 longest_step,
                 spool_steps,
                 probe_spacing,
-                np.ascontiguousarray(probe_values, dtype=float),
+                read_only(probe_values),
                 pull_time,
-                np.ascontiguousarray(measured, dtype=float),
+                read_only(measured),
                 law,
                 out,
             )

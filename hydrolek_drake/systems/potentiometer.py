@@ -4,6 +4,7 @@ import numpy as np
 from numba import njit
 from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
 
+from hydrolek_drake.compiled import read_only
 from hydrolek_drake.physics.sensor import played, potentiometer_voltage, reading
 
 
@@ -75,7 +76,7 @@ class Potentiometer(LeafSystem):
     def _read(self, context: Context, joints: np.ndarray, noise: np.ndarray) -> np.ndarray:
         held = context.get_discrete_state(self._held).get_value()
         values = np.empty(len(held))
-        _readings(joints, held, self.motion.Eval(context), context.get_time(), noise, values)
+        _readings(joints, held, self.motion.Eval(context), context.get_time(), read_only(noise), values)
         return values
 
     def _calc(self, context: Context, output: BasicVector) -> None:

@@ -13,6 +13,7 @@ from pydrake.multibody.plant import ExternallyAppliedSpatialForce, MultibodyPlan
 from pydrake.multibody.tree import RigidBody
 from pydrake.systems.framework import BasicVector, Context, LeafSystem, State
 
+from hydrolek_drake.compiled import read_only
 from hydrolek_drake.kinematics.arms import arms_urdf_path
 from hydrolek_drake.kinematics.chain import SIDES
 from hydrolek_drake.workcell.loose_pipe import GRAVITY, LoosePipe, Pose
@@ -170,8 +171,8 @@ class GripContact(LeafSystem):
                     radii,
                     place.rotation().matrix(),
                     place.translation() - pipe.point,
-                    turning,
-                    sliding,
+                    read_only(turning),
+                    read_only(sliding),
                     pipe.axis,
                     pipe.radius,
                     0.5 * pipe.length,
