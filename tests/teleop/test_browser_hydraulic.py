@@ -30,7 +30,7 @@ pytestmark = pytest.mark.xdist_group(
 
 PICTURES = os.environ.get("HYDROLEK_PICTURES")
 REQUIRED = 5e-3  # m, at the grasp
-PACE = 0.5  # simulated seconds a second: other tests run beside these, and a plant that falls behind is steered late
+PACE = 1.0  # simulated seconds a second; where the plant falls behind, the task waits for it
 PATIENCE = 240.0  # s; on a busy computer the plant falls behind the clock and the task waits for it
 
 
@@ -204,9 +204,10 @@ def test_drake_s_view_stands_beside_the_pictures(served, page):
     )
     box = page.locator("#view").bounding_box()
     assert box["width"] > 400 and box["height"] > 300
-    page.locator("#view").scroll_into_view_if_needed()
-    page.wait_for_timeout(4000 if PICTURES else 200)
-    _keep(page, "console_view", "#side")
+    if PICTURES:  # each takes many seconds without a graphics card
+        page.locator("#view").scroll_into_view_if_needed()
+        page.wait_for_timeout(4000)
+        _keep(page, "console_view", "#side")
 
 
 def test_the_task_on_the_hydraulic_plant_from_the_browser(served, page):

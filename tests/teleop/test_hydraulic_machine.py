@@ -27,7 +27,8 @@ DEAD_TIME = 0.5  # s: joint 4's dead time of 0.24 s, and until its oil is at res
 
 @pytest.fixture(scope="module")
 def plant():
-    plant = PlantProcess(home_posture())
+    """One for all, which takes a while to start: the last test kills it."""
+    plant = PlantProcess(home_posture(), pipe=make_pipe())
     yield plant
     plant.close()
     assert not plant.running()
@@ -116,29 +117,39 @@ def test_asking_for_signals_is_no_sign_of_life(plant):
     client.close()
 
 
-def test_the_plant_keeps_to_the_clock(plant):
+def test_the_plant_keeps_to_the_clock_or_tells_its_pace(plant):
     client = _watch(plant.port)
     begin, first = time.monotonic(), client.signals().time
+    paces = []
     for _ in range(40):
         client.stop()
         time.sleep(0.05)
+        paces.append(client.signals().pace)
     passed = time.monotonic() - begin
-    assert client.signals().time - first == pytest.approx(passed, abs=0.15)
+    ran = client.signals().time - first
+    assert min(paces) * passed - 0.15 < ran < passed + 0.15  # a busy computer may hold it up
     for _ in range(200):  # a flood of messages does not make it run ahead
         client.send(within_limits(client.stop()))
-    assert client.signals().time - first == pytest.approx(time.monotonic() - begin, abs=0.2)
+    assert client.signals().time - first < time.monotonic() - begin + 0.2
     client.close()
 
 
 def test_what_the_plant_refuses_is_told_in_one_line():
-    with pytest.raises(InputError, match=r"^no controller 'magic'; choose"):
-        PlantProcess(home_posture(), controller="magic")
     with pytest.raises(InputError, match=r"supply\.presure"):
         PlantProcess(home_posture(), settings={"supply.presure": "12 MPa"})
 
 
-def test_the_task_with_a_stop_and_a_resume_and_the_release_of_a_gripper_that_holds_a_pipe(plan):
-    machine = Machine(home_posture(), plant=PlantProcess(home_posture(), pipe=make_pipe()))
+def test_rates_as_text():
+    assert encode_rate(np.full(14, 12.34)).startswith(b"RATE,12.3,12.3")
+    assert len(encode(home_posture())) < teleop_entries("link")["longest_message"]
+
+
+def test_the_task_with_a_stop_and_a_resume_the_release_of_a_held_pipe_and_a_plant_that_dies(plant, plan):
+    client = _watch(plant.port)
+    _move(lambda: client.send(home_posture()), 2.0)  # where the plan begins
+    client.close()
+    time.sleep(0.3)  # until the plant has noticed
+    machine = Machine(home_posture(), plant=plant)
     try:
         machine.start(plan)
         time.sleep(1.5)
@@ -165,21 +176,10 @@ def test_the_task_with_a_stop_and_a_resume_and_the_release_of_a_gripper_that_hol
         assert state.mode is Mode.DONE
         np.testing.assert_allclose(state.position, home_posture(), atol=np.radians(1.3))  # and noise
         np.testing.assert_array_equal(state.signals.grip, 0.0)
+        plant._process.kill()
+        _until(lambda: machine.state().reason != "", 3.0)
+        assert "link:" in machine.state().reason and not machine.state().valves_open
+        with pytest.raises(InputError, match="link:"):
+            machine.move_by_hand(deflection=np.full(14, 20.0))
     finally:
         machine.close()
-
-
-def test_a_plant_that_dies_is_a_lost_link():
-    process = PlantProcess(home_posture())
-    machine = Machine(home_posture(), plant=process)
-    process._process.kill()
-    _until(lambda: machine.state().reason != "", 3.0)
-    assert "link:" in machine.state().reason and not machine.state().valves_open
-    with pytest.raises(InputError, match="link:"):
-        machine.move_by_hand(deflection=np.full(14, 20.0))
-    machine.close()
-
-
-def test_rates_as_text():
-    assert encode_rate(np.full(14, 12.34)).startswith(b"RATE,12.3,12.3")
-    assert len(encode(home_posture())) < teleop_entries("link")["longest_message"]
