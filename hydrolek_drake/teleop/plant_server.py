@@ -28,7 +28,6 @@ from hydrolek_drake.visualization.station_view import StationView
 from hydrolek_drake.workcell.pipe import Pipe, make_pipe, workcell_entries
 from hydrolek_drake.workcell.table import Table
 
-_LONGEST_LAG = 1.0  # s behind the clock after which the lost time is not made up
 _PACE_WINDOW = 20  # samples over which the pace is measured
 
 
@@ -42,7 +41,8 @@ class Pacer:
 
     def __init__(self, server: SetpointServer, realtime_rate: float) -> None:
         self._server, self._period = server, sample_s() / realtime_rate
-        self._lead = teleop_entries("plant")["lead"] / realtime_rate
+        entries = teleop_entries("plant")
+        self._lead, self._lag = entries["lead"] / realtime_rate, entries["lag"] / realtime_rate
         self._due = time.monotonic()
         self._began = [self._due]
 
@@ -53,7 +53,7 @@ class Pacer:
         self._server.message_came.clear()
         time.sleep(max(0.0, self._due - self._lead - time.monotonic()))
         now = time.monotonic()
-        self._due = max(self._due + self._period, now - _LONGEST_LAG)
+        self._due = max(self._due + self._period, now - self._lag)
         self._began = [*self._began[-_PACE_WINDOW:], now]
 
     def pace(self) -> float:
