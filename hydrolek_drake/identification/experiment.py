@@ -12,7 +12,6 @@ from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import measured_position, position_key
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.kernel import PULLED
-from hydrolek_drake.rollout.law import NO_LAW
 from hydrolek_drake.rollout.rollout import Outcome, Signals, rest_state_at_reading, roll_out
 
 STANDS_STILL = 3.0
@@ -118,7 +117,7 @@ class Experiment:
         longest_step: float | None = None,
         probes: tuple[float, np.ndarray] | None = None,
         pull_time: float | None = None,
-        law: np.ndarray = NO_LAW,
+        law: np.ndarray | None = None,
     ) -> Outcome:
         """Roll the joint out under the recorded command.
 

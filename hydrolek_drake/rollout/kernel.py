@@ -71,7 +71,7 @@ def rates(
     time: float,
     inertia: float,
     outside: Probe,
-    law: np.ndarray,
+    law: np.ndarray | None,
     joint: Any,
 ) -> tuple[State, Slopes, float, float]:
     """Rates of the state, their stiff slopes, the supply pressure [Pa] and the rod force [N]."""
@@ -163,7 +163,7 @@ def _step(
     inertia: float,
     probe: Probe,
     probe_next: Probe,
-    law: np.ndarray,
+    law: np.ndarray | None,
     joint: Any,
 ) -> State:
     """One Rosenbrock-W step of `h` seconds; the spool goes from `x` to `x_next` meanwhile."""
@@ -251,7 +251,7 @@ def integrate(
     probe_values: np.ndarray,
     pull_time: float,
     measured: np.ndarray,
-    law: np.ndarray,
+    law: np.ndarray | None,
     out: np.ndarray,
 ) -> int:
     """Integrate one joint through a command and write its signals at `times`.
@@ -270,7 +270,7 @@ def integrate(
         pull_time: with this time constant reading and pressures are pulled to what was measured, as in an
             observer [s]; zero or less for a free rollout.
         measured: `PULLED` at `times`, NaN where there is no value, shape (n, 3); no rows for a free rollout.
-        law: how an input from outside follows from the state, `law.LAW`; one row, or none.
+        law: how an input from outside follows from the state, one row of `law.LAW`, or None.
         out: `SIGNALS`, before the pull, shape (n, 8).
 
     Returns:
@@ -311,7 +311,7 @@ def integrate(
                     drive_a, drive_b = amplifier.coil_currents(voltage, time + 0.5 * h, joint)
                     probe_next = probe_at(t + (i + 1) * h, begin, probe_spacing, probe_values)
                     gain = 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
-                    if len(law) > 0:
+                    if law is not None:
                         gain += felt(probe, law, time, s.q, s.w, s.p_a, s.p_b, x).amplifier - probe.amplifier
                     x_next, xd = solenoid.advance(
                         x, xd, gain * drive_a, gain * drive_b, h, spool_steps, joint

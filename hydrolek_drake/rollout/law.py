@@ -35,7 +35,6 @@ LAW = np.dtype(
 """Speeds and positions in those of the joint [rad or m]; direction: 1 if the rod extends where the joint's position
 rises, else -1."""
 
-NO_LAW = np.zeros(0, LAW)
 _CYLINDER = float(PROBES.index("cylinder"))
 _LOAD = float(PROBES.index("load"))
 
@@ -124,10 +123,10 @@ def law_value(law: Any, time: float, q: float, w: float, p_a: float, p_b: float,
 
 @njit
 def felt(
-    probe: Probe, laws: np.ndarray, time: float, q: float, w: float, p_a: float, p_b: float, x: float
+    probe: Probe, laws: np.ndarray | None, time: float, q: float, w: float, p_a: float, p_b: float, x: float
 ) -> Probe:
     """Probes with what a law adds, if there is one; arguments as of `law_value`."""
-    if len(laws) == 0:
+    if laws is None:  # known when this is compiled: the rollout without a law is a program of its own
         return probe
     law = laws[0]
     return added(probe, law.probe, law_value(law, time, q, w, p_a, p_b, x))
@@ -135,13 +134,13 @@ def felt(
 
 @njit
 def braking_slope(
-    laws: np.ndarray, lever: float, time: float, q: float, w: float, p_a: float, p_b: float, x: float
+    laws: np.ndarray | None, lever: float, time: float, q: float, w: float, p_a: float, p_b: float, x: float
 ) -> float:
     """Secant slope of a law's moment over the joint's speed where it brakes, else 0 [N m s/rad].
 
     What a stiff integrator must know of a friction; arguments as of `law_value`, and the rod's lever.
     """
-    if len(laws) == 0:
+    if laws is None:
         return 0.0
     law = laws[0]
     if (law.probe != _CYLINDER and law.probe != _LOAD) or law.speed_shape == 0.0 or law.speed_shape == 3.0:

@@ -10,7 +10,6 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import cylinder, hooks, linkage, load, sensor
 from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, flat, position_of
 from hydrolek_drake.rollout import kernel
-from hydrolek_drake.rollout.law import NO_LAW
 from hydrolek_drake.rollout.probes import NO_PROBE
 
 STATE_SIZE = 2 + len(kernel.State._fields) + 2
@@ -132,7 +131,7 @@ def roll_out(
     spool_steps: int = 1,
     probes: tuple[float, np.ndarray] | None = None,
     pull: tuple[float, np.ndarray] | None = None,
-    law: np.ndarray = NO_LAW,
+    law: np.ndarray | None = None,
 ) -> Outcome:
     """Drive one joint with a recorded command.
 
@@ -148,7 +147,7 @@ def roll_out(
             shape (k, 10), the first at the first of `times`; None for none.
         pull: reading and pressures are pulled to what was measured, as in an observer: time constant [s], and
             `kernel.PULLED` at `times`, NaN where there is no value, shape (n, 3); None for a free rollout.
-        law: how one input from outside follows from the state, a row of `law.LAW`; no row for none.
+        law: how one input from outside follows from the state, one row of `law.LAW`, shape (1,); None for none.
 
     Raises:
         InputError: times that do not rise, or not as many command values as command times.

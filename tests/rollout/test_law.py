@@ -5,7 +5,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.laws import TERMS, Term, law_record, span_of
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.rollout.law import NO_LAW, law_value
+from hydrolek_drake.rollout.law import law_value
 from hydrolek_drake.rollout.probes import PROBES
 from hydrolek_drake.rollout.rollout import Signals, roll_out
 
@@ -14,7 +14,7 @@ COMMAND = np.where(TIMES < 0.5, 0.0, 6.0 * np.sin(2.0 * np.pi * 0.4 * (TIMES - 0
 STEP = 2.5e-4
 
 
-def _run(values=None, law=NO_LAW, rig="joint_bench", probes=None) -> Signals:
+def _run(values=None, law=None, rig="joint_bench", probes=None) -> Signals:
     records = load_rig(rig, {}).with_values(values or {}).records()[:1]
     return roll_out(records, TIMES, COMMAND, TIMES, longest_step=STEP, law=law, probes=probes).signals
 
