@@ -81,7 +81,7 @@ def tune(
     from hydrolek_drake.control.feedforward_tuning import FeedforwardTuning, tuning
     from hydrolek_drake.control.judging import make_cases
     from hydrolek_drake.control.rate_map import rig_rate_map
-    from hydrolek_drake.control.rig_model import one_joint, rig_model
+    from hydrolek_drake.control.rig_model import one_joint, rig_model, step_tests
     from hydrolek_drake.control.tuning import tune as search
     from hydrolek_drake.rigs import load_rig
 
@@ -99,7 +99,11 @@ def tune(
 
     interrupted = False
     with Console(stderr=True).status("tuning"):
-        maps = {name: rig_rate_map(one_joint(r, name), rig_model(r, name), step) for name, r in rigs.items()}
+        maps = {}
+        for name, rig in rigs.items():
+            record = one_joint(rig, name)
+            tests = step_tests(record, step)
+            maps[name] = rig_rate_map(record, rig_model(rig, name, tests), tests, step)
         cases = make_cases(joints, judged_conditions(), step)
         cases += make_cases(joints, [half] * machines, step, generator)
         try:

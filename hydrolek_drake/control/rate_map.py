@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.control.rig_model import StepTests, ends_left_out, joint_range_deg, run_step, step_tests
+from hydrolek_drake.control.rig_model import StepTests, ends_left_out, joint_range_deg, run_step
 from hydrolek_drake.control.sdp_model import SdpModel, thesis_data
 from hydrolek_drake.errors import InputError
 
@@ -139,10 +139,10 @@ def rate_shape(record: np.ndarray, sign: float, longest_step: float) -> tuple[fl
     return tuple(map(float, fitted / middle))
 
 
-def rig_rate_map(record: np.ndarray, model: SdpModel, longest_step: float) -> RateMap:
-    """Rate map of a rig's joint by simulated step tests, record of shape (1,)."""
+def rig_rate_map(record: np.ndarray, model: SdpModel, tests: StepTests, longest_step: float) -> RateMap:
+    """Rate map of a rig's joint by its simulated step tests, record of shape (1,)."""
     shapes = (rate_shape(record, -1.0, longest_step), rate_shape(record, 1.0, longest_step))
-    return map_from_tests(step_tests(record, longest_step), shapes, model)
+    return map_from_tests(tests, shapes, model)
 
 
 def rate_at(direction: Direction, size_V: float) -> float:

@@ -134,17 +134,22 @@ def fit_law(tests: StepTests, sample_s: float) -> tuple[float, ...]:
     return tuple(map(float, alpha))
 
 
-def rig_model(rig: Rig, joint: str) -> SdpModel:
+def rig_model(rig: Rig, joint: str, tests: StepTests | None = None) -> SdpModel:
     """SDP model of one joint of a rig, the others held.
 
     The delay is the dead time at about 20 deg/s, less what it takes to be noticed at that rate.
+
+    Args:
+        rig: with this joint.
+        joint: its name.
+        tests: its `step_tests`, where they have been made.
 
     Raises:
         InputError: no such joint, no turning joint, or one that does not move.
     """
     record = one_joint(rig, joint)
     sample = float(thesis_data()["sample"]["value"])
-    tests = step_tests(record, rig.value("integration.longest_step"))
+    tests = tests or step_tests(record, rig.value("integration.longest_step"))
     alpha = fit_law(tests, sample)
     wanted = float(thesis_data()["inverse"]["rate"]["value"])
     speed = np.abs(tests.rate_deg_per_s)
