@@ -15,6 +15,8 @@ from hydrolek_drake.challenge.driving import SAMPLE_S, Driving, Played, controll
 from hydrolek_drake.rigs import Rig
 
 STEP_S = 2e-5
+TIGHT_AT_M = 0.15
+"""Stroke at which the friction that grows with it has its given size: about the longest that the bench reaches."""
 
 
 class Machine(NamedTuple):
@@ -53,6 +55,7 @@ class Machine(NamedTuple):
     t_d: float
     p_b_0: float
     v_dry: float
+    stick_v: float
     j_play: float
     k_play: float
     c_play: float
@@ -161,6 +164,7 @@ def nominal_machine(rig: Rig) -> Machine:
         t_d=v("command.delay"),
         p_b_0=v("cylinder.initial_pressure_b"),
         v_dry=v("cylinder.friction_velocity"),
+        stick_v=v("solenoid.stiction_velocity"),
         j_play=v("linkage.play_inertia"),
         k_play=v("linkage.play_stiffness"),
         c_play=v("linkage.play_damping"),
@@ -199,7 +203,7 @@ def _derivative(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) 
         g.k_f * i_a**2 / (1.0 + g.gap * max(x, 0.0)) ** 2 - g.k_f * i_b**2 / (1.0 + g.gap * max(-x, 0.0)) ** 2
     )
     out[0] = xd
-    out[1] = (force - g.c * xd - g.k * x - g.stiction_n * math.tanh(xd / 2e-4)) / g.m
+    out[1] = (force - g.c * xd - g.k * x - g.stiction_n * math.tanh(xd / g.stick_v)) / g.m
     right = g.area * min(max((x - g.x_o - g.shift_m) / (g.w - g.x_o), 0.0), 1.0)
     left = g.area * min(max((-x - g.x_o + g.shift_m) / (g.w - g.x_o), 0.0), 1.0)
     s_warm = g.warm * (1.0 - math.exp(-t / g.warm_s))
@@ -230,7 +234,7 @@ def _derivative(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) 
         out[3] = 0.0
     ratio = v / g.stribeck_v
     dry = (g.coulomb_n + g.stribeck_n * math.exp(-ratio * ratio)) * math.tanh(v / g.v_dry)
-    dry += g.tight_n * (s / 0.15) ** 2 * math.tanh(v / g.v_dry)
+    dry += g.tight_n * (s / TIGHT_AT_M) ** 2 * math.tanh(v / g.v_dry)
     rod = g.a_a * p_a - g.a_b * p_b - g.c_cyl * (1.0 - s_warm) * v - dry
     if g.cushion > 0.0 and s < g.cushion_m and v < 0.0:
         rod -= g.cushion * v * (1.0 - s / g.cushion_m)
