@@ -56,6 +56,7 @@ class Potentiometer(LeafSystem):
         self._joints = joints if generator is not None else _without_resolution(joints)
         self._ideal = _without_resolution(joints)
         self._generator = generator
+        self._silent = read_only(np.zeros(n))
         self.motion = self.DeclareVectorInputPort("motion", 2 * n)
         self._held = self.DeclareDiscreteState(np.zeros(n))
         self._noise = self.DeclareDiscreteState(np.zeros(n))
@@ -76,7 +77,7 @@ class Potentiometer(LeafSystem):
     def _read(self, context: Context, joints: np.ndarray, noise: np.ndarray) -> np.ndarray:
         held = context.get_discrete_state(self._held).get_value()
         values = np.empty(len(held))
-        _readings(joints, held, self.motion.Eval(context), context.get_time(), read_only(noise), values)
+        _readings(joints, held, self.motion.Eval(context), context.get_time(), noise, values)
         return values
 
     def _calc(self, context: Context, output: BasicVector) -> None:
@@ -85,7 +86,7 @@ class Potentiometer(LeafSystem):
         )
 
     def _calc_ideal(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._read(context, self._ideal, np.zeros(len(self._joints))))
+        output.SetFromVector(self._read(context, self._ideal, self._silent))
 
     def _calc_voltage(self, context: Context, output: BasicVector) -> None:
         reading_deg = np.degrees(self.measured.Eval(context))

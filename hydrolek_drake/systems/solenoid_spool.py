@@ -12,7 +12,6 @@ from hydrolek_drake.systems.transport_delay import whole_steps_and_rest
 def _advance(
     joints: np.ndarray,
     state: np.ndarray,
-    before: np.ndarray,
     current: np.ndarray,
     rest: np.ndarray,
     step: float,
@@ -21,9 +20,11 @@ def _advance(
 ) -> None:
     """Advance positions and velocities in place; `mean` becomes the mean position over the step.
 
-    For its share `rest` of the step the currents `before` go on, then come those of `current`.
+    For its share `rest` of the step the currents from before go on, the second half of `state`; then come those of
+    `current`.
     """
     n = len(joints)
+    before = state[2 * n :]
     for i in range(n):
         x, v = state[i], state[n + i]
         area = 0.0
@@ -63,9 +64,9 @@ class SolenoidSpool(LeafSystem):
         self._substeps = substeps
         _, self._rest = whole_steps_and_rest(joints, step)
         self.current = self.DeclareVectorInputPort("coil_current", 2 * n)
-        self._state = self.DeclareDiscreteState(np.zeros(2 * n))
+        # one group of positions, velocities and currents: each that an update asks for costs as much as its work
+        self._state = self.DeclareDiscreteState(np.concatenate([np.zeros(2 * n), np.full(2 * n, np.nan)]))
         self._mean = self.DeclareDiscreteState(np.zeros(n))
-        self._before = self.DeclareDiscreteState(np.full(2 * n, np.nan))
         self.DeclarePeriodicDiscreteUpdateEvent(step, 0.0, self._update)
         self.position = self.DeclareStateOutputPort("spool_position", self._mean)
 
@@ -74,7 +75,6 @@ class SolenoidSpool(LeafSystem):
         _advance(
             self._joints,
             values.get_mutable_value(self._state),
-            values.get_mutable_value(self._before),
             self.current.Eval(context),
             self._rest,
             self._step,

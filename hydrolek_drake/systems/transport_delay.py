@@ -28,28 +28,26 @@ def _take_in(
     command: np.ndarray,
     whole: np.ndarray,
     rest: np.ndarray,
-    row: np.ndarray,
     line: np.ndarray,
     out: np.ndarray,
 ) -> None:
-    """Write this step's voltages into the ring `line` (steps times n) and read the delayed ones from it."""
+    """Write this step's voltages into the ring `line` (steps times n, then its row) and read the delayed ones."""
     n = len(joints)
-    length = len(line) // n
-    newest = int(row[0])
+    length, newest = (len(line) - 1) // n, int(line[-1])
     for i in range(n):
         line[newest * n + i] = drive_voltage(command[i], joints[i])
         newer = line[((newest - whole[i]) % length) * n + i]
         older = line[((newest - whole[i] - 1) % length) * n + i]
         out[i] = newer + rest[i] * (older - newer)
-    row[0] = (newest + 1) % length
+    line[-1] = (newest + 1) % length
 
 
 @njit(cache=True)
 def _arriving(
-    joints: np.ndarray, command: np.ndarray, whole: np.ndarray, newest: int, line: np.ndarray, out: np.ndarray
+    joints: np.ndarray, command: np.ndarray, whole: np.ndarray, line: np.ndarray, out: np.ndarray
 ) -> None:
     n = len(joints)
-    length = len(line) // n
+    length, newest = (len(line) - 1) // n, int(line[-1])
     for i in range(n):
         if whole[i] == 0:
             out[i] = drive_voltage(command[i], joints[i])
@@ -80,9 +78,9 @@ class TransportDelay(LeafSystem):
         self._whole, self._rest = whole_steps_and_rest(joints, step)
         self._length = int(self._whole.max()) + 2
         self.command = self.DeclareVectorInputPort("command", n)
-        self._row = self.DeclareDiscreteState(np.zeros(1))
         self._none = np.zeros(n)
-        self._line = self.DeclareDiscreteState(np.zeros(self._length * n))
+        # one group: each that an update asks for costs as much as its work
+        self._line = self.DeclareDiscreteState(np.zeros(self._length * n + 1))
         self._out = self.DeclareDiscreteState(np.zeros(n))
         self.DeclarePeriodicDiscreteUpdateEvent(step, 0.0, self._update)
         self.voltage = self.DeclareStateOutputPort("voltage_delayed", self._out)
@@ -101,18 +99,15 @@ class TransportDelay(LeafSystem):
             self.command.Eval(context),
             self._whole,
             self._rest,
-            values.get_mutable_value(self._row),
             values.get_mutable_value(self._line),
             values.get_mutable_value(self._out),
         )
 
     def _calc_arriving(self, context: Context, output: BasicVector) -> None:
-        state = context.get_discrete_state()
         _arriving(
             self._joints,
             self.command.Eval(context) if self._at_once else self._none,
             self._whole,
-            int(state.get_value(self._row)[0]),
-            state.get_value(self._line),
+            context.get_discrete_state().get_value(self._line),
             output.get_mutable_value(),
         )
