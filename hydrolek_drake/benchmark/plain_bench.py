@@ -81,10 +81,10 @@ def simulate_plainly(rig: Rig, times: np.ndarray, volts: np.ndarray) -> np.ndarr
     state = np.array([0.0, 0.0, p_a, p_b, q, 0.0])
     delay = rig.value("command.delay")
     changes = np.flatnonzero(np.diff(volts, prepend=np.nan))
-    edges = [times[0], *(t for t in times[changes[1:]] + delay if t < times[-1]), times[-1]]
+    edges = [times[0], *(t for t in times[changes] + delay if t < times[-1]), times[-1]]
+    held_V = [0.0, *volts[changes]]  # nothing is driven before the first command has arrived
     angle = np.empty(len(times))
     for i, (begin, end) in enumerate(itertools.pairwise(edges)):
-        voltage = float(volts[changes[i]])
         inside = (times >= begin) & (times <= end)
         wanted = np.unique(np.concatenate([times[inside], [end]]))
         found = solve_ivp(
@@ -93,7 +93,7 @@ def simulate_plainly(rig: Rig, times: np.ndarray, volts: np.ndarray) -> np.ndarr
             state,
             "LSODA",
             wanted,
-            args=(voltage,),
+            args=(float(held_V[i]),),
             max_step=5e-4,
             rtol=1e-8,
             atol=_ABSOLUTE,
