@@ -18,6 +18,7 @@ from hydrolek_drake.diagnosis.effort import (
     NEARLY,
     POLISH,
 )
+from hydrolek_drake.diagnosis.moments import timed
 from hydrolek_drake.diagnosis.score import Score, gain_of_pair, scores_of
 from hydrolek_drake.diagnosis.unsticking import different, of_another_joint, unstuck
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
@@ -135,6 +136,9 @@ def grow(
     bound = HOPELESS * glances[0].fit.objective
     followed = [h for h in glances if h.fit.objective < bound][:FOLLOWED]
     looks = bench.side_by_side(lambda h: bench.refit(h, step, LOOK, tolerance=1e-4, alone=True), followed)
+    looks.sort(key=lambda h: h.fit.objective)
+    bound = UNDECIDED * looks[0].fit.objective
+    looks = [timed(bench, h, step) if h.fit.objective < bound else h for h in looks]
     looks.sort(key=lambda h: h.fit.objective)
     if looks[0].fit.over_noise > NEARLY:
         looks = unstuck(bench, glances, looks, step)

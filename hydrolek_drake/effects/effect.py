@@ -42,6 +42,7 @@ class Search:
         starts: where a search begins, all of them tried; a second sign is a start of its own.
         lowest: lower end of the range.
         log: whether the range is searched on a logarithmic scale.
+        moment: whether it is when something happens, which is not found by going downhill.
     """
 
     of: str
@@ -49,6 +50,7 @@ class Search:
     starts: tuple[float, ...]
     lowest: float = 0.0
     log: bool = False
+    moment: bool = False
 
 
 @dataclass(frozen=True)

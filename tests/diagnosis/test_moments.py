@@ -1,0 +1,35 @@
+"""A load that is picked up at some moment: least squares does not find the moment, going through all of them does."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from hydrolek_drake.diagnosis.candidates import candidates_of
+from hydrolek_drake.diagnosis.effort import GLANCE, LOOK
+from hydrolek_drake.diagnosis.moments import timed
+from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.parameter_set import free_parameters
+
+PICKED_UP = {"mass_kg": 8.0, "time_s": 5.3}
+
+
+def test_the_moment_of_a_pick_up_is_found_from_a_wrong_one(bench, recorded) -> None:
+    machine = bench.with_values({f"effects.load.payload.{name}": value for name, value in PICKED_UP.items()})
+    experiments = recorded(machine, bench, largest_V=5.0)
+    candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
+    payload = next(c for c in candidates if c.id == "load.payload")
+    with ThreadPoolExecutor(2) as pool:
+        workbench = Workbench(bench, free_parameters(bench), experiments, pool)
+        step = 2.0 * workbench.fine
+        glance = workbench.fit(
+            (payload,), {f"{payload.path}.time_s": 7.0, f"{payload.path}.mass_kg": 2.0}, step, GLANCE
+        )
+        stuck = workbench.refit(glance, step, LOOK, tolerance=1e-4)
+        found = timed(workbench, stuck, step)
+        plain = timed(workbench, workbench.fit((), {}, step, GLANCE), step)
+    assert stuck.fit.over_noise > 2.0
+    assert found.fit.over_noise < 1.1
+    assert found.values[f"{payload.path}.time_s"] == pytest.approx(PICKED_UP["time_s"], abs=0.05)
+    assert found.values[f"{payload.path}.mass_kg"] == pytest.approx(PICKED_UP["mass_kg"], rel=0.1)
+    assert not plain.effects
