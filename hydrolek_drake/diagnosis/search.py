@@ -133,7 +133,7 @@ def _worth_going_on(found: Search) -> bool:
 
 
 def fit_baseline(bench: Workbench) -> Hypothesis:
-    """The nominal model, from its own values and, if that does not reach the noise, from other places."""
+    """The nominal model, from its own values and the middle of its ranges, and led there by pulled rollouts."""
     coarse = COARSE * bench.fine
     centre = {free.path: free.from_unit(0.5) for free in bench.nominal}
     starts = (
@@ -142,6 +142,11 @@ def fit_baseline(bench: Workbench) -> Hypothesis:
         else [{}]
     )
     fits = bench.side_by_side(lambda start: bench.fit((), start, coarse, LOOK), starts)
+    if (
+        min(h.fit.over_noise for h in fits) > NEAR
+    ):  # stuck, perhaps: a healthy machine must not need an effect
+        pulled = fit_pulled(bench, (), [*starts, *(h.values for h in fits)], coarse, bench.training)
+        fits.append(bench.refit(pulled, coarse, LOOK))
     best = min(fits, key=lambda h: h.fit.objective)
     return bench.refit(best, bench.fine, POLISH if best.fit.over_noise < FAR else POLISH // 2)
 
