@@ -13,6 +13,7 @@ from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
 from hydrolek_drake.diagnosis.law_choice import with_law
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
+from hydrolek_drake.diagnosis.moments import intervals_of_moments
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
 from hydrolek_drake.diagnosis.score import Score
 from hydrolek_drake.diagnosis.search import Search, search
@@ -171,7 +172,10 @@ def diagnose(
         bench=bench,
         held_out=held_out,
         locations=places,
-        intervals=intervals_of(bench.parameters(best.effects), best.fit),
+        intervals={
+            **intervals_of(bench.parameters(best.effects), best.fit),
+            **intervals_of_moments(bench, best),
+        },
         law=law,
         proposal=propose(bench, conclusion, [j.hypothesis for j in judged]),
         seconds=clock.perf_counter() - begun,

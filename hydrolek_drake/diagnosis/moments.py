@@ -5,11 +5,12 @@ all, and from one move of the joint to the next they have hollows. So all moment
 """
 
 import itertools
-from collections.abc import Sequence
 
 import numpy as np
+from scipy.stats import chi2
 
 from hydrolek_drake.diagnosis.effort import LOOK
+from hydrolek_drake.diagnosis.intervals import CONFIDENCE, Interval
 from hydrolek_drake.diagnosis.score import Across
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.parameter_set import Free
@@ -57,6 +58,26 @@ def timed(bench: Workbench, hypothesis: Hypothesis, step: float) -> Hypothesis:
     return best
 
 
+def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis) -> dict[str, Interval]:
+    """Full path -> moment with its 95 % interval: all moments that the residuals do not tell from the best one.
+
+    A moment has no slope, so its interval is that of the likelihood ratio, all else changed along its tangents (Seber,
+    Wild, Nonlinear Regression, 1989, chapter 5).
+    """
+    found = {}
+    for free in _moments(hypothesis):
+        value, apart = hypothesis.values[free.path], (free.upper - free.lower) / GRID
+        tried = np.linspace(free.lower, free.upper, GRID + 1)
+        near = np.clip(value + apart * np.linspace(-2.0, 2.0, 4 * FINER + 1), free.lower, free.upper)
+        moments = np.unique([*tried, *near, value])
+        errors = _errors(bench, hypothesis, hypothesis.values, free, moments, bench.fine)
+        unlike = chi2.ppf(CONFIDENCE, 1) * max(1.0, hypothesis.fit.over_noise) ** 2
+        alike = np.flatnonzero(errors <= errors.min() + unlike)
+        low, high = max(alike[0] - 1, 0), min(alike[-1] + 1, len(moments) - 1)
+        found[free.path] = Interval(value, min(moments[low], value), max(moments[high], value))
+    return found
+
+
 def _moments(hypothesis: Hypothesis) -> list[Free]:
     return [
         free
@@ -71,10 +92,25 @@ def _best(
     hypothesis: Hypothesis,
     values: dict[str, float],
     free: Free,
-    moments: Sequence[float] | np.ndarray,
+    moments: np.ndarray,
     step: float,
 ) -> float:
-    """The moment that leaves least after the best change of all else; of a plateau, its middle."""
+    """The moment that leaves least; of a plateau, its middle."""
+    errors = _errors(bench, hypothesis, values, free, moments, step)
+    first = int(np.argmin(errors))
+    alike = len(list(itertools.takewhile(lambda e: e == errors[first], errors[first:])))
+    return float(moments[first + (alike - 1) // 2])
+
+
+def _errors(
+    bench: Workbench,
+    hypothesis: Hypothesis,
+    values: dict[str, float],
+    free: Free,
+    moments: np.ndarray,
+    step: float,
+) -> np.ndarray:
+    """Squared residuals that each moment leaves after the best change of all else. # (moments,)."""
     problem, across = bench.problem(hypothesis.effects, step), Across(hypothesis.fit)
 
     def error(moment: float) -> float:
@@ -83,8 +119,4 @@ def _best(
         left = across(np.concatenate([problem.residuals(unit), hypothesis.fit.off_prior]))
         return float(left @ left)
 
-    errors = bench.side_by_side(error, list(moments))
-    finite = np.nan_to_num(np.array(errors), nan=np.inf)
-    first = int(np.argmin(finite))
-    alike = len(list(itertools.takewhile(lambda e: e == finite[first], finite[first:])))
-    return float(moments[first + (alike - 1) // 2])
+    return np.nan_to_num(np.array(bench.side_by_side(error, list(moments))), nan=np.inf)

@@ -6,7 +6,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.effort import GLANCE, LOOK
-from hydrolek_drake.diagnosis.moments import timed
+from hydrolek_drake.diagnosis.moments import intervals_of_moments, timed
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -27,9 +27,12 @@ def test_the_moment_of_a_pick_up_is_found_from_a_wrong_one(bench, recorded) -> N
         )
         stuck = workbench.refit(glance, step, LOOK, tolerance=1e-4)
         found = timed(workbench, stuck, step)
+        known = intervals_of_moments(workbench, found)[f"{payload.path}.time_s"]
         plain = timed(workbench, workbench.fit((), {}, step, GLANCE), step)
     assert stuck.fit.over_noise > 2.0
     assert found.fit.over_noise < 1.1
     assert found.values[f"{payload.path}.time_s"] == pytest.approx(PICKED_UP["time_s"], abs=0.05)
     assert found.values[f"{payload.path}.mass_kg"] == pytest.approx(PICKED_UP["mass_kg"], rel=0.1)
+    assert known.low <= PICKED_UP["time_s"] <= known.high
+    assert 0.0 < known.high - known.low < 0.5
     assert not plain.effects
