@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.effort import AT_NOISE, NEARLY
-from hydrolek_drake.diagnosis.growing import FIDELITY, gain_needed
+from hydrolek_drake.diagnosis.growing import FIDELITY, GAIN_NEEDED, gain_needed
 from hydrolek_drake.diagnosis.search import Search, cost_of
 from hydrolek_drake.diagnosis.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -197,15 +197,22 @@ def predictive(residuals: np.ndarray, jacobian: np.ndarray, fit: Fit) -> tuple[f
 def pays(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
     """Whether every further effect also lowers the error of the training data by what chance could not.
 
-    Two fits of nearly the same model end in slightly different places; on held-out data that can look like
-    the gain of an effect that does next to nothing.
+    The same is asked of an effect in place of its special case. Two fits of nearly the same model end in slightly
+    different places; on held-out data that can look like the gain of an effect that does next to nothing.
     """
     return all(
-        other.fit.objective - hypothesis.fit.objective
-        >= gain_needed(other.fit) * len(hypothesis.ids - other.ids)
-        for other in others
-        if other.ids < hypothesis.ids
+        other.fit.objective - hypothesis.fit.objective >= _to_pay(hypothesis, other) for other in others
     )
+
+
+def _to_pay(hypothesis: Hypothesis, other: Hypothesis) -> float:
+    """Fall of the squared residuals that a hypothesis owes to another one that it contains; else minus infinity."""
+    own = [c for c in hypothesis.effects if c.size_path not in other.ids]
+    special = [c for c in other.effects if c.size_path not in hypothesis.ids]
+    if own and not special:
+        return gain_needed(other.fit) * len(own)
+    contained = [any(s.joint == c.joint and s.id in c.effect.contains for c in own) for s in special]
+    return GAIN_NEEDED * len(own) if special and all(contained) and len(own) == len(special) else -math.inf
 
 
 def judge_given_up(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> list[Judged]:

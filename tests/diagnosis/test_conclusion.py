@@ -91,3 +91,16 @@ def test_an_effect_that_gains_nothing_on_the_training_data_is_not_judged(effect)
     assert pays(alone, [nominal, alone, idle])
     assert not pays(idle, [nominal, alone, idle])
     assert pays(needed, [nominal, alone, needed])
+
+
+def test_an_effect_in_place_of_its_special_case_must_gain_on_the_training_data(effect) -> None:
+    leak, droop = effect["cylinder.cross_port_leakage"], effect["supply.pressure_droop"]
+    coulomb, stribeck = effect["cylinder.coulomb_friction"], effect["cylinder.stribeck_friction"]
+    special = _judged((leak, coulomb), 1.0).hypothesis
+    idle = _judged((leak, stribeck), (1.0 - 4.0 / COUNTED) ** 0.5).hypothesis
+    needed = _judged((leak, stribeck), (1.0 - 40.0 / COUNTED) ** 0.5).hypothesis
+    assert pays(special, [special, idle])
+    assert not pays(idle, [special, idle])
+    assert pays(needed, [special, needed])
+    other = _judged((droop, coulomb), 1.0).hypothesis  # no special case of what has the leak
+    assert pays(idle, [other, idle])
