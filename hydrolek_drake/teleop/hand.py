@@ -37,6 +37,18 @@ class Hand:
         self.set_point: Array | None = None
         self._towards: Array = np.zeros(_JOINTS)
 
+    def check(self, deflection: Array | None, towards: Array | None) -> Array | None:
+        """Numbers of a wish, as of `move`, within their ranges; None if there are none.
+
+        Raises:
+            InputError: Not 14 numbers, or one outside its range.
+        """
+        if deflection is not None:
+            return _checked(deflection, "deflections", np.full(_JOINTS, -_FULL), np.full(_JOINTS, _FULL), 1.0)
+        if towards is not None:
+            return _checked(towards, "angles", self._lower, self._upper, float(np.radians(1.0)))
+        return None
+
     def move(self, measured: Array, deflection: Array | None, towards: Array | None) -> None:
         """Take a wish of the hand; repeats keep the motion alive.
 
@@ -48,16 +60,13 @@ class Hand:
         Raises:
             InputError: Not 14 numbers, or one outside its range.
         """
+        values = self.check(deflection, towards)
         if self._blocked:
             return
-        if deflection is not None:
-            values = _checked(
-                deflection, "deflections", np.full(_JOINTS, -_FULL), np.full(_JOINTS, _FULL), 1.0
-            )
+        if values is not None and deflection is not None:
             self.deflection, self.set_point, self._kind = values, None, JOYSTICK
-        elif towards is not None:
-            degree = float(np.radians(1.0))
-            self._towards = _checked(towards, "angles", self._lower, self._upper, degree)
+        elif values is not None:
+            self._towards = values
             if self.moving() != SLIDERS or self.set_point is None:
                 self.set_point = np.clip(measured, self._lower, self._upper)
             self._kind = SLIDERS

@@ -150,9 +150,10 @@ class Machine:
             towards: Angles in rad, shape (14,), instead; the joints go there at the planner's speed.
 
         Raises:
-            InputError: A task is running or halted, or the link is lost.
+            InputError: A task is running or halted, the numbers are wrong, or the link is lost.
         """
         with self._lock:
+            self._hand.check(deflection, towards)  # told whatever state the link is in
             if self._lost:
                 raise InputError(self._lost)
             context: Any = self._simulator.get_mutable_context()

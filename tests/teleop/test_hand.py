@@ -113,3 +113,10 @@ def test_a_reading_beyond_a_stop_is_where_the_sliders_begin_from_the_stop():
     lower, _ = travel()
     hand.move(np.where(np.isfinite(lower), lower, 0.0) - 0.01, None, home_posture())
     assert (hand.step(0.0) >= np.where(np.isfinite(lower), lower, -np.inf) - 1e-12).all()
+
+
+def test_wrong_numbers_are_told_to_a_blocked_hand_too():
+    hand = Hand()
+    hand.block()
+    with pytest.raises(InputError, match="left_j7 = 200 is outside"):
+        hand.move(home_posture(), np.array([0.0] * 13 + [200.0]), None)
