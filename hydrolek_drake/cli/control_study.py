@@ -80,8 +80,7 @@ def tune(
     from hydrolek_drake.control.conditions import Condition, conditions_data, judged_conditions
     from hydrolek_drake.control.feedforward_tuning import FeedforwardTuning, tuning
     from hydrolek_drake.control.judging import make_cases
-    from hydrolek_drake.control.rate_map import rig_rate_map
-    from hydrolek_drake.control.rig_model import one_joint, rig_model, step_tests
+    from hydrolek_drake.control.rate_map import rig_model_and_rates
     from hydrolek_drake.control.tuning import tune as search
     from hydrolek_drake.rigs import load_rig
 
@@ -99,11 +98,7 @@ def tune(
 
     interrupted = False
     with Console(stderr=True).status("tuning"):
-        maps = {}
-        for name, rig in rigs.items():
-            record = one_joint(rig, name)
-            tests = step_tests(record, step)
-            maps[name] = rig_rate_map(record, rig_model(rig, name, tests), tests, step)
+        maps = {name: rig_model_and_rates(rig, name)[1] for name, rig in rigs.items()}
         cases = make_cases(joints, judged_conditions(), step)
         cases += make_cases(joints, [half] * machines, step, generator)
         try:

@@ -20,8 +20,7 @@ from hydrolek_drake.control.pi import PiLaw
 from hydrolek_drake.control.pid import PidLaw
 from hydrolek_drake.control.pip import PipLaw
 from hydrolek_drake.control.rate_control import RateLaw
-from hydrolek_drake.control.rate_map import RateMap, map_from_model, rig_rate_map
-from hydrolek_drake.control.rig_model import one_joint, rig_model, step_tests
+from hydrolek_drake.control.rate_map import RateMap, map_from_model, rig_model_and_rates
 from hydrolek_drake.control.scaled_input import DirectInput, ScaledInput
 from hydrolek_drake.control.sdp_model import SdpModel, thesis_model
 from hydrolek_drake.control.thesis_gains import (
@@ -81,9 +80,7 @@ def rig_setting(rig: Rig, joint: str) -> JointSetting:
     Raises:
         InputError: no such joint, not a turning joint, or one that does not move.
     """
-    longest_step = rig.value("integration.longest_step")
-    tests = step_tests(one_joint(rig, joint), longest_step)
-    model = rig_model(rig, joint, tests)
+    model, rates = rig_model_and_rates(rig, joint)
     record = rig.records()[rig.joints.index(joint)]["command"]
     if rig.variant(joint, "command") == "calibrated":
         full = signal_limit()
@@ -97,7 +94,6 @@ def rig_setting(rig: Rig, joint: str) -> JointSetting:
     data = chosen()["like"]
     like = data[number]["value"] if number in data else number
     known = like in ("j1", "j2", "j3", "j4")
-    rates = rig_rate_map(one_joint(rig, joint), model, tests, longest_step)
     return JointSetting(
         model,
         scaling,

@@ -5,9 +5,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.control.rig_model import StepTests, ends_left_out, joint_range_deg, run_step
+from hydrolek_drake.control.rig_model import (
+    StepTests,
+    ends_left_out,
+    joint_range_deg,
+    one_joint,
+    rig_model,
+    run_step,
+    step_tests,
+)
 from hydrolek_drake.control.sdp_model import SdpModel, thesis_data
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.rigs import Rig
 
 MODEL_POINTS = 40
 """Points of an SDP model's law in its rate map."""
@@ -139,10 +148,17 @@ def rate_shape(record: np.ndarray, sign: float, longest_step: float) -> tuple[fl
     return tuple(map(float, fitted / middle))
 
 
-def rig_rate_map(record: np.ndarray, model: SdpModel, tests: StepTests, longest_step: float) -> RateMap:
-    """Rate map of a rig's joint by its simulated step tests, record of shape (1,)."""
+def rig_model_and_rates(rig: Rig, joint: str) -> tuple[SdpModel, RateMap]:
+    """SDP model and rate map of a rig's joint, from the same simulated step tests.
+
+    Raises:
+        InputError: no such joint, no turning joint, or one that does not move.
+    """
+    record, longest_step = one_joint(rig, joint), rig.value("integration.longest_step")
+    tests = step_tests(record, longest_step)
+    model = rig_model(rig, joint, tests)
     shapes = (rate_shape(record, -1.0, longest_step), rate_shape(record, 1.0, longest_step))
-    return map_from_tests(tests, shapes, model)
+    return model, map_from_tests(tests, shapes, model)
 
 
 def rate_at(direction: Direction, size_V: float) -> float:

@@ -137,8 +137,8 @@ def grow(
     followed = [h for h in glances if h.fit.objective < bound][:FOLLOWED]
     looks = bench.side_by_side(lambda h: bench.refit(h, step, LOOK, tolerance=1e-4, alone=True), followed)
     looks.sort(key=lambda h: h.fit.objective)
-    bound = UNDECIDED * looks[0].fit.objective
-    looks = [timed(bench, h, step) if h.fit.objective < bound else h for h in looks]
+    alike = UNDECIDED * looks[0].fit.objective
+    looks = [timed(bench, h, step) if h.fit.objective < alike else h for h in looks]
     looks.sort(key=lambda h: h.fit.objective)
     if looks[0].fit.over_noise > NEARLY:
         looks = unstuck(bench, glances, looks, step)

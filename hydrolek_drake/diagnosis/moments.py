@@ -45,11 +45,11 @@ def timed(bench: Workbench, hypothesis: Hypothesis, step: float) -> Hypothesis:
         for free in moments:
             apart = (free.upper - free.lower) / GRID
             tried = np.linspace(free.lower, free.upper, GRID + 1)
-            values = {**values, free.path: _best(bench, best, values, free, tried, step)}
+            values = {**values, free.path: _best(tried, _errors(bench, best, values, free, tried, step))}
             for _ in range(TIMES_FINER):
                 near = values[free.path] + apart * np.linspace(-1.0, 1.0, 2 * FINER + 1)
                 tried = np.unique(np.clip(near, free.lower, free.upper))
-                values = {**values, free.path: _best(bench, best, values, free, tried, step)}
+                values = {**values, free.path: _best(tried, _errors(bench, best, values, free, tried, step))}
                 apart /= FINER
         again = bench.fit(hypothesis.effects, values, step, LOOK, tolerance=1e-4)
         best = min((again, best), key=lambda h: h.fit.objective)
@@ -87,16 +87,8 @@ def _moments(hypothesis: Hypothesis) -> list[Free]:
     ]
 
 
-def _best(
-    bench: Workbench,
-    hypothesis: Hypothesis,
-    values: dict[str, float],
-    free: Free,
-    moments: np.ndarray,
-    step: float,
-) -> float:
+def _best(moments: np.ndarray, errors: np.ndarray) -> float:
     """The moment that leaves least; of a plateau, its middle."""
-    errors = _errors(bench, hypothesis, values, free, moments, step)
     first = int(np.argmin(errors))
     alike = len(list(itertools.takewhile(lambda e: e == errors[first], errors[first:])))
     return float(moments[first + (alike - 1) // 2])
