@@ -216,7 +216,7 @@ def by_joystick(operator, plan, pipe, arms, goals: list[Goal], settings: dict, s
 
 def automatically(plan, pipe, arms) -> dict:
     """Sequencer and plant until the jaw has closed."""
-    sequencer, period = Simulator(TaskSequencer()), teleop_entries("task")["period"]
+    sequencer = Simulator(TaskSequencer())
     system, own = sequencer.get_system(), sequencer.get_mutable_context()
     measured, pushed, closing = arms.advance(), 0.0, None
     system.start(own, plan, measured)
@@ -227,7 +227,7 @@ def automatically(plan, pipe, arms) -> dict:
             closing = arms.position()
         system.position_measured_input.FixValue(own, measured)
         system.order_input.FixValue(own, [0.0])
-        sequencer.AdvanceTo(own.get_time() + period)
+        sequencer.AdvanceTo(system.one_update_on(own))
         measured = arms.advance(decode(encode(system.position_desired_output.Eval(own))))
     done = system.step_name(own) == STEPS[3]
     return {"seconds": own.get_time(), "finished": done} | outcome(arms, pipe, closing, pushed)

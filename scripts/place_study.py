@@ -17,7 +17,6 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.teleop.clicks import Clicks, Task
-from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.hydraulic_arms import HydraulicArms, joint_settings
 from hydrolek_drake.teleop.link import decode, encode
 from hydrolek_drake.teleop.place_plan import plan_place_by_either
@@ -47,7 +46,7 @@ def planned(pipe, table, place: tuple[float, float], seed: int):
 
 def carry_out(plan, arms: HydraulicArms, table) -> dict:
     """Sequencer and plant a sample at a time; set points are withdrawn as the jaw opens, as the console does."""
-    sequencer, period = Simulator(TaskSequencer()), teleop_entries("task")["period"]
+    sequencer = Simulator(TaskSequencer())
     system, own = sequencer.get_system(), sequencer.get_mutable_context()
     measured = arms.advance()
     system.start(own, plan, measured)
@@ -55,7 +54,7 @@ def carry_out(plan, arms: HydraulicArms, table) -> dict:
     while system.mode(own) is Mode.RUNNING:
         system.position_measured_input.FixValue(own, measured)
         system.order_input.FixValue(own, [0.0])
-        sequencer.AdvanceTo(own.get_time() + period)
+        sequencer.AdvanceTo(system.one_update_on(own))
         if system.step_name(own) != step:
             ends[step] = own.get_time()
             step = system.step_name(own)

@@ -76,7 +76,7 @@ def carry_out(plan, side: str, arms) -> dict:
 
     The tool is taken when the gripper is told to close; the blade's cutting point during the step of the cut.
     """
-    sequencer, period = Simulator(TaskSequencer()), teleop_entries("task")["period"]
+    sequencer = Simulator(TaskSequencer())
     system, own = sequencer.get_system(), sequencer.get_mutable_context()
     measured = arms.advance(home_posture())
     system.start(own, plan, measured)
@@ -92,7 +92,7 @@ def carry_out(plan, side: str, arms) -> dict:
             cut.append(arms.position())
         system.position_measured_input.FixValue(own, measured)
         system.order_input.FixValue(own, [0.0])
-        sequencer.AdvanceTo(own.get_time() + period)
+        sequencer.AdvanceTo(system.one_update_on(own))
         measured = arms.advance(decode(encode(system.position_desired_output.Eval(own))))
         worst = max(
             worst, float(np.abs(measured - desired)[:5].max()), float(np.abs(measured - desired)[7:12].max())

@@ -13,7 +13,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.arms_end import ArmsEnd
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.hand import JOYSTICK, SLIDERS, Hand
-from hydrolek_drake.teleop.link import SetpointClient
+from hydrolek_drake.teleop.link import SetpointClient, silence
 from hydrolek_drake.teleop.plan import OPENING, TaskPlan
 from hydrolek_drake.teleop.plant_process import PlantProcess
 from hydrolek_drake.teleop.sequencer import Mode, Order, TaskSequencer
@@ -26,6 +26,10 @@ Array = NDArray[np.float64]
 _WITHDRAWN = 4
 """Periods without a set point before a task, and before the jaw opens: more than one, since one may come between two
 samples of the controllers, and twice that where the plant falls behind."""
+
+_SIGN_OF_LIFE = 0.5
+"""A plant that is slow hears its set points again after this share of the silence by which it would count the link as
+lost."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +96,7 @@ class Machine:
     ) -> None:
         self._plant, self._pipe = plant, pipe
         self._signals: Signals | None = None
-        self._plant_time = -1.0
+        self._plant_time, self._sent_at = -1.0, -np.inf
         if plant is not None:
             controllers = ("127.0.0.1", plant.port)
         self._arms = ArmsEnd(posture, port=0, pipe=pipe, table=table) if controllers is None else None
@@ -230,6 +234,12 @@ class Machine:
 
     def _behind(self) -> bool:
         """Whether the plant has not simulated another period yet: on a slow computer the task waits for it."""
+        if self._plant is None or self._client is None:
+            return False
+        try:
+            self._signals = self._client.signals()
+        except InputError as error:
+            self._lose(str(error))
         if self._signals is None:
             return False
         before, self._plant_time = self._plant_time, self._signals.time
@@ -240,7 +250,8 @@ class Machine:
 
         Args:
             order: Of the operator.
-            waiting: Whether the task's time stands still.
+            waiting: Whether the task's time stands still, and no set point is sent either: the same one again would
+                look like a target that stands still.
         """
         context: Any = self._simulator.get_mutable_context()
         if not waiting:
@@ -249,21 +260,22 @@ class Machine:
             self._free_the_jaw(self._sequencer.step_name(context))
         if self._client is None:
             return
-        try:
-            self._measured = self._exchange(self._client, context)
-            if self._plant is not None:
-                self._signals = self._client.signals()
-        except InputError as error:
-            self._lose(context, str(error))
+        if not waiting or time.monotonic() - self._sent_at > _SIGN_OF_LIFE * silence(self._rate):
+            self._sent_at = time.monotonic()
+            try:
+                self._measured = self._exchange(self._client, context)
+            except InputError as error:
+                self._lose(str(error))
         if self._arms is not None:
             self._measured = self._arms.advance()
 
     def _advance(self, context: Any, order: Order) -> None:
         self._sequencer.order_input.FixValue(context, [float(order)])
-        self._simulator.AdvanceTo(context.get_time() + self._step_period)
+        self._simulator.AdvanceTo(self._sequencer.one_update_on(context))
 
-    def _lose(self, context: Any, reason: str) -> None:
+    def _lose(self, reason: str) -> None:
         """The link is lost: the task stops, and goes on only if the operator says so."""
+        context: Any = self._simulator.get_mutable_context()
         if self._client is not None:
             self._client.close()
         self._lost, self._client, self._signals = reason, None, None

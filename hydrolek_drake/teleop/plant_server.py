@@ -32,7 +32,11 @@ _PACE_WINDOW = 20  # samples over which the pace is measured
 
 
 class Pacer:
-    """Keeps a plant to the clock, in step with the messages that come once a period.
+    """Keeps a plant to the clock, one sample for each message while messages come.
+
+    A controller that took a sample without a new set point would see the machine's target stand still and then jump.
+    On a busy computer the plant therefore waits for a message that is late, for `plant.patience`; without a client it
+    does not.
 
     Args:
         server: Whose messages are waited for.
@@ -43,13 +47,14 @@ class Pacer:
         self._server, self._period = server, sample_s() / realtime_rate
         entries = teleop_entries("plant")
         self._lead, self._lag = entries["lead"] / realtime_rate, entries["lag"] / realtime_rate
+        self._patience, self._followed = entries["patience"] / realtime_rate, False
         self._due = time.monotonic()
         self._began = [self._due]
 
     def wait(self) -> None:
         """Return when the next sample is to be simulated: at a message, or when none comes in time."""
-        late = self._due + 0.5 * self._period
-        self._server.message_came.wait(timeout=max(0.0, late - time.monotonic()))
+        late = self._due + (self._patience if self._followed else 0.5 * self._period)
+        self._followed = self._server.message_came.wait(timeout=max(0.0, late - time.monotonic()))
         self._server.message_came.clear()
         time.sleep(max(0.0, self._due - self._lead - time.monotonic()))
         now = time.monotonic()

@@ -1,5 +1,6 @@
 """The task sequence as a Drake system: set points, tolerances, time-outs, stop, resume, abort."""
 
+import math
 from enum import IntEnum
 from typing import Any
 
@@ -106,6 +107,14 @@ class TaskSequencer(LeafSystem):
     def mode(self, context: Context) -> Mode:
         """What the sequencer does now."""
         return Mode(int(context.get_discrete_state(self._clock).value()[0]))
+
+    def one_update_on(self, context: Context) -> float:
+        """Time in s to advance to so that exactly one more update is made, half a period after it.
+
+        At the updates' own times rounding would sometimes leave one out and make two the next time.
+        """
+        period = self._values["period"]
+        return float((math.floor(context.get_time() / period + 0.75) + 0.5) * period)
 
     def step_name(self, context: Context) -> str:
         """Name of the current step, empty where there is none."""

@@ -101,6 +101,20 @@ def test_a_cluster_of_processes_one_of_which_is_killed_gives_the_same_search():
     np.testing.assert_array_equal(alone.scores, together.scores)
 
 
+def test_an_objective_that_a_cluster_has_lost_is_sent_again():
+    from distributed import LocalCluster
+
+    with (
+        LocalCluster(
+            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None, silence_logs=50
+        ) as cluster,
+        ClusterWorkers(Bowl(), cluster.scheduler_address) as evaluate,
+    ):
+        evaluate._client.cancel(evaluate._sent, force=True)
+        assert same(evaluate(POINTS), expected(None))
+        assert same(evaluate(POINTS), expected(None))
+
+
 def test_a_cluster_that_is_not_there_is_refused(monkeypatch):
     monkeypatch.setattr("hydrolek_drake.identification.search.cluster.CONNECT_WITHIN", 1.0)
     with pytest.raises(InputError, match="no Dask scheduler answers there"):

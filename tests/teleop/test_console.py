@@ -205,8 +205,9 @@ def test_a_joystick_over_the_socket_stops_with_the_browser_that_holds_it():
         while (await _state(first))["state"]["angles_deg"][0] <= home:
             assert await _ask(first, right) == ""
         first.close()
-        while (await _state(second))["state"]["manual"]:
-            pass
+        for moving in (True, False):  # what waits to be read tells how it began, too
+            while bool((await _state(second))["state"]["manual"]) is not moving:
+                pass
         state = (await _state(second))["state"]
         assert not state["valves_open"]
         await asyncio.sleep(0.2)

@@ -44,9 +44,10 @@ def _until(condition, seconds):
 def _watch(port):
     """A client that asks for signals alone, which opens no valve."""
     client = None
-    limit = time.monotonic() + 3.0
+    limit = time.monotonic() + PATIENCE
     while client is None:
         assert time.monotonic() < limit
+        time.sleep(0.05)
         client = SetpointClient(port)
         try:
             client.signals()

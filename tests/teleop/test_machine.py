@@ -2,6 +2,7 @@
 
 import threading
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,8 +10,11 @@ import pytest
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.arms_end import ArmsEnd
 from hydrolek_drake.teleop.configuration import teleop_entries
+from hydrolek_drake.teleop.link import SetpointServer
 from hydrolek_drake.teleop.machine import Machine
+from hydrolek_drake.teleop.plant_server import Pacer
 from hydrolek_drake.teleop.sequencer import Mode, Order
+from hydrolek_drake.teleop.signals import Signals
 from hydrolek_drake.workcell.scene import home_posture
 
 
@@ -93,3 +97,62 @@ def test_a_link_that_comes_back_moves_nothing_until_the_operator_resumes(machine
     machine.order(Order.RESUME)
     _until(lambda: machine.state().mode is not Mode.RUNNING)
     assert machine.state().mode is Mode.DONE
+
+
+def test_a_slow_plant_gets_every_set_point_of_a_task_once(plan):
+    rate, samples, ended = 5.0, [], threading.Event()
+    server = SetpointServer(home_posture(), port=0, realtime_rate=rate)
+    nothing = {name: np.zeros(14) for name in ("voltage", "pressure_a", "pressure_b", "potentiometer")}
+
+    def simulate():
+        count = 0
+        while not ended.is_set():
+            if not server.message_came.wait(0.1):
+                continue
+            server.message_came.clear()
+            order = server.order()
+            time.sleep(0.03)  # three periods for each sample
+            if order.valves_open:
+                samples.append(order.desired)
+            count += 1
+            time_s = 0.05 * count
+            server.report(
+                order.desired, Signals(time=time_s, supply_pressure=0.0, grip=np.zeros(2), **nothing)
+            )
+
+    threading.Thread(target=simulate, daemon=True).start()
+    server.report(home_posture(), Signals(time=0.0, supply_pressure=0.0, grip=np.zeros(2), **nothing))
+    machine = Machine(
+        home_posture(), plant=SimpleNamespace(port=server.port, close=lambda: None), realtime_rate=rate
+    )
+    try:
+        machine.start(plan)
+        _until(lambda: len(samples) >= 30)
+    finally:
+        ended.set()
+        machine.close()
+        server.close()
+    period, path = teleop_entries("task")["period"], plan.steps[0].trajectory
+    wanted = [path.value(period * k)[:, 0] for k in range(40)]
+    first = int(np.argmin([np.abs(samples[0] - w).max() for w in wanted]))
+    np.testing.assert_allclose(samples[:25], wanted[first : first + 25], atol=np.radians(1e-3))
+
+
+def test_a_plant_waits_for_late_messages_and_not_for_none():
+    server = SimpleNamespace(message_came=threading.Event())
+    pacer, counts, waited = Pacer(server, 0.25), [], []
+
+    def simulate():
+        while len(waited) < 12:
+            pacer.wait()
+            waited.append(time.monotonic())
+
+    plant = threading.Thread(target=simulate, daemon=True)
+    plant.start()
+    for _ in range(6):
+        server.message_came.set()
+        time.sleep(0.5)  # two and a half periods, less than the patience
+        counts.append(len(waited))
+    np.testing.assert_array_equal(np.diff(counts[1:]), 1)
+    plant.join(timeout=20.0)
+    assert len(waited) == 12

@@ -29,7 +29,7 @@ class Rig:
         for _ in range(count):
             self.system.position_measured_input.FixValue(self.context, self.position)
             self.system.order_input.FixValue(self.context, [float(self.order)])
-            self.simulator.AdvanceTo(self.context.get_time() + PERIOD)
+            self.simulator.AdvanceTo(self.system.one_update_on(self.context))
             if not self.jammed and self.open():
                 self.position = self.desired() - self.lag
 
@@ -48,6 +48,13 @@ def test_ports_and_feedthrough():
     assert not system.HasAnyDirectFeedthrough()
     assert [system.get_input_port(i).get_name() for i in range(2)] == ["position_measured", "order"]
     assert system.position_desired_output.size() == 14 and system.progress_output.size() == 4
+
+
+def test_one_update_at_a_time_whatever_rounding_does(plan):
+    rig, path = Rig(plan), plan.steps[0].trajectory
+    for k in range(1, int(path.end_time() / PERIOD)):
+        rig.advance()
+        np.testing.assert_allclose(rig.desired(), path.value(k * PERIOD)[:, 0], atol=1e-12)
 
 
 def test_idle_holds_the_measured_position_with_closed_valves():

@@ -45,7 +45,7 @@ class ClusterWorkers:
                 f"--cluster {address}: the scheduler has no workers; start 'dask worker {address}'"
             )
         self._objective = objective
-        self._sent = self._client.scatter(objective, broadcast=True)
+        self._send()
 
     def __enter__(self) -> "ClusterWorkers":
         return self
@@ -62,6 +62,10 @@ class ClusterWorkers:
             self._round(points, [np.array([i]) for i in chunk], values, threads)
         return values
 
+    def _send(self) -> None:
+        """Give the objective to all workers."""
+        self._sent = self._client.scatter(self._objective, broadcast=True)
+
     def _round(
         self,
         points: Sequence[np.ndarray],
@@ -70,9 +74,6 @@ class ClusterWorkers:
         threads: int,
     ) -> list[np.ndarray]:
         """Evaluate chunks; returns those that came to nothing."""
-        from distributed import TimeoutError as DaskTimeoutError
-        from distributed import wait
-
         futures = [
             self._client.submit(
                 evaluate_chunk, self._sent, [points[i] for i in chunk], pure=False, retries=RETRIES
@@ -83,10 +84,7 @@ class ClusterWorkers:
         longest = (
             None if self.overdue is None else self.overdue * rounds * max(len(chunk) for chunk in chunks)
         )
-        try:
-            wait(futures, timeout=longest)
-        except (DaskTimeoutError, TimeoutError):
-            self._client.cancel([future for future in futures if not future.done()], force=True)
+        self._wait(futures, longest)
         missed = []
         for chunk, future in zip(chunks, futures, strict=True):
             if future.status != "finished":
@@ -95,3 +93,17 @@ class ClusterWorkers:
             for i, value in zip(chunk, future.result(), strict=True):
                 values[int(i)] = value
         return missed
+
+    def _wait(self, futures: Sequence[Any], longest: float | None) -> None:
+        """Until every future has a value, has failed, is overdue, or was lost with what it needs."""
+        from distributed import TimeoutError as DaskTimeoutError
+        from distributed import wait
+        from distributed.client import FuturesCancelledError
+
+        try:
+            wait(futures, timeout=longest)
+        except (DaskTimeoutError, TimeoutError):
+            self._client.cancel([future for future in futures if not future.done()], force=True)
+        except FuturesCancelledError:  # the objective was lost with a worker
+            self._send()
+            self._wait([future for future in futures if not future.cancelled()], longest)
