@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from hydrolek_drake.diagnosis.balance import squares_of
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, EXPLAINED_AHEAD, MATERIAL, Conclusion
 from hydrolek_drake.diagnosis.evidence import Judged
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
@@ -60,14 +61,34 @@ def _law_and_model(
     no material part of the error are left out from the beginning, and so are all where the law alone explains the data.
     """
     alone = find_law(bench, nominal, held_out, scales)
-    immaterial = best.half_chi_squared > MATERIAL * nominal.half_chi_squared
-    if immaterial or (alone is not None and _explains(alone)):
+    if _immaterial(best, nominal) or (alone is not None and _explains(alone)):
         return alone, nominal
     law = find_law(bench, best, held_out, scales)
     to_beat = SIMPLER * law.held_out_over_noise if law is not None else best.over_noise
     if alone is not None and alone.held_out_over_noise < to_beat:
         return alone, nominal
     return law, best
+
+
+def material(conclusion: Conclusion, judged: Sequence[Judged], held_out: Sequence[Experiment]) -> Conclusion:
+    """The conclusion without effects that take no material part of any signal's error.
+
+    Args:
+        conclusion: of signals that count alike (`balance`), beside which no law was found.
+        judged: all hypotheses that were held against held-out data.
+        held_out: these data.
+    """
+    nominal = next(j for j in judged if not j.hypothesis.effects)
+    if conclusion.verdict != "unlisted_physics" or conclusion.best.over_noise > nominal.over_noise:
+        return replace(conclusion, best=nominal)
+    left = [squares_of(j.held_out, held_out) for j in (conclusion.best, nominal)]
+    if any(left[0][key] < MATERIAL * left[1][key] for key in left[1]):
+        return conclusion
+    return replace(conclusion, best=nominal)
+
+
+def _immaterial(best: Judged, nominal: Judged) -> bool:
+    return best.half_chi_squared > MATERIAL * nominal.half_chi_squared
 
 
 def _explains(law: FoundLaw) -> bool:

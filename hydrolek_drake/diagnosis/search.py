@@ -16,7 +16,7 @@ from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
 MATERIAL_GAIN = 0.3
 """A third effect is also looked for if one promises to take this share of the squared residuals: far from the noise,
-as on real machines."""
+as on real machines. Where several signals count alike, of one signal's part of them."""
 
 FIRST_SHARE = 0.1
 """A first effect must take this share of the squared residuals of a nominal model that is far from the noise, or no
@@ -90,7 +90,7 @@ def search(
     found.scores = scores_of(bench, baseline, candidates, bench.fine)
     found.left = found.scores
     beam = [baseline]
-    while found.rounds < MOST_EFFECTS and _worth_going_on(found):
+    while found.rounds < MOST_EFFECTS and _worth_going_on(found, MATERIAL_GAIN / bench.alike):
         found.rounds += 1
         say(f"fitting models with {_words(found.rounds)}")
         more = grow(bench, beam, candidates, found.scores, found.best.fit.over_noise)
@@ -113,7 +113,7 @@ def _words(count: int) -> str:
     return {1: "one effect", 2: "two effects"}.get(count, f"{count} effects")
 
 
-def _worth_going_on(found: Search) -> bool:
+def _worth_going_on(found: Search, material: float) -> bool:
     """Whether anything is left over, and some effect promises to take a part of it."""
     best = found.best
     if found.rounds and len(best.effects) < found.rounds:
@@ -127,7 +127,7 @@ def _worth_going_on(found: Search) -> bool:
     ):
         return False
     promised = found.left[0].gain
-    if found.rounds >= 2 and best.fit.over_noise > NEARLY and promised < MATERIAL_GAIN * best.fit.objective:
+    if found.rounds >= 2 and best.fit.over_noise > NEARLY and promised < material * best.fit.objective:
         return False
     return promised > gain_needed(best.fit)
 

@@ -1,5 +1,7 @@
 """A diagnosis in the words of an engineer."""
 
+from collections.abc import Sequence
+
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
@@ -85,8 +87,8 @@ def headline(diagnosis: Diagnosis) -> str:
             f"Nothing is missing: the nominal model, with its own parameters fitted, predicts the held-out data "
             f"to {after} the noise."
         )
-    names = " and ".join(c.effect.title for c in best.hypothesis.effects)
-    stages = " and ".join(dict.fromkeys(c.effect.stage for c in best.hypothesis.effects))
+    names = _listed([c.effect.title for c in best.hypothesis.effects])
+    stages = ", ".join(dict.fromkeys(c.effect.stage for c in best.hypothesis.effects))
     if diagnosis.verdict == "missing_physics":
         return (
             f"Missing from the model: {names} ({stages}). With it the error on held-out data falls from "
@@ -124,6 +126,14 @@ def headline(diagnosis: Diagnosis) -> str:
 def law_sentence(law: FoundLaw) -> str:
     """The law for physics in no list, and how well it does."""
     return f"{law.equation()} leaves {_ratio(law.held_out_over_noise)} the noise on held-out data."
+
+
+def _listed(titles: Sequence[str]) -> str:
+    """Titles in a row; with semicolons, since a title may have an 'and' of its own."""
+    if len(titles) < 2:
+        return "".join(titles)
+    joined = any(" and " in title for title in titles) or len(titles) > 2
+    return "; ".join(titles) if joined else " and ".join(titles)
 
 
 def _ratio(over_noise: float) -> str:

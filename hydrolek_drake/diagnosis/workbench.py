@@ -101,6 +101,12 @@ class Workbench:
         """The rig's own integration step [s]."""
         return self.training[0].longest_step
 
+    @property
+    def alike(self) -> int:
+        """How many signals count alike, see `balance`; 1 where each counts by its noise."""
+        channels = {c.key: c.widened for experiment in self.training for c in experiment.channels}
+        return len(channels) if any(widened > 1.0 for widened in channels.values()) else 1
+
     def parameters(self, effects: Sequence[Candidate]) -> ParameterSet:
         """The searched parameters of the nominal model with these effects."""
         key = key_of(effects)

@@ -39,6 +39,7 @@ class Channel:
             nothing. # (n,)
         blur: what averaging over blocks of samples adds, sample by sample; None for a recording that is kept as
             it is. # (n,)
+        widened: factor for all of this where no model comes near the noise, see `diagnosis.balance`.
     """
 
     key: str
@@ -48,6 +49,7 @@ class Channel:
     noise: float
     model_error: np.ndarray | None = None
     blur: np.ndarray | None = None
+    widened: float = 1.0
 
     @property
     def deviation(self) -> np.ndarray | float:
@@ -56,7 +58,7 @@ class Channel:
         for error in (self.model_error, self.blur):
             if error is not None:
                 variance = variance + error**2
-        return self.noise if isinstance(variance, float) else np.sqrt(variance)
+        return self.widened * (self.noise if isinstance(variance, float) else np.sqrt(variance))
 
     def until(self, count: int) -> "Channel":
         """Its first so many samples."""
