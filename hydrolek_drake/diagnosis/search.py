@@ -101,9 +101,12 @@ def search(
         for hypothesis in grown:
             found.keep(hypothesis)
         _prune(bench, found, found.best, candidates)
-        if found.best.fit.over_noise > AT_NOISE:
-            _widen(bench, found, found.best, candidates)
+        pruned = found.best
+        if pruned.fit.over_noise > AT_NOISE:
+            _widen(bench, found, pruned, candidates)
             _lead_on(bench, found)
+        if found.best.ids != pruned.ids:  # in its place an effect may have become needless
+            _prune(bench, found, found.best, candidates)
         beam = [h for h in grown if h.fit.objective < HOPELESS * grown[0].fit.objective][:BEAM]
         beam = [found.best] if found.best.fit.over_noise < NEAR else beam
         found.left = scores_of(bench, found.best, candidates, bench.fine)
