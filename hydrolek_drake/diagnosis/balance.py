@@ -26,17 +26,18 @@ UNEQUAL = 2.0
 """Signals are weighed anew if one is followed worse than another by this factor at least."""
 
 
-def weights_by(bench: Workbench, best: Hypothesis, experiments: Sequence[Experiment]) -> dict[str, float]:
+def weights_by(bench: Workbench, best: Hypothesis) -> dict[str, float]:
     """Factor for the deviation of every signal's noise, by key; empty where they are followed about equally.
 
     Args:
-        bench: fits.
+        bench: fits, and the training data.
         best: the model that comes nearest.
-        experiments: what it was fitted to.
     """
-    problem = bench.problem(best.effects, bench.fine, experiments)
-    residuals = problem.residuals(problem.parameters.unit(best.values))
-    squares, counted = squares_of(residuals, experiments), counted_of(experiments)
+    squares = squares_of(bench.residuals(best, bench.training, bench.fine), bench.training)
+    counted: dict[str, int] = defaultdict(int)
+    for experiment in bench.training:
+        for channel in experiment.channels:
+            counted[channel.key] += experiment.counted_of(channel)
     ratios = {key: (squares[key] / counted[key]) ** 0.5 for key in squares if counted[key]}
     aim = max(FAR, min(ratios.values()))
     if max(ratios.values()) < UNEQUAL * aim:
@@ -54,15 +55,6 @@ def squares_of(residuals: np.ndarray, experiments: Sequence[Experiment]) -> dict
             place += experiment.time.size
             squares[channel.key] += float(own @ own)
     return squares
-
-
-def counted_of(experiments: Sequence[Experiment]) -> dict[str, int]:
-    """How many measured values of every signal count, by key."""
-    counted: dict[str, int] = defaultdict(int)
-    for experiment in experiments:
-        for channel in experiment.channels:
-            counted[channel.key] += int((experiment.used & np.isfinite(channel.measured)).sum())
-    return counted
 
 
 def weighed(experiments: Sequence[Experiment], weights: dict[str, float]) -> tuple[Experiment, ...]:

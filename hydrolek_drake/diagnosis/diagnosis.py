@@ -149,9 +149,8 @@ def diagnose(
             remarks = [MIXED]
     conclusion = known.conclusion
     law: FoundLaw | None = None
-    if (
-        known.interrupted and conclusion.verdict == "unlisted_physics"
-    ):  # not every known effect has been tried
+    # not every known effect has been tried
+    if known.interrupted and conclusion.verdict == "unlisted_physics":
         conclusion = replace(conclusion, verdict="ambiguous")
     if len(joints) == 1 and not known.interrupted:
         try:
@@ -243,7 +242,7 @@ def _balanced(
     best, bench = known.found.best, known.bench
     if best.fit.over_noise < FAR:
         return None
-    weights = weights_by(bench, best, bench.training)
+    weights = weights_by(bench, best)
     if not weights:
         return None
     say("no model comes near the noise: searching again with signals that count alike")

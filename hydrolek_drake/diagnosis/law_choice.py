@@ -71,20 +71,23 @@ def _law_and_model(
 
 
 def material(conclusion: Conclusion, judged: Sequence[Judged], held_out: Sequence[Experiment]) -> Conclusion:
-    """The conclusion without effects that take no material part of any signal's error.
+    """What is named where signals count alike: effects that take a material part of one signal's error, or nothing.
+
+    The verdict stays that physics is missing which is in no list: no model explained the data by their noise, and what
+    explains them by a wider one proves nothing.
 
     Args:
         conclusion: of signals that count alike (`balance`), beside which no law was found.
         judged: all hypotheses that were held against held-out data.
         held_out: these data.
     """
+    best = conclusion.best
     nominal = next(j for j in judged if not j.hypothesis.effects)
-    if conclusion.verdict != "unlisted_physics" or conclusion.best.over_noise > nominal.over_noise:
-        return replace(conclusion, best=nominal)
-    left = [squares_of(j.held_out, held_out) for j in (conclusion.best, nominal)]
-    if any(left[0][key] < MATERIAL * left[1][key] for key in left[1]):
-        return conclusion
-    return replace(conclusion, best=nominal)
+    left, before = squares_of(best.held_out, held_out), squares_of(nominal.held_out, held_out)
+    matters = best.over_noise <= nominal.over_noise and any(
+        left[key] < MATERIAL * before[key] for key in before
+    )
+    return replace(conclusion, verdict="unlisted_physics", best=best if matters else nominal, groups=())
 
 
 def _immaterial(best: Judged, nominal: Judged) -> bool:

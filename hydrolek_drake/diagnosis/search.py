@@ -145,9 +145,8 @@ def fit_baseline(bench: Workbench) -> Hypothesis:
         else [{}]
     )
     fits = bench.side_by_side(lambda start: bench.fit((), start, coarse, LOOK), starts)
-    if (
-        min(h.fit.over_noise for h in fits) > NEAR
-    ):  # stuck, perhaps: a healthy machine must not need an effect
+    # stuck, perhaps: a healthy machine must not need an effect
+    if min(h.fit.over_noise for h in fits) > NEAR:
         pulled = fit_pulled(bench, (), [*starts, *(h.values for h in fits)], coarse, bench.training)
         fits.append(bench.refit(pulled, coarse, LOOK))
     best = min(fits, key=lambda h: h.fit.objective)

@@ -179,7 +179,11 @@ class Experiment:
     @property
     def counted(self) -> int:
         """How many measured values count."""
-        return sum(int((self.used & np.isfinite(c.measured)).sum()) for c in self.channels)
+        return sum(map(self.counted_of, self.channels))
+
+    def counted_of(self, channel: Channel) -> int:
+        """How many measured values of one of its channels count."""
+        return int((self.used & np.isfinite(channel.measured)).sum())
 
     def split(self, used: np.ndarray) -> "Experiment":
         """The same experiment with other samples that count, a truth value each."""

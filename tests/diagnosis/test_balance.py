@@ -31,12 +31,8 @@ def _left(experiment, *over_noise):
 
 
 def _weights(three, *over_noise):
-    problem = SimpleNamespace(
-        residuals=lambda unit: _left(three[0], *over_noise),
-        parameters=SimpleNamespace(unit=lambda values: None),
-    )
-    fits = SimpleNamespace(fine=1e-3, problem=lambda *_: problem)
-    return weights_by(fits, SimpleNamespace(effects=(), values={}), three)
+    fits = SimpleNamespace(fine=1e-3, training=three, residuals=lambda *_: _left(three[0], *over_noise))
+    return weights_by(fits, SimpleNamespace(effects=(), values={}))
 
 
 def test_signals_count_as_the_one_that_is_followed_best(three) -> None:
@@ -83,6 +79,17 @@ def test_effects_must_take_a_material_part_of_one_signal_and_spoil_nothing(three
     assert bool(done.best.hypothesis.effects) is named
 
 
+def test_what_explains_by_a_wider_noise_is_no_explanation(three) -> None:
+    counted = 3 * three[0].time.size
+    judged = tuple(
+        Judged(SimpleNamespace(effects=effects), _left(three[0], *over), counted, probability=0.5)
+        for effects, over in (((1,), (0.9, 1.0, 0.8)), ((), (5.0, 5.0, 5.0)))
+    )
+    for verdict in ("missing_physics", "ambiguous"):
+        done = material(Conclusion(verdict, judged[0], {}, (("one", "other"),)), judged, three)
+        assert (done.verdict, done.best, done.groups) == ("unlisted_physics", judged[0], ())
+
+
 def test_a_shifted_null_shows_beside_a_pressure_that_rings_as_nothing_explains(bench, recorded) -> None:
     shift = 2e-5
     path = "joints.joint.effects.valve.asymmetric_overlap.shift_m"
@@ -107,7 +114,7 @@ def test_a_shifted_null_shows_beside_a_pressure_that_rings_as_nothing_explains(b
             gains.append(1.0 - named.fit.objective / nominal.fit.objective)
             found.append(named.values[path])
             needed.append(MATERIAL_GAIN / fits.alike)
-            fits.training = weighed(fits.training, weights_by(fits, named, fits.training))
+            fits.training = weighed(fits.training, weights_by(fits, named))
     assert gains[0] < needed[0]  # by its noise alone, the pressure outweighs what the shift explains
     assert gains[1] > needed[1]
     assert abs(found[1] - shift) < 0.5 * abs(found[0] - shift)
