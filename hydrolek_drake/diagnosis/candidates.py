@@ -42,6 +42,20 @@ class Candidate:
         """Full path of the parameter that switches it on."""
         return f"{self.path}.{self.effect.size}"
 
+    def taken_over(self, other: "Candidate", values: dict[str, float]) -> dict[str, float]:
+        """Full path -> value of this effect's parameters that another one, fitted, also has; within the ranges."""
+        known = {free.path.rpartition(".")[2]: values[free.path] for free in other.free}
+        own = {free: known.get(free.path.rpartition(".")[2]) for free in self.free}
+        return {
+            free.path: min(max(value, free.lower), free.upper)
+            for free, value in own.items()
+            if value is not None
+        }
+
+    def is_special_case_of(self, other: "Candidate") -> bool:
+        """Whether another effect at the same joint contains this one."""
+        return self.joint == other.joint and self.id in other.effect.contains
+
 
 def candidates_of(rig: Rig, joint: str, scales: Scales) -> tuple[Candidate, ...]:
     """Every effect that can act on this joint and is not switched on in the rig yet.

@@ -10,7 +10,7 @@ from hydrolek_drake.diagnosis.balance import told, weighed, weights_by
 from hydrolek_drake.diagnosis.candidates import Candidate, candidates_of
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, Conclusion, conclude
 from hydrolek_drake.diagnosis.effort import FAR
-from hydrolek_drake.diagnosis.evidence import FINER, Judged, judge, judge_given_up
+from hydrolek_drake.diagnosis.evidence import FINER, Judged, even, judge, judge_given_up
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
 from hydrolek_drake.diagnosis.law_choice import material, with_law
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
@@ -221,6 +221,8 @@ def _attempt(
         interrupted = True
         bench.resume()
     say("holding the models against data that none of them was fitted to")
+    if not interrupted:
+        even(bench, found, bench.weighted_by(found.best, held_out))
     bench.training = tuple(bench.weighted_by(found.best, bench.training))
     weighted = tuple(bench.weighted_by(found.best, held_out))
     judged = tuple(judge(bench, found, weighted))

@@ -22,6 +22,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.effort import AT_NOISE, NEARLY
 from hydrolek_drake.diagnosis.growing import FIDELITY, GAIN_NEEDED, gain_needed
+from hydrolek_drake.diagnosis.lessening import slightly_worse
 from hydrolek_drake.diagnosis.search import Search, cost_of
 from hydrolek_drake.diagnosis.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -106,6 +107,19 @@ class Judged:
         return 0.5 * float(self.held_out @ self.held_out)
 
 
+def even(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> None:
+    """Fit what contenders hardly surpass again, from where they ended, see `lessening.slightly_worse`.
+
+    Args:
+        bench: fits, to the training data as they were searched.
+        found: hypotheses; the better fits are kept in it.
+        held_out: recordings that nothing was fitted to; they tell the contenders.
+    """
+    contenders = _contenders(_looked_at(bench, list(found.hypotheses.values()), held_out), found)
+    for hypothesis in slightly_worse(bench, contenders, found.hypotheses):
+        found.keep(hypothesis)
+
+
 def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> list[Judged]:
     """Hold the hypotheses of a search against held-out data, the most probable first.
 
@@ -115,12 +129,9 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
         held_out: recordings that nothing was fitted to.
     """
     counted = sum(experiment.counted for experiment in held_out)
-    first = bench.side_by_side(
-        lambda h: Judged(h, bench.residuals(h, held_out, bench.fine), counted),
-        list(found.hypotheses.values()),
-    )
-    finer = FINER * bench.fine
+    first = _looked_at(bench, list(found.hypotheses.values()), held_out)
     chosen = _contenders(first, found)
+    finer = FINER * bench.fine
     refitted = bench.side_by_side(
         lambda h: bench.refit(h, finer, FINISH) if _decides(h, found) else h,
         chosen,
@@ -211,16 +222,24 @@ def _to_pay(hypothesis: Hypothesis, other: Hypothesis) -> float:
     special = [c for c in other.effects if c.size_path not in hypothesis.ids]
     if own and not special:
         return gain_needed(other.fit) * len(own)
-    contained = [any(s.joint == c.joint and s.id in c.effect.contains for c in own) for s in special]
+    contained = [any(s.is_special_case_of(c) for c in own) for s in special]
     return GAIN_NEEDED * len(own) if special and all(contained) and len(own) == len(special) else -math.inf
+
+
+def _looked_at(
+    bench: Workbench, hypotheses: Sequence[Hypothesis], held_out: Sequence[Experiment]
+) -> list[Judged]:
+    """What hypotheses leave of the held-out data as they are fitted."""
+    counted = sum(experiment.counted for experiment in held_out)
+    return bench.side_by_side(
+        lambda h: Judged(h, bench.residuals(h, held_out, bench.fine), counted), hypotheses
+    )
 
 
 def judge_given_up(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> list[Judged]:
     """What the held-out data say of hypotheses that were not fitted to the end, the best first."""
-    counted = sum(experiment.counted for experiment in held_out)
     left = [h for key, h in found.given_up.items() if key not in found.hypotheses]
-    judged = bench.side_by_side(lambda h: Judged(h, bench.residuals(h, held_out, bench.fine), counted), left)
-    return sorted(judged, key=lambda j: j.half_chi_squared)
+    return sorted(_looked_at(bench, left, held_out), key=lambda j: j.half_chi_squared)
 
 
 def _decides(hypothesis: Hypothesis, found: Search) -> bool:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import AT_NOISE, BEAM, COARSE, FAR, LOOK, NEAR, NEARLY, POLISH
 from hydrolek_drake.diagnosis.growing import HOPELESS, MOST_EFFECTS, gain_needed, grow
+from hydrolek_drake.diagnosis.lessening import lessened
 from hydrolek_drake.diagnosis.score import Score, scores_of
 from hydrolek_drake.diagnosis.unsticking import different, fit_pulled, led_on, starts_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -100,13 +101,13 @@ def search(
             break
         for hypothesis in grown:
             found.keep(hypothesis)
-        _prune(bench, found, found.best, candidates)
+        _prune(bench, found, candidates)
         pruned = found.best
         if pruned.fit.over_noise > AT_NOISE:
             _widen(bench, found, pruned, candidates)
             _lead_on(bench, found)
         if found.best.ids != pruned.ids:  # in its place an effect may have become needless
-            _prune(bench, found, found.best, candidates)
+            _prune(bench, found, candidates)
         beam = [h for h in grown if h.fit.objective < HOPELESS * grown[0].fit.objective][:BEAM]
         beam = [found.best] if found.best.fit.over_noise < NEAR else beam
         found.left = scores_of(bench, found.best, candidates, bench.fine)
@@ -153,19 +154,9 @@ def fit_baseline(bench: Workbench) -> Hypothesis:
     return bench.refit(best, bench.fine, POLISH if best.fit.over_noise < FAR else POLISH // 2)
 
 
-def _prune(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: Sequence[Candidate]) -> None:
-    """Fit the best hypothesis again with less: without each of its effects, or with the special case of one."""
-    work: list[tuple[tuple[Candidate, ...], dict[str, float]]] = []
-    for effect in hypothesis.effects:
-        rest = tuple(c for c in hypothesis.effects if c is not effect)
-        work.append((rest, hypothesis.values))
-        work += [
-            ((*rest, special), {**hypothesis.values, **_carried_over(effect, special, hypothesis.values)})
-            for special in candidates
-            if special.joint == effect.joint and special.id in effect.effect.contains
-        ]
-    fits = bench.side_by_side(lambda item: bench.fit(item[0], item[1], bench.fine, POLISH), work)
-    for fitted in fits:
+def _prune(bench: Workbench, found: Search, candidates: Sequence[Candidate]) -> None:
+    """Fit the best hypothesis again with less."""
+    for fitted in lessened(bench, found.best, candidates):
         found.keep(fitted)
 
 
@@ -180,9 +171,9 @@ def _widen(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: 
         rest = tuple(c for c in hypothesis.effects if c is not effect)
         kept = {k: v for k, v in hypothesis.values.items() if not k.startswith(f"{effect.path}.")}
         for wider in candidates:
-            if wider.joint != effect.joint or effect.id not in wider.effect.contains:
+            if not effect.is_special_case_of(wider):
                 continue
-            carried = _carried_over(effect, wider, hypothesis.values)
+            carried = wider.taken_over(effect, hypothesis.values)
             starts = different([{**kept, **start, **carried} for start in wider.starts])
             work += [((*rest, wider), start) for start in starts]
     pulled = bench.side_by_side(
@@ -204,12 +195,3 @@ def _lead_on(bench: Workbench, found: Search) -> None:
     led = led_on(bench, best.effects, [best.values, *again])
     found.keep(led)
     found.smooth = best.fit.objective - led.fit.objective < STUCK * (best.fit.objective - best.fit.counted)
-
-
-def _carried_over(effect: Candidate, other: Candidate, values: dict[str, float]) -> dict[str, float]:
-    """Values of parameters that both effects have, within the ranges of the other one."""
-    known = {free.path.rpartition(".")[2]: values[free.path] for free in effect.free}
-    own = {free: known.get(free.path.rpartition(".")[2]) for free in other.free}
-    return {
-        free.path: min(max(value, free.lower), free.upper) for free, value in own.items() if value is not None
-    }

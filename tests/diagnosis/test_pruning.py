@@ -1,15 +1,18 @@
 """What is found is held against less: without an effect, and with the special case of one."""
 
+import math
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from dataclasses import replace
 
 import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.effort import POLISH
 from hydrolek_drake.diagnosis.growing import gain_needed
+from hydrolek_drake.diagnosis.lessening import SLIGHT, slightly_worse, start_of_lesser
 from hydrolek_drake.diagnosis.search import Search, _prune, _widen
-from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
@@ -32,7 +35,7 @@ def test_coulomb_friction_is_tried_where_stribeck_friction_was_found(bench, reco
         found = Search()
         found.keep(work.fit((stribeck,), stribeck.starts[0], work.fine, POLISH))
         general = found.best
-        _prune(work, found, general, candidates)
+        _prune(work, found, candidates)
     special = found.hypotheses[frozenset({coulomb.size_path})]
     assert special.values[coulomb.size_path] == pytest.approx(COULOMB, rel=0.02)
     # two parameters more gain no more than chance
@@ -56,3 +59,39 @@ def test_stribeck_friction_is_tried_from_where_coulomb_friction_was_found(bench,
     assert special.fit.objective - wider.fit.objective > gain_needed(special.fit)
     for name, value in STRIBECK.items():
         assert wider.values[f"{stribeck.path}.{name}"] == pytest.approx(value, rel=0.1)
+
+
+def test_a_model_that_ended_elsewhere_is_fitted_from_where_a_wider_one_ended(bench, recorded) -> None:
+    machine = bench.with_values({"effects.cylinder.coulomb_friction.coulomb_N": COULOMB})
+    with _searched(bench, recorded(machine, bench)) as (work, _, stribeck, coulomb):
+        wider = work.fit((stribeck,), stribeck.starts[0], work.fine, POLISH)
+        right = work.fit((coulomb,), coulomb.starts[0], work.fine, POLISH)
+
+        def left_behind(share: float) -> list[Hypothesis]:
+            scale = math.sqrt((1.0 + share) * wider.fit.objective / right.fit.objective)
+            left, off = scale * right.fit.residuals, scale * right.fit.off_prior
+            away = {**right.values, coulomb.size_path: 1.3 * COULOMB}
+            stuck = replace(right, values=away, fit=replace(right.fit, residuals=left, off_prior=off))
+            return slightly_worse(work, [wider], {h.ids: h for h in (wider, stuck)})
+
+        (again,) = left_behind(0.5 * SLIGHT)
+        assert again.ids == right.ids
+        assert again.values[coulomb.size_path] == pytest.approx(COULOMB, rel=0.02)
+        assert again.fit.objective - wider.fit.objective < gain_needed(wider.fit)
+        assert left_behind(2.0 * SLIGHT) == []  # that is the effect's own share
+        assert left_behind(-0.01) == []  # what is better already needs no other start
+
+
+def test_what_a_hypothesis_contains(bench, recorded) -> None:
+    with _searched(bench, recorded(bench, bench)) as (work, candidates, stribeck, coulomb):
+        bow = next(c for c in candidates if c.id == "sensor.nonlinearity")
+        both = work.fit((stribeck, bow), {**stribeck.starts[0], **bow.starts[0]}, work.fine, 1)
+        nominal, special, other = (work.fit(e, {}, work.fine, 1) for e in ((), (coulomb, bow), (coulomb,)))
+    assert start_of_lesser(both, nominal) == both.values
+    start = start_of_lesser(both, special)
+    assert start is not None
+    assert start[coulomb.size_path] == both.values[f"{stribeck.path}.coulomb_N"]
+    assert start_of_lesser(both, other) is not None
+    assert start_of_lesser(both, both) is None
+    assert start_of_lesser(nominal, both) is None
+    assert start_of_lesser(other, special) is None
