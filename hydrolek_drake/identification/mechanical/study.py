@@ -21,13 +21,35 @@ from hydrolek_drake.identification.mechanical.mechanical_model import (
 from hydrolek_drake.identification.objective.output_error import OutputError
 from hydrolek_drake.identification.search.search import METHODS, SearchResult, search
 
-OF_OBJECTIVE = ("p", "relative", "segments")
+OF_OBJECTIVE = ("p", "relative", "segments", "scale")
+
+_Map = Callable[[np.ndarray], np.ndarray]
+
+SCALES: dict[str, tuple[_Map, _Map]] = {"linear": (np.asarray, np.asarray), "log": (np.log, np.exp)}
+"""Name -> how a parameter stands in its range, and back."""
+
+
+@dataclass(frozen=True)
+class _Scaled:
+    """A model whose parameters come on one of `SCALES`; can be sent to workers."""
+
+    model: MechanicalModel
+    scale: str
+
+    def __call__(self, point: np.ndarray) -> np.ndarray:
+        return self.model(SCALES[self.scale][1](point))
 
 
 @cache
 def study_data() -> dict[str, Any]:
     """Content of `study.yaml`."""
     return yaml.safe_load(files(__package__).joinpath("study.yaml").read_text(encoding="utf-8"))
+
+
+def recommended() -> dict[str, Any]:
+    """What is changed of objective and settings in the multi-objective search that we recommend."""
+    data = study_data()
+    return {"segments": data["segments"], **data["multi_objective"][data["recommended"]]}
 
 
 @dataclass(frozen=True)
@@ -93,21 +115,27 @@ class Study:
             changes: dict[str, Any] = {} if method == "ga" else {"p": 2}
             if method == "nsga2":
                 changes = {"segments": data["segments"], "mutation_rate": 0.2}  # section 4.5.5
-            for seed in self.seeds.spawn(self.runs):
-                result = self._search(method, changes, max(budgets), seed)
-                for budget in budgets:
-                    yield self._run(method, method, cut(result, budget), budget)
+            yield from self._compared(method, method, changes, budgets)
+        yield from self._compared("nsga2, logarithmic scale", "nsga2", recommended(), budgets)
+
+    def _compared(self, row: str, method: str, changes: dict[str, Any], budgets: list[int]) -> Iterator[Run]:
+        for seed in self.seeds.spawn(self.runs):
+            result = self._search(method, changes, max(budgets), seed)
+            for budget in budgets:
+                yield self._run(row, method, cut(result, budget, changes.get("scale", "linear")), budget)
 
     def _row(self, row: str, method: str, changes: dict[str, Any], budget: int) -> Iterator[Run]:
         for seed in self.seeds.spawn(self.runs):
-            yield self._run(row, method, self._search(method, changes, budget, seed), budget)
+            result = self._search(method, changes, budget, seed)
+            yield self._run(row, method, cut(result, budget, changes.get("scale", "linear")), budget)
 
     def _search(
         self, method: str, changes: dict[str, Any], budget: int, seed: np.random.SeedSequence
     ) -> SearchResult:
         parameters = mechanical_parameters()
+        scale = changes.get("scale", "linear")
         objective = OutputError(
-            self.model,
+            _Scaled(self.model, scale),
             self.measured,
             p=float(changes.get("p", math.inf)),
             relative=bool(changes.get("relative", False)),
@@ -117,7 +145,8 @@ class Study:
             SIMPLE, **{key: value for key, value in changes.items() if key not in OF_OBJECTIVE}
         )
         rng = np.random.default_rng(seed)
-        return search(method, objective, parameters.lower, parameters.upper, budget, rng, settings=settings)
+        lower, upper = (SCALES[scale][0](bound) for bound in (parameters.lower, parameters.upper))
+        return search(method, objective, lower, upper, budget, rng, settings=settings)
 
     def _run(self, row: str, method: str, result: SearchResult, budget: int) -> Run:
         error = self.exact - self.model(result.point)
@@ -133,13 +162,22 @@ class Study:
         )
 
 
-def cut(result: SearchResult, budget: int) -> SearchResult:
-    """What the search would have given with a smaller budget: its steps do not depend on the budget."""
-    if budget >= result.evaluations:
+def cut(result: SearchResult, budget: int, scale: str = "linear") -> SearchResult:
+    """What the search would have given with a smaller budget: its steps do not depend on the budget.
+
+    Args:
+        result: of the search.
+        budget: evaluations that count.
+        scale: one of `SCALES`, on which the search was made. The point of what is returned is linear: the mean of the
+            best of each segment (section 4.3.4) is taken of the parameters themselves.
+    """
+    if budget >= result.evaluations and scale == "linear":
         return result
     parameters = mechanical_parameters()
+    there, back = SCALES[scale]
+    lower, upper = there(parameters.lower), there(parameters.upper)
     units, scores = result.units[:budget], result.scores[:budget]
-    points = parameters.lower + units * (parameters.upper - parameters.lower)
+    points = back(lower + units * (upper - lower))
     if result.method == "nsga2":
         point = pareto_set(points, scores).average
     else:

@@ -1,0 +1,72 @@
+"""Hypotheses held against lesser ones that start where they ended.
+
+Two fits of nearly the same model may end in different places. An effect that does nothing then looks as if it did
+what the other way did; so the model without it is fitted from there too.
+"""
+
+from collections.abc import Mapping, Sequence
+
+from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.diagnosis.effort import POLISH
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+
+SLIGHT = 0.05
+"""An effect that takes no more than this share of the squared residuals may have found another way down instead."""
+
+
+def lessened(bench: Workbench, hypothesis: Hypothesis, candidates: Sequence[Candidate]) -> list[Hypothesis]:
+    """The same with less, fitted: without each of its effects, and with each special case of one in its place."""
+    work: list[tuple[tuple[Candidate, ...], dict[str, float]]] = []
+    for effect in hypothesis.effects:
+        rest = tuple(c for c in hypothesis.effects if c is not effect)
+        work.append((rest, hypothesis.values))
+        work += [
+            ((*rest, special), {**hypothesis.values, **special.taken_over(effect, hypothesis.values)})
+            for special in candidates
+            if special.is_special_case_of(effect)
+        ]
+    return bench.side_by_side(lambda item: bench.fit(item[0], item[1], bench.fine, POLISH), work)
+
+
+def slightly_worse(
+    bench: Workbench, contenders: Sequence[Hypothesis], known: Mapping[frozenset[str], Hypothesis]
+) -> list[Hypothesis]:
+    """Every known hypothesis that a contender contains and hardly surpasses, fitted from where that one ended.
+
+    Args:
+        bench: fits.
+        contenders: hypotheses that may win.
+        known: all that were fitted, by their keys.
+    """
+    work: dict[frozenset[str], tuple[Hypothesis, Hypothesis, dict[str, float]]] = {}
+    for contender in contenders:
+        least = contender.fit.objective
+        for other in known.values():
+            start = start_of_lesser(contender, other)
+            if start is None or not least < other.fit.objective <= (1.0 + SLIGHT) * least:
+                continue
+            if other.ids not in work or least < work[other.ids][0].fit.objective:
+                work[other.ids] = (contender, other, start)
+    return bench.side_by_side(
+        lambda item: bench.fit(item[1].effects, item[2], min(item[0].step, item[1].step), POLISH),
+        list(work.values()),
+    )
+
+
+def start_of_lesser(hypothesis: Hypothesis, other: Hypothesis) -> dict[str, float] | None:
+    """Full path -> value where a fit of another hypothesis begins that this one contains; None if it does not.
+
+    It contains what has fewer of its effects, and what has a special case in the place of one.
+    """
+    own = [c for c in hypothesis.effects if c.size_path not in other.ids]
+    if not own:
+        return None
+    start = dict(hypothesis.values)
+    for special in other.effects:
+        if special.size_path in hypothesis.ids:
+            continue
+        wider = next((c for c in own if special.is_special_case_of(c)), None)
+        if wider is None:
+            return None
+        start |= special.taken_over(wider, hypothesis.values)
+    return start
