@@ -53,6 +53,8 @@ def with_effect(rig: Rig, effect: str | None, joint: int = 0) -> Rig:
     scale = {
         "force": float(record["cylinder"]["area_a"] * record["supply"]["pressure"]),
         "inertia": float(record["load"]["inertia"]),
+        "friction": float(record["cylinder"]["viscous_friction"]),
+        "stroke": float(record["cylinder"]["stroke"]),
     }
     where = f"joints.{rig.joints[joint]}.effects.{effect}"
     return rig.with_values(
