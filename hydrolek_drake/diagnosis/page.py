@@ -2,7 +2,7 @@
 
 import html
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 import numpy as np
 
@@ -83,13 +83,15 @@ def _proposed(diagnosis: Diagnosis) -> str:
     return f"{diagnosis.proposal.sentence} Its command is in next_experiment.csv."
 
 
-def _cells(texts: Iterable[str], tag: str = "td") -> str:
-    return "".join(f"<{tag}>{text}</{tag}>" for text in texts)
+def _cells(texts: Iterable[str], tag: str = "td", left: Collection[int] = ()) -> str:
+    text = " class='text'"
+    return "".join(f"<{tag}{text if i in left else ''}>{cell}</{tag}>" for i, cell in enumerate(texts))
 
 
-def _table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    body = "".join(f"<tr>{_cells(row)}</tr>" for row in rows)
-    return f"<table><tr>{_cells(head, 'th')}</tr>{body}</table>"
+def _table(head: Iterable[str], rows: Iterable[Iterable[str]], left: Collection[int] = ()) -> str:
+    """A table; the first column and those in `left` are words, the others numbers."""
+    body = "".join(f"<tr>{_cells(row, left=left)}</tr>" for row in rows)
+    return f"<table><tr>{_cells(head, 'th', left)}</tr>{body}</table>"
 
 
 def _effects(diagnosis: Diagnosis) -> str:
@@ -159,7 +161,9 @@ def _locations(diagnosis: Diagnosis) -> str:
         )
         for place in diagnosis.locations
     ]
-    return _table(("joint", "stage", "share of the mismatch", "condition", "where it grows most"), rows)
+    return _table(
+        ("joint", "stage", "share of the mismatch", "condition", "where it grows most"), rows, (1, 3)
+    )
 
 
 def _candidates(diagnosis: Diagnosis) -> str:
@@ -183,7 +187,7 @@ def _candidates(diagnosis: Diagnosis) -> str:
         if diagnosis.also_tried
         else ""
     )
-    return _table(("model", "probability", "fitted / noise", "held out / noise", ""), rows) + told
+    return _table(("model", "probability", "fitted / noise", "held out / noise", ""), rows, (4,)) + told
 
 
 def _parameters(diagnosis: Diagnosis) -> str:

@@ -31,11 +31,11 @@ def columns(diagnosis: Diagnosis) -> list[list[Panel]]:
     if np.array_equal(train.channels[0].measured, held.channels[0].measured, equal_nan=True):
         return [_stack(diagnosis, train, "", held_out_spans(held))]
     right = (
-        _stack(diagnosis, held, "fitted but for the shaded: ", held_out_spans(held))
+        _stack(diagnosis, held, "fitted, but for the shaded blocks", held_out_spans(held))
         if partly_fitted(diagnosis, held)
-        else _stack(diagnosis, held, "held out: ", ())
+        else _stack(diagnosis, held, "held out", ())
     )
-    return [_stack(diagnosis, train, "fitted: ", ()), right]
+    return [_stack(diagnosis, train, "fitted", ()), right]
 
 
 def partly_fitted(diagnosis: Diagnosis, held: Experiment) -> bool:
@@ -73,7 +73,7 @@ def _stack(
     after = simulated(diagnosis, diagnosis.best.hypothesis, experiment)
     enlarged = bool(diagnosis.best.hypothesis.effects)
     time = experiment.time
-    stack = []
+    stack: list[Panel] = []
     for channel in experiment.channels:
         factor, unit = display_factor(channel.unit), display_unit(channel.unit)
         old, new = getattr(before, channel.model), getattr(after, channel.model)
@@ -84,7 +84,9 @@ def _stack(
         if enlarged:
             curves.append(("with the missing physics", new, AFTER_COLOUR))
         lines = tuple(Line(name, *thinned(time, factor * v), colour) for name, v, colour in curves)
-        stack.append(Panel(f"{what}{channel.key} [{unit}]", lines, shaded, None, 2.0))
+        stack.append(
+            Panel(f"{channel.key} [{unit}]", lines, shaded, None, 2.0, heading=what if not stack else "")
+        )
         band = BEYOND_NOISE * factor * channel.noise
         told = [("left before", channel.measured - old, RESIDUAL_COLOUR)]
         if enlarged:

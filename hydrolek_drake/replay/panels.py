@@ -40,6 +40,7 @@ class Panel:
         noise_band: half height of the band that noise alone fills, or None.
         height: relative to the others.
         least_span: what the axis shows at least, so that a signal at rest looks like one.
+        heading: of the column, in its first panel.
     """
 
     title: str
@@ -48,6 +49,7 @@ class Panel:
     noise_band: float | None
     height: float
     least_span: float = 0.0
+    heading: str = ""
 
     def limits(self) -> tuple[float, float] | None:
         """Ends of the axis where the signal alone would not fill `least_span`; None to leave it to the plot."""

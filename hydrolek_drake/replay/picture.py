@@ -63,6 +63,8 @@ def _draw(panel: Panel, axis: Any) -> None:
     limits = panel.limits()
     if limits is not None:
         axis.set_ylim(*limits)
+    if panel.heading:
+        axis.set_title(panel.heading, fontsize=9, loc="left", fontweight="bold")
     name, _, unit = panel.title.partition(" [")
     axis.set_ylabel(f"{name}\n[{unit}", fontsize=8)
     axis.tick_params(labelsize=8)

@@ -6,6 +6,7 @@ from typing import Any
 from hydrolek_drake.replay.panels import NOISE_COLOUR, SPAN_COLOUR, Panel
 
 _ROW_PX = 105
+_HEADING_PX = 28
 
 
 def plots_html(columns: Sequence[Sequence[Panel]]) -> str:
@@ -15,6 +16,9 @@ def plots_html(columns: Sequence[Sequence[Panel]]) -> str:
 
     rows = max(len(stack) for stack in columns)
     longest = max(columns, key=len)
+    height = int(_ROW_PX * sum(panel.height for panel in longest))
+    headings = [stack[0].heading for stack in columns]
+    headed = _HEADING_PX if any(headings) else 0
     figure: Any = make_subplots(
         rows=rows,
         cols=len(columns),
@@ -22,6 +26,7 @@ def plots_html(columns: Sequence[Sequence[Panel]]) -> str:
         vertical_spacing=0.25 / (4 * rows),
         horizontal_spacing=0.09,
         row_heights=[panel.height for panel in longest],
+        column_titles=[f"<b>{heading}</b>" for heading in headings] if headed else None,
         figure=Figure(),
     )
     named: set[str] = set()
@@ -29,13 +34,14 @@ def plots_html(columns: Sequence[Sequence[Panel]]) -> str:
         for row, panel in enumerate(stack, start=1):
             _draw(figure, Scatter, panel, {"row": row, "col": column}, named)
         figure.update_xaxes(title_text="time [s]", row=len(stack), col=column)
+    figure.update_annotations(font_size=13)  # the headings
     figure.update_yaxes(title_font_size=11, gridcolor="#e4e9ee", zerolinecolor="#c7d0d9")
     figure.update_xaxes(gridcolor="#e4e9ee")
     figure.update_layout(
-        height=int(_ROW_PX * sum(panel.height for panel in longest)) + 120,
+        height=height + 120 + headed,
         plot_bgcolor="white",
-        margin={"l": 80, "r": 20, "t": 40, "b": 50},
-        legend={"orientation": "h", "y": 1.0, "yanchor": "bottom", "x": 0},
+        margin={"l": 80, "r": 20, "t": 40 + headed, "b": 50},
+        legend={"orientation": "h", "y": 1.0 + headed / height, "yanchor": "bottom", "x": 0},
         hovermode="x unified",
     )
     return str(figure.to_html(full_html=False, include_plotlyjs=True, config={"displaylogo": False}))
