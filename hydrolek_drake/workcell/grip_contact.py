@@ -1,7 +1,7 @@
 """Contact of both grippers' hands and fingers with a pipe, clamped or loose, as forces on the simulated machine."""
 
 import xml.etree.ElementTree as ElementTree
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
@@ -68,9 +68,10 @@ class GripContact(LeafSystem):
     never pulled.
 
     A clamped pipe does not give way. A loose one (where there is a table) does not either until a gripper holds it:
-    until moving and fixed fingers press so hard that friction on both carries its weight, 2 mu F >= m g. Held, it moves
-    with the hand as one body: the moving finger's force acts on the hand with opposite sign, and its weight at its
-    middle; its inertia is left out. What lets go of it drops it (`loose_pipe.LoosePipe`).
+    until moving and fixed fingers press so hard that friction on both carries its weight, 2 mu F >= m g, while the jaw
+    does not open (one that has just let go swings a little and would take it again). Held, it moves with the hand as
+    one body: the moving finger's force acts on the hand with opposite sign, and its weight at its middle; its inertia
+    is left out. What lets go of it drops it (`loose_pipe.LoosePipe`).
 
     Ports:
         in `plant_state` (all positions and velocities of the plant).
@@ -103,6 +104,7 @@ class GripContact(LeafSystem):
             )
             for side in SIDES
         ]
+        self._jaws = {side: plant.GetJointByName(f"{side}_j7") for side in SIDES}
         self._templates = []
         for side, finger in self.fingers:
             force = ExternallyAppliedSpatialForce()
@@ -207,10 +209,29 @@ class GripContact(LeafSystem):
             for part in (_MOVING, _FIXED):
                 mine = [(owner, finger.link) == (side, part) for owner, finger in self.fingers]
                 pressed.append(float(sizes[mine].sum()) >= self._carries)
-            gripped.append(pressed[0] and (pressed[1] or loose.holder == side))
+            takes = pressed[1] and self._jaws[side].get_angular_rate(self._own) <= 0.0
+            gripped.append(pressed[0] and (takes or loose.holder == side))
         after = loose.step(self._hands(), gripped, self._table, self._period)
+        if loose.holder and not after.holder:
+            after = self._sprung_off(after, self.plant_state.Eval(context))
         if after is not loose:
             state.get_mutable_abstract_state(int(self._loose)).set_value(after)
+
+    def _sprung_off(self, loose: LoosePipe, state: Array) -> LoosePipe:
+        """A pipe that has just been let go, as far aside as the fingers that still stand had been pressed into it.
+
+        It is light and they are stiff: they spring back at once, and push it and not the hand.
+        """
+        at_rest = np.array(state)
+        at_rest[self._plant.num_positions() :] = 0.0
+        for _ in self.fingers:  # one after the other, the deepest first
+            _, pushes = self.touches(at_rest, loose)
+            deepest = pushes[np.argmax(np.linalg.norm(pushes, axis=1))]
+            if not deepest.any():
+                break
+            aside = loose.pipe.moved(np.eye(3), -deepest / self._stiffness)
+            loose = replace(loose, pipe=aside)
+        return loose
 
     def _calc_force(self, context: Context, output: AbstractValue) -> None:
         loose = self.pipe_in(context)

@@ -175,3 +175,33 @@ def test_a_loose_pipe_that_only_the_fixed_fingers_touch_is_not_held(plant):
     context = simulator.get_mutable_context()
     assert contact.pipe_in(context).holder == ""
     np.testing.assert_allclose(contact.pipe_place.Eval(context)[:3], pipe.point, atol=1e-12)
+
+
+def test_a_pipe_that_is_let_go_is_not_pressed_any_more_and_moves_by_as_much_as_it_was(plant):
+    posture = home_posture()
+    posture[:6] = np.radians([2.9, 35.2, -7.7, 25.5, -30.3, -78.5])  # around an upright pipe
+    contact, simulator, pipe = _loose(plant, posture, 18.0)
+    context = simulator.get_mutable_context()
+    pressed = contact.touches(_state(plant, posture))[1]  # the jaw is open there: the fixed fingers alone
+    posture[6] = np.radians(40.0)
+    contact.plant_state.FixValue(context, _state(plant, posture))
+    simulator.AdvanceTo(0.1)
+    assert contact.pipe_in(context).holder == ""
+    assert not contact.sizes(context).any()
+    aside = contact.pipe_in(context).pipe.point - pipe.point
+    deepest = np.linalg.norm(pressed, axis=1).max() / workcell_entries()["contact"]["stiffness"]
+    assert np.linalg.norm(aside) == pytest.approx(deepest, abs=2e-4)
+
+
+def test_a_jaw_that_opens_does_not_take_a_pipe_and_one_that_closes_does(plant):
+    posture, speed = home_posture(), np.zeros(14)
+    posture[6] = np.radians(18.0)
+    for rate, holder in ((0.1, ""), (-0.1, "right")):
+        speed[6] = rate
+        pipe = _pipe_in_the_gripper(posture)
+        table = replace(make_table(), top=np.array([pipe.point[0], pipe.point[1], pipe.lowest()]))
+        contact = GripContact(plant, pipe, table)
+        simulator = Simulator(contact)
+        contact.plant_state.FixValue(simulator.get_mutable_context(), _state(plant, posture, speed))
+        simulator.AdvanceTo(0.05)
+        assert contact.pipe_in(simulator.get_context()).holder == holder
