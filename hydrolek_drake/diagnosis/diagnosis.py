@@ -6,11 +6,10 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
-from hydrolek_drake.diagnosis.balance import told, weighed, weights_by
-from hydrolek_drake.diagnosis.candidates import Candidate, candidates_of
-from hydrolek_drake.diagnosis.conclusion import EXPLAINED, Conclusion, conclude
-from hydrolek_drake.diagnosis.effort import FAR
-from hydrolek_drake.diagnosis.evidence import FINER, Judged, even, judge, judge_given_up
+from hydrolek_drake.diagnosis.attempt import attempt, balanced, unexcited
+from hydrolek_drake.diagnosis.candidates import candidates_of
+from hydrolek_drake.diagnosis.conclusion import Conclusion
+from hydrolek_drake.diagnosis.evidence import FINER, Judged, judge_given_up
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
 from hydrolek_drake.diagnosis.law_choice import material, with_law
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
@@ -18,7 +17,7 @@ from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
 from hydrolek_drake.diagnosis.moments import intervals_of_moments
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
 from hydrolek_drake.diagnosis.score import Score
-from hydrolek_drake.diagnosis.search import Search, search
+from hydrolek_drake.diagnosis.search import Search
 from hydrolek_drake.diagnosis.splitting import mixed, prepared
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -26,10 +25,6 @@ from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import Free, free_parameters
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
-
-FAR_AHEAD = 2.0
-"""A model that leaves this many times more on held-out data than on training data was not told by these what matters
-there: three quarters of the squared error are of a kind that they do not show."""
 
 INTERRUPTED = "interrupted: this is what was known by then; run it again for the whole answer"
 
@@ -133,15 +128,15 @@ def diagnose(
     candidates = list(
         {c.size_path: c for joint in joints for c in candidates_of(rig, joint, scales[joint])}.values()
     )
-    known = _attempt(bench, candidates, held_out, say)
+    known = attempt(bench, candidates, held_out, say)
     remarks = [INTERRUPTED] if known.interrupted else []
     ahead = (
         bool(holdout) or between is not None
     )  # the held-out data are of another kind, not blocks among the rest
-    if ahead and not known.interrupted and _unexcited(known.conclusion):
+    if ahead and not known.interrupted and unexcited(known.conclusion):
         say("the held-out recording shows more than the training data: fitting parts of both")
         both, kept = mixed(bench.training, known.held_out)
-        second = _attempt(Workbench(rig, nominal, both, pool), candidates, kept, say)
+        second = attempt(Workbench(rig, nominal, both, pool), candidates, kept, say)
         if second.interrupted:
             remarks = [INTERRUPTED]
         else:
@@ -161,7 +156,7 @@ def diagnose(
             known.bench.resume()
             remarks = [INTERRUPTED]
     if conclusion.verdict == "unlisted_physics" and law is None and INTERRUPTED not in remarks:
-        again = _balanced(known, rig, nominal, candidates, say)
+        again = balanced(known, rig, nominal, candidates, say)
         if again is not None:
             known, remark = again
             conclusion = material(known.conclusion, known.judged, known.held_out)
@@ -190,79 +185,6 @@ def diagnose(
         proposal=propose(bench, conclusion, [j.hypothesis for j in judged]),
         seconds=clock.perf_counter() - begun,
     )
-
-
-@dataclass(frozen=True)
-class _Known:
-    """What one search and its judgement gave."""
-
-    bench: Workbench
-    found: Search
-    held_out: tuple[Experiment, ...]
-    judged: tuple[Judged, ...]
-    conclusion: Conclusion
-    interrupted: bool
-
-
-def _attempt(
-    bench: Workbench,
-    candidates: Sequence[Candidate],
-    held_out: Sequence[Experiment],
-    say: Callable[[str], None],
-) -> _Known:
-    """Search in the training data, and judge by the held-out data."""
-    interrupted = False
-    found = Search()
-    try:
-        search(bench, candidates, found, say)
-    except KeyboardInterrupt:
-        if not found.hypotheses:
-            raise
-        interrupted = True
-        bench.resume()
-    say("holding the models against data that none of them was fitted to")
-    if not interrupted:
-        even(bench, found, bench.weighted_by(found.best, held_out))
-    bench.training = tuple(bench.weighted_by(found.best, bench.training))
-    weighted = tuple(bench.weighted_by(found.best, held_out))
-    judged = tuple(judge(bench, found, weighted))
-    return _Known(bench, found, weighted, judged, conclude(judged), interrupted)
-
-
-def _balanced(
-    known: _Known,
-    rig: Rig,
-    nominal: Sequence[Free],
-    candidates: Sequence[Candidate],
-    say: Callable[[str], None],
-) -> tuple[_Known, str] | None:
-    """The search again with signals that count alike, and a remark.
-
-    None where the best model is near the noise or follows them alike, and after an interrupt before the nominal model
-    was fitted.
-    """
-    best, bench = known.found.best, known.bench
-    if best.fit.over_noise < FAR:
-        return None
-    weights = weights_by(bench, best)
-    if not weights:
-        return None
-    say("no model comes near the noise: searching again with signals that count alike")
-    again = Workbench(rig, nominal, weighed(bench.training, weights), bench.pool)
-    try:
-        return _attempt(again, candidates, weighed(known.held_out, weights), say), told(weights)
-    except KeyboardInterrupt:
-        return None
-
-
-def _unexcited(conclusion: Conclusion) -> bool:
-    """Whether the held-out data show what the training data do not.
-
-    A model explains the training data or, where no model reaches the noise, does far better on them.
-    """
-    best = conclusion.best
-    enough = max(EXPLAINED, best.over_noise / FAR_AHEAD)
-    return conclusion.verdict == "unlisted_physics" and best.hypothesis.fit.over_noise <= enough
 
 
 def _refused(rig: Rig, reasons: Sequence[str], seconds: float) -> Diagnosis:

@@ -1,0 +1,105 @@
+"""One search with its judgement, and when to search again: with parts of the held-out data, or with other weights."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from hydrolek_drake.diagnosis.balance import told, weighed, weights_by
+from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED, Conclusion, conclude
+from hydrolek_drake.diagnosis.effort import FAR
+from hydrolek_drake.diagnosis.evidence import Judged, even, judge
+from hydrolek_drake.diagnosis.search import Search, search
+from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.parameter_set import Free
+from hydrolek_drake.rigs import Rig
+
+FAR_AHEAD = 2.0
+"""A model that leaves this many times more on held-out data than on training data was not told by these what matters
+there: three quarters of the squared error are of a kind that they do not show."""
+
+
+@dataclass(frozen=True)
+class Known:
+    """What one search and its judgement gave.
+
+    Attributes:
+        bench: data and fits.
+        found: all that was tried.
+        held_out: data that nothing was fitted to, weighted by the best model.
+        judged: hypotheses held against them, the most probable first.
+        conclusion: what both say.
+        interrupted: whether the search was ended by the user.
+    """
+
+    bench: Workbench
+    found: Search
+    held_out: tuple[Experiment, ...]
+    judged: tuple[Judged, ...]
+    conclusion: Conclusion
+    interrupted: bool
+
+
+def attempt(
+    bench: Workbench,
+    candidates: Sequence[Candidate],
+    held_out: Sequence[Experiment],
+    say: Callable[[str], None],
+) -> Known:
+    """Search in the training data, and judge by the held-out data.
+
+    Raises:
+        KeyboardInterrupt: before the nominal model was fitted; later ones end the search.
+    """
+    interrupted = False
+    found = Search()
+    try:
+        search(bench, candidates, found, say)
+    except KeyboardInterrupt:
+        if not found.hypotheses:
+            raise
+        interrupted = True
+        bench.resume()
+    say("holding the models against data that none of them was fitted to")
+    if not interrupted:
+        even(bench, found, bench.weighted_by(found.best, held_out))
+    bench.training = tuple(bench.weighted_by(found.best, bench.training))
+    weighted = tuple(bench.weighted_by(found.best, held_out))
+    judged = tuple(judge(bench, found, weighted))
+    return Known(bench, found, weighted, judged, conclude(judged), interrupted)
+
+
+def balanced(
+    known: Known,
+    rig: Rig,
+    nominal: Sequence[Free],
+    candidates: Sequence[Candidate],
+    say: Callable[[str], None],
+) -> tuple[Known, str] | None:
+    """The search again with signals that count alike, and a remark.
+
+    None where the best model is near the noise or follows them alike, and after an interrupt before the nominal model
+    was fitted.
+    """
+    best, bench = known.found.best, known.bench
+    if best.fit.over_noise < FAR:
+        return None
+    weights = weights_by(bench, best)
+    if not weights:
+        return None
+    say("no model comes near the noise: searching again with signals that count alike")
+    again = Workbench(rig, nominal, weighed(bench.training, weights), bench.pool)
+    try:
+        return attempt(again, candidates, weighed(known.held_out, weights), say), told(weights)
+    except KeyboardInterrupt:
+        return None
+
+
+def unexcited(conclusion: Conclusion) -> bool:
+    """Whether the held-out data show what the training data do not.
+
+    A model explains the training data or, where no model reaches the noise, does far better on them.
+    """
+    best = conclusion.best
+    enough = max(EXPLAINED, best.over_noise / FAR_AHEAD)
+    return conclusion.verdict == "unlisted_physics" and best.hypothesis.fit.over_noise <= enough
