@@ -10,7 +10,7 @@ from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.evidence import FINER
 from hydrolek_drake.diagnosis.panels import columns
 from hydrolek_drake.diagnosis.report_json import MOST_LISTED, detectable, effects_json, fit_json
-from hydrolek_drake.diagnosis.words import headline, number, off_zero_sentences, quantity
+from hydrolek_drake.diagnosis.words import headline, number, off_zero_sentences, quantity, three_digits
 from hydrolek_drake.identification.thinning import STEPS
 from hydrolek_drake.replay.page import STYLE
 from hydrolek_drake.replay.panels import Panel
@@ -127,7 +127,7 @@ def _fit(diagnosis: Diagnosis) -> str:
         return ""
     unit = fit["unit"]
     rows = [
-        (name, *(f"{fit[key][side]:.3g}" for side in ("train_rms", "holdout_rms", "holdout_over_noise")))
+        (name, *(three_digits(fit[key][side]) for side in ("train_rms", "holdout_rms", "holdout_over_noise")))
         for name, key in (("nominal model, refitted", "baseline"), ("with the effects named", "with_effects"))
     ]
     head = ("position", f"fitted [{unit}]", f"held out [{unit}]", "all signals held out / noise")
@@ -177,8 +177,8 @@ def _candidates(diagnosis: Diagnosis) -> str:
             (
                 html.escape(name),
                 "given up" if math.isnan(judged.probability) else f"{judged.probability:.3f}",
-                f"{judged.hypothesis.fit.over_noise:.3g}",
-                f"{judged.over_noise:.3g}",
+                three_digits(judged.hypothesis.fit.over_noise),
+                three_digits(judged.over_noise),
                 f"<span class='bar' style='width:{max(width, 2):.0f}px'></span>",
             )
         )

@@ -7,7 +7,7 @@ from rich.table import Table
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.report_json import effects_json, fit_json
-from hydrolek_drake.diagnosis.words import headline, off_zero_sentences
+from hydrolek_drake.diagnosis.words import headline, off_zero_sentences, three_digits
 
 SHOWN = 5
 """So many models are shown."""
@@ -39,7 +39,7 @@ def summary(diagnosis: Diagnosis) -> Iterator[str | Table]:
         table.add_row(
             name,
             f"{judged.probability:.3f}",
-            f"{judged.hypothesis.fit.over_noise:.3g}",
-            f"{judged.over_noise:.3g}",
+            three_digits(judged.hypothesis.fit.over_noise),
+            three_digits(judged.over_noise),
         )
     yield table

@@ -11,6 +11,11 @@ from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.rig import declaration
 
 
+def three_digits(value: float) -> str:
+    """A number to three digits, in full up to a million: 1260, not 1.26e+03."""
+    return f"{float(f'{value:.3g}'):g}"
+
+
 def quantity(value: float, unit: str) -> str:
     """A value in SI with the unit that people use."""
     main = unit.split("|")[0]
@@ -137,4 +142,4 @@ def _listed(titles: Sequence[str]) -> str:
 
 
 def _ratio(over_noise: float) -> str:
-    return f"{over_noise:.3g} times"
+    return f"{three_digits(over_noise)} times"
