@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.effort import AT_NOISE, NEARLY
+from hydrolek_drake.diagnosis.effort import AT_NOISE, NEARLY, POLISH
 from hydrolek_drake.diagnosis.growing import FIDELITY, GAIN_NEEDED, gain_needed
 from hydrolek_drake.diagnosis.lessening import slightly_worse
 from hydrolek_drake.diagnosis.search import Search, cost_of
@@ -56,7 +56,9 @@ CONTENDERS = 8
 """At most so many hypotheses are fitted with the finer step."""
 
 SMALL = 3.0
-"""Held-out residuals above so many times the noise are no small deviation from a model that is right."""
+"""Held-out residuals above so many times the noise are no small deviation from a model that is right: they speak
+against it as they are, unless it explains the training data. Then a joint may have stuck or slipped where a hair's
+breadth decides, and is off from there on; whether other values of its parameters follow both is tried."""
 
 NEARBY = 100.0
 """If uncertain parameters account for more than this of the held-out squared residuals, they have to move so far that
@@ -168,17 +170,18 @@ def _predicted(
     unit = hypothesis.fit.unit
     residuals = problem.residuals(unit)
     plain = Judged(hypothesis, residuals, counted)
-    if plain.over_noise > SMALL:
+    far_off = plain.over_noise > SMALL
+    if far_off and hypothesis.fit.over_noise > AT_NOISE:
         return plain
     jacobian = problem.jacobian(unit, residuals)
     bench.evaluations += problem.evaluations
     chi_squared, spread = predictive(residuals, jacobian, hypothesis.fit)
-    if 2.0 * plain.half_chi_squared - chi_squared > NEARBY:
+    if far_off or 2.0 * plain.half_chi_squared - chi_squared > NEARBY:
         both = bench.fit(
             hypothesis.effects,
             hypothesis.values,
             step,
-            FINISH,
+            POLISH if far_off else FINISH,
             tolerance=1e-4,
             experiments=[*bench.training, *held_out],
         )
