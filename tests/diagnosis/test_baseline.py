@@ -1,11 +1,21 @@
 """A healthy machine whose numbers lie far from the rig's: the nominal model must reach the noise without any effect."""
 
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
+import numpy as np
+import pytest
+
+from hydrolek_drake.diagnosis.candidates import candidates_of
+from hydrolek_drake.diagnosis.diagnosis import _nominal
 from hydrolek_drake.diagnosis.effort import COARSE, LOOK
 from hydrolek_drake.diagnosis.search import fit_baseline
 from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.identification.experiment import experiments_of
+from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
+from hydrolek_drake.recordings import Recording
+from hydrolek_drake.rigs import load_rig
 
 FAR_OFF = {
     "supply.pressure": 14.3e6,
@@ -32,3 +42,20 @@ def test_a_nominal_fit_that_stops_early_is_led_to_the_noise(bench, recorded) -> 
         led = fit_baseline(workbench)
     assert min(h.fit.over_noise for h in alone) > 2.0
     assert led.fit.over_noise < 1.05  # of 1200 values chance moves it by 2 %
+
+
+@pytest.mark.parametrize(
+    ("name", "nominal"), [("emps", set()), ("emps_published", {"load.coulomb_friction", "load.offset_force"})]
+)
+def test_an_effect_that_is_off_is_searched_and_not_part_of_the_nominal_model(name: str, nominal: set) -> None:
+    rig = load_rig(name)
+    assert any("sensor.drift" in path for path in rig.free_parameters())  # its range bounds the search
+    time = np.linspace(0.0, 2.0, 201)
+    signals = {"axis.command": np.sin(time), "axis.position": np.sin(time)}
+    driven = experiments_of(rig, Recording("made", time, signals, Path("made.csv")))
+    found = {
+        p.path.split(".effects.")[1].rpartition(".")[0] for p in _nominal(rig, driven) if "effects" in p.path
+    }
+    assert found == nominal
+    searched = {c.id for c in candidates_of(rig, "axis", natural_scales(rig, "axis", driven))}
+    assert "sensor.drift" in searched and not nominal & searched
