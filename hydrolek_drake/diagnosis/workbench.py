@@ -219,7 +219,7 @@ class Workbench:
             raise
 
     def weighted_by(self, hypothesis: Hypothesis, experiments: Sequence[Experiment]) -> list[Experiment]:
-        """The same experiments with noise and model error as they show beside this model.
+        """The same experiments with noise, model error and response to the start as they show beside this model.
 
         A recorded signal's own movement passes for noise where it is fast; most of it is gone in the residual.
         The error of the integration is told from a second rollout with half the step: the method is of second
@@ -249,5 +249,6 @@ class Workbench:
                         model_error=np.nan_to_num(error),
                     )
                 )
-            better.append(replace(experiment, channels=tuple(channels)))
+            response = experiment.responding(records, 0.5 * self.fine, fine)
+            better.append(replace(experiment, channels=tuple(channels), start_response=response))
         return better

@@ -85,6 +85,10 @@ class Experiment:
         command: held from then on [V]. # (m,)
         channels: measured signals, position first.
         start: where the joint rests at the beginning [rad or m]; None for where the rig says.
+        start_error: standard deviation of it [rad or m]. An error there stays, since nothing pulls a joint back that
+            valves move, but for its stops.
+        start_response: by how much each channel changes with the start; None for the position as much, others not at
+            all. # (channels, n)
         longest_step: of the rollout [s].
         spool_steps: of the rollout.
         used: samples that count in a fit. # (n,)
@@ -106,6 +110,8 @@ class Experiment:
     used: np.ndarray
     block: int = 1
     others: tuple[float, np.ndarray] | None = None
+    start_error: float = 0.0
+    start_response: np.ndarray | None = None
 
     @property
     def command_at_samples(self) -> np.ndarray:
@@ -162,19 +168,48 @@ class Experiment:
     def residuals(self, signals: Signals) -> np.ndarray:
         """(measured - model) / noise of every channel, channel after channel; 0 where it does not count.
 
+        What an uncertain start explains is taken out: with the residuals' response a to one standard deviation of it
+        their covariance is I + a a', and they are multiplied by its inverse root.
+
         After a divergence the model has no value: its residual there is NaN. # (channels * n,)
         """
-        parts = []
-        for channel in self.channels:
-            residual = (channel.measured - getattr(signals, channel.model)) / channel.deviation
-            parts.append(np.where(self.used & np.isfinite(channel.measured), residual, 0.0))
-        return np.concatenate(parts)
+        parts, offsets = [], []
+        for number, channel in enumerate(self.channels):
+            deviation = channel.deviation
+            residual = (channel.measured - getattr(signals, channel.model)) / deviation
+            counts = self.used & np.isfinite(channel.measured)
+            parts.append(np.where(counts, residual, 0.0))
+            response = (
+                channel.model == "reading" if self.start_response is None else self.start_response[number]
+            )
+            offsets.append(self.start_error * counts * response / deviation)
+        return _without_offset(np.concatenate(parts), np.concatenate(offsets))
 
     def until(self, seconds: float) -> "Experiment":
         """The beginning of the experiment, up to so many seconds after its first sample."""
         count = int(np.searchsorted(self.time, self.time[0] + seconds, side="right"))
         channels = tuple(channel.until(count) for channel in self.channels)
-        return replace(self, time=self.time[:count], channels=channels, used=self.used[:count])
+        response = None if self.start_response is None else self.start_response[:, :count]
+        return replace(
+            self, time=self.time[:count], channels=channels, used=self.used[:count], start_response=response
+        )
+
+    def responding(self, records: np.ndarray, longest_step: float, signals: Signals) -> np.ndarray | None:
+        """How a model's channels respond to the start, by a rollout that begins one standard deviation off.
+
+        Args:
+            records: of all joints of the rig. # (joints,)
+            longest_step: [s].
+            signals: of the same model, from the start as it is.
+
+        Returns:
+            None where the start is known. # (channels, n)
+        """
+        if self.start is None or self.start_error == 0.0:
+            return None
+        off = replace(self, start=self.start + self.start_error).simulate(records, longest_step).signals
+        changes = [getattr(off, c.model) - getattr(signals, c.model) for c in self.channels]
+        return np.nan_to_num(np.array(changes) / self.start_error)
 
     @property
     def counted(self) -> int:
@@ -264,9 +299,9 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
             measured = np.asarray(recording.signal("supply.pressure"), dtype=float)
             noise = _noise(measured, rig, joint, "pressure_noise")
             channels.append(Channel("supply.pressure", "Pa", "supply_pressure", measured, noise))
-    start = None
+    start, start_error = None, 0.0
     if rig.initial_position == "recording":
-        start = _resting_position(position, command)
+        start, start_error = _resting_position(position, command, _noise(position, rig, joint, "noise"))
     return Experiment(
         name=recording.name,
         joint=joint,
@@ -276,6 +311,7 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
         command=command,
         channels=tuple(channels),
         start=start,
+        start_error=start_error,
         longest_step=rig.value("integration.longest_step"),
         spool_steps=int(rig.value("integration.spool_steps")),
         used=np.ones(recording.time.size, dtype=bool),
@@ -293,8 +329,20 @@ def faithful(measured: np.ndarray) -> float:
     return FAITHFUL * float(np.nanmax(measured) - np.nanmin(measured))
 
 
-def _resting_position(position: np.ndarray, command: np.ndarray) -> float:
-    """Mean of the leading samples while the command has not changed yet and the joint stands still."""
+def _without_offset(residual: np.ndarray, offset: np.ndarray) -> np.ndarray:
+    """(I + a a')^(-1/2) r for what an offset of one standard deviation does, a. # (n,)."""
+    square = float(offset @ offset)
+    if square == 0.0:
+        return residual
+    return residual - (1.0 - 1.0 / np.sqrt(1.0 + square)) * float(offset @ residual) / square * offset
+
+
+def _resting_position(position: np.ndarray, command: np.ndarray, noise: float) -> tuple[float, float]:
+    """Mean of the leading samples while the command has not changed yet and the joint stands still, and its error.
+
+    The halves of these samples may differ by a slow movement that scatter hides: so far the first sample may be from
+    the mean.
+    """
     changed = np.flatnonzero(command != command[0])
     leading = position[: max(int(changed[0]) if changed.size else position.size, 1)]
     finite = leading[np.isfinite(leading)]
@@ -302,7 +350,11 @@ def _resting_position(position: np.ndarray, command: np.ndarray) -> float:
         finite = position[np.isfinite(position)][:1]
     while finite.size >= 4 and not _still(finite):
         finite = finite[: finite.size // 2]
-    return float(finite.mean())
+    crept = 0.0
+    if finite.size >= 4:
+        first, second = np.array_split(finite, 2)
+        crept = float(second.mean() - first.mean())
+    return float(finite.mean()), float(np.hypot(noise / np.sqrt(finite.size), crept))
 
 
 def _still(values: np.ndarray) -> bool:
