@@ -21,6 +21,9 @@ FAITHFUL = 3e-4
 """A model follows a machine to this share of a signal's range at best, however fine the sensor: a noise below it
 would only give weight to what no model holds (a tenth of the best published fits of real machines)."""
 
+MOST_OFF = 3.0
+"""So many standard deviations the start may be off: one in four hundred is more."""
+
 CONSTANT = 1e-12
 """A command that varies by less than this fraction of its size says nothing about the machine."""
 
@@ -330,11 +333,17 @@ def faithful(measured: np.ndarray) -> float:
 
 
 def _without_offset(residual: np.ndarray, offset: np.ndarray) -> np.ndarray:
-    """(I + a a')^(-1/2) r for what an offset of one standard deviation does, a. # (n,)."""
+    """(I + a a')^(-1/2) r for what an offset of one standard deviation does, a. # (n,).
+
+    That takes out the likeliest offset, a'r / (1 + a'a). Where it would be `MOST_OFF` or more something else is wrong,
+    and so much is taken out and no more: a model far from the noise is not to be excused by its start.
+    """
     square = float(offset @ offset)
     if square == 0.0:
         return residual
-    return residual - (1.0 - 1.0 / np.sqrt(1.0 + square)) * float(offset @ residual) / square * offset
+    likeliest = float(offset @ residual) / (1.0 + square)
+    share = (1.0 - 1.0 / np.sqrt(1.0 + square)) * (1.0 + square) / square
+    return residual - share * min(max(likeliest, -MOST_OFF), MOST_OFF) * offset
 
 
 def _resting_position(position: np.ndarray, command: np.ndarray, noise: float) -> tuple[float, float]:

@@ -63,6 +63,18 @@ def test_the_residuals_are_weighted_by_the_inverse_of_their_covariance(rig) -> N
     assert white @ white == pytest.approx(plain @ np.linalg.solve(covariance, plain), rel=1e-9)
 
 
+def test_what_is_far_off_is_not_excused_by_the_start(rig) -> None:
+    (experiment,) = experiments_of(rig, _recording(rig, 1, 25.0))
+    known = replace(experiment, start_error=0.0)
+    signals = experiment.simulate(rig.records()).signals
+    for off_deg in (1.0, 10.0):
+        far = replace(signals, reading=signals.reading + np.radians(off_deg))
+        plain, told = known.residuals(far), experiment.residuals(far)
+        taken = np.degrees(np.abs(plain - told).max() * experiment.channels[0].noise)
+        assert taken <= 3.01 * np.degrees(experiment.start_error)
+        assert np.linalg.norm(told) > 0.8 * np.linalg.norm(plain)
+
+
 def test_the_error_of_the_mean_is_told(rig) -> None:
     """Twenty readings: a standard deviation of 0.05 deg over the root of 20, and what their halves differ by."""
     starts = []
