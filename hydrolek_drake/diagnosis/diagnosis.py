@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from hydrolek_drake.diagnosis.attempt import attempt, balanced, unexcited
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import Conclusion
+from hydrolek_drake.diagnosis.effort import FAR
 from hydrolek_drake.diagnosis.evidence import FINER, Judged, judge_given_up
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
 from hydrolek_drake.diagnosis.law_choice import material, with_law
@@ -156,10 +157,12 @@ def diagnose(
         except KeyboardInterrupt:
             known.bench.resume()
             remarks = [INTERRUPTED]
-    if conclusion.verdict == "unlisted_physics" and law is None and INTERRUPTED not in remarks:
+    far = law is None or law.held_out_over_noise > FAR
+    if conclusion.verdict == "unlisted_physics" and far and INTERRUPTED not in remarks:
         again = balanced(known, rig, nominal, candidates, say)
         if again is not None:
             known, remark = again
+            law = None
             conclusion = material(known.conclusion, known.judged, known.held_out)
             remarks = [*remarks, INTERRUPTED if known.interrupted else remark]
     bench, held_out, found, judged = known.bench, known.held_out, known.found, known.judged

@@ -97,7 +97,7 @@ def grow(
         )
         scored_by[parent.ids] = scored
         for score in scored:
-            if _redundant(parent, score.candidate) or (
+            if redundant(parent.effects, score.candidate) or (
                 not far and score.gain < 0.5 * gain_needed(parent.fit)
             ):
                 continue
@@ -158,7 +158,7 @@ def _pairs(parent: Hypothesis, scored: Sequence[Score]) -> list[_Start]:
     """
     if len(parent.effects) + 2 > MOST_EFFECTS:
         return []
-    free = [s for s in scored if s.gain > 0.0 and not _redundant(parent, s.candidate)]
+    free = [s for s in scored if s.gain > 0.0 and not redundant(parent.effects, s.candidate)]
     alone = max((s.gain for s in free), default=0.0)
     promised: list[tuple[float, _Start]] = []
     for first, second in itertools.combinations(free, 2):
@@ -190,9 +190,9 @@ def _glance(
     return min(fits, key=lambda h: h.fit.objective)
 
 
-def _redundant(parent: Hypothesis, candidate: Candidate) -> bool:
-    """Whether both together say nothing new: the effect, and one that the hypothesis has."""
-    return any(_contains(c, candidate) for c in parent.effects)
+def redundant(effects: Sequence[Candidate], candidate: Candidate) -> bool:
+    """Whether an effect says nothing new beside others, because one of them contains it or is contained in it."""
+    return any(_contains(c, candidate) for c in effects)
 
 
 def _contains(first: Candidate, second: Candidate) -> bool:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import AT_NOISE, BEAM, COARSE, FAR, LOOK, NEAR, NEARLY, POLISH
-from hydrolek_drake.diagnosis.growing import HOPELESS, MOST_EFFECTS, gain_needed, grow
+from hydrolek_drake.diagnosis.growing import HOPELESS, MOST_EFFECTS, gain_needed, grow, redundant
 from hydrolek_drake.diagnosis.lessening import lessened
 from hydrolek_drake.diagnosis.score import Score, scores_of
 from hydrolek_drake.diagnosis.unsticking import different, fit_pulled, led_on, starts_of
@@ -22,6 +22,9 @@ as on real machines. Where several signals count alike, of one signal's part of 
 FIRST_SHARE = 0.1
 """A first effect must take this share of the squared residuals of a nominal model that is far from the noise, or no
 second one is looked for: of two effects, one alone takes much of what both do."""
+
+EXCHANGED = 3
+"""So many effects are tried in the place of each one of a model to which none may be added."""
 
 STUCK = 0.1
 """A fit was stuck if leading it on takes this share of what it leaves above the noise; if it was not, the land is
@@ -111,6 +114,7 @@ def search(
         beam = [h for h in grown if h.fit.objective < HOPELESS * grown[0].fit.objective][:BEAM]
         beam = [found.best] if found.best.fit.over_noise < NEAR else beam
         found.left = scores_of(bench, found.best, candidates, bench.fine)
+    _exchange(bench, found, candidates)
 
 
 def _words(count: int) -> str:
@@ -158,6 +162,29 @@ def _prune(bench: Workbench, found: Search, candidates: Sequence[Candidate]) -> 
     """Fit the best hypothesis again with less."""
     for fitted in lessened(bench, found.best, candidates):
         found.keep(fitted)
+
+
+def _exchange(bench: Workbench, found: Search, candidates: Sequence[Candidate]) -> None:
+    """Where no further effect may be added, try those that promise most in the place of each that the best model has.
+
+    Far from the noise an effect that came first may do a little of what another one does better (stepwise regression
+    with exchange).
+    """
+    best = found.best
+    if len(best.effects) < MOST_EFFECTS or best.fit.over_noise < NEARLY:
+        return
+    needed = gain_needed(best.fit)
+    work: list[tuple[tuple[Candidate, ...], dict[str, float]]] = []
+    for effect in best.effects:
+        rest = tuple(c for c in best.effects if c is not effect)
+        promising = [s for s in found.left if s.gain > needed and not redundant(rest, s.candidate)]
+        work += [((*rest, s.candidate), {**best.values, **s.start}) for s in promising[:EXCHANGED]]
+    for fitted in bench.side_by_side(lambda item: bench.fit(item[0], item[1], bench.fine, POLISH), work):
+        found.keep(fitted)
+    if found.best is not best:
+        found.keep(bench.refit(found.best, bench.fine, LOOK))
+        _prune(bench, found, candidates)
+        found.left = scores_of(bench, found.best, candidates, bench.fine)
 
 
 def _widen(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: Sequence[Candidate]) -> None:

@@ -8,10 +8,11 @@ from dataclasses import replace
 import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
-from hydrolek_drake.diagnosis.effort import POLISH
+from hydrolek_drake.diagnosis.effort import NEARLY, POLISH
 from hydrolek_drake.diagnosis.growing import gain_needed
 from hydrolek_drake.diagnosis.lessening import SLIGHT, slightly_worse, start_of_lesser
-from hydrolek_drake.diagnosis.search import Search, _prune, _widen
+from hydrolek_drake.diagnosis.score import scores_of
+from hydrolek_drake.diagnosis.search import Search, _exchange, _prune, _widen
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -95,3 +96,29 @@ def test_what_a_hypothesis_contains(bench, recorded) -> None:
     assert start_of_lesser(both, both) is None
     assert start_of_lesser(nominal, both) is None
     assert start_of_lesser(other, special) is None
+
+
+def test_where_no_effect_may_be_added_one_that_does_little_gives_way(bench, recorded) -> None:
+    """Droop, piston leakage and seal friction; the best model so far has warming oil in the place of the droop."""
+    concealed = {
+        "supply.pressure_droop.resistance_Pa_s_per_m3": 6e10,
+        "cylinder.cross_port_leakage.conductance_m3_per_s_Pa": 1.5e-12,
+        "cylinder.coulomb_friction.coulomb_N": COULOMB,
+    }
+    machine = bench.with_values({f"effects.{path}": value for path, value in concealed.items()})
+    with _searched(bench, recorded(machine, bench)) as (work, candidates, _, coulomb):
+        known = {c.id: c for c in candidates}
+        leak, droop, warm = (
+            known[name] for name in ("cylinder.cross_port_leakage", "supply.pressure_droop", "fluid.warm_up")
+        )
+        effects = (coulomb, leak, warm)
+        right = {c.size_path: concealed[c.size_path.split(".effects.")[1]] for c in (coulomb, leak)}
+        found = Search()
+        found.keep(work.fit(effects, {**warm.starts[0], **right}, work.fine, POLISH))
+        before = found.best
+        assert before.fit.over_noise > NEARLY
+        found.left = scores_of(work, before, candidates, work.fine)
+        _exchange(work, found, candidates)
+    assert found.best.ids == frozenset(c.size_path for c in (coulomb, leak, droop))
+    assert found.best.fit.over_noise < 1.1
+    assert found.best.values[droop.size_path] == pytest.approx(6e10, rel=0.05)
