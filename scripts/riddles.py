@@ -10,7 +10,6 @@ import argparse
 import datetime
 import json
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -127,14 +126,7 @@ def _controlled(
     wanted = np.full(samples, start)
     for first in range(round(0.5 / period), samples, round(4.0 / period)):
         wanted[first:] = start + generator.uniform(-20.0, 20.0)
-    done = run_controlled(
-        machine,
-        {joint: law},
-        wanted[:, None],
-        period,
-        noise=generator,
-        sizes=replace(SIZES, log_period=period),
-    )
+    done = run_controlled(machine, {joint: law}, wanted[:, None], period, noise=generator, sizes=SIZES)
     noise = np.radians(0.05) * generator.standard_normal(done.time_s.size)
     return done.time_s, done.voltage_V, np.radians(done.angle_deg) + noise[:, None]
 

@@ -192,9 +192,7 @@ def bench_on_machine(
         progress("step tests of every joint")
     settings = {joint: rig_setting(rig, joint) for joint in joints}
     bench = Bench("full")
-    sizes = StepSizes(
-        step=MACHINE_STEP_S, log_period=sample_s(), integrator="symplectic_euler", mount_forces=False
-    )
+    sizes = StepSizes(step=MACHINE_STEP_S, integrator="symplectic_euler", mount_forces=False)
     try:
         for name in controllers:
             for sequence in sequences:

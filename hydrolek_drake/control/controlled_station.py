@@ -1,7 +1,7 @@
 """The full hydraulic machine with controllers in its loop, as one Drake Diagram."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,7 +63,7 @@ def run_controlled(
         initial_deg: where joints start; the others at the rig's initial position.
         noise: of the sensors; None for ideal ones.
         supply_lost_at: when the supply falls to tank pressure [s].
-        sizes: steps of the diagram.
+        sizes: steps of the diagram; it is logged at the control samples, whatever they say.
         on_progress: called with the simulated time now and then.
 
     Returns:
@@ -81,7 +81,9 @@ def run_controlled(
         raise InputError(
             f"set points have shape {wanted.shape}; {len(joints)} controllers need (n, {len(joints)})"
         )
-    sizes = sizes or StepSizes(log_period=sample_s, integrator="symplectic_euler", mount_forces=False)
+    sizes = replace(
+        sizes or StepSizes(integrator="symplectic_euler", mount_forces=False), log_period=sample_s
+    )
     station = make_station(rig, sizes=sizes, noise=noise)
     positions = np.array(station.joints["load"]["initial_position"], dtype=float)
     for joint, angle_deg in (initial_deg or {}).items():

@@ -61,10 +61,14 @@ def attempt(
         interrupted = True
         bench.resume()
     say("holding the models against data that none of them was fitted to")
+    best = found.best
+    weighted = tuple(bench.weighted_by(best, held_out))
     if not interrupted:
-        even(bench, found, bench.weighted_by(found.best, held_out))
-    bench.training = tuple(bench.weighted_by(found.best, bench.training))
-    weighted = tuple(bench.weighted_by(found.best, held_out))
+        even(bench, found, weighted)
+    if found.best is not best:
+        best = found.best
+        weighted = tuple(bench.weighted_by(best, held_out))
+    bench.training = tuple(bench.weighted_by(best, bench.training))
     judged = tuple(judge(bench, found, weighted))
     return Known(bench, found, weighted, judged, conclude(judged), interrupted)
 

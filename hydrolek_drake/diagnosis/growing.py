@@ -197,5 +197,4 @@ def redundant(effects: Sequence[Candidate], candidate: Candidate) -> bool:
 
 def _contains(first: Candidate, second: Candidate) -> bool:
     """Whether one of two effects at the same joint contains the other."""
-    own = first.joint == second.joint
-    return own and (second.id in first.effect.contains or first.id in second.effect.contains)
+    return first.is_special_case_of(second) or second.is_special_case_of(first)

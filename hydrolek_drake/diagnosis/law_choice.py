@@ -77,7 +77,7 @@ def material(conclusion: Conclusion, judged: Sequence[Judged], held_out: Sequenc
     explains them by a wider one proves nothing.
 
     Args:
-        conclusion: of signals that count alike (`balance`), beside which no law was found.
+        conclusion: of signals that count alike (`balance`), beside which no law came near the noise.
         judged: all hypotheses that were held against held-out data.
         held_out: these data.
     """

@@ -18,7 +18,7 @@ def lessened(bench: Workbench, hypothesis: Hypothesis, candidates: Sequence[Cand
     """The same with less, fitted: without each of its effects, and with each special case of one in its place."""
     work: list[tuple[tuple[Candidate, ...], dict[str, float]]] = []
     for effect in hypothesis.effects:
-        rest = tuple(c for c in hypothesis.effects if c is not effect)
+        rest = hypothesis.without(effect)
         work.append((rest, hypothesis.values))
         work += [
             ((*rest, special), {**hypothesis.values, **special.taken_over(effect, hypothesis.values)})

@@ -176,7 +176,7 @@ def _exchange(bench: Workbench, found: Search, candidates: Sequence[Candidate]) 
     needed = gain_needed(best.fit)
     work: list[tuple[tuple[Candidate, ...], dict[str, float]]] = []
     for effect in best.effects:
-        rest = tuple(c for c in best.effects if c is not effect)
+        rest = best.without(effect)
         promising = [s for s in found.left if s.gain > needed and not redundant(rest, s.candidate)]
         work += [((*rest, s.candidate), {**best.values, **s.start}) for s in promising[:EXCHANGED]]
     for fitted in bench.side_by_side(lambda item: bench.fit(item[0], item[1], bench.fine, POLISH), work):
@@ -195,7 +195,7 @@ def _widen(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: 
     """
     work: list[tuple[tuple[Candidate, ...], dict[str, float]]] = []
     for effect in hypothesis.effects:
-        rest = tuple(c for c in hypothesis.effects if c is not effect)
+        rest = hypothesis.without(effect)
         kept = {k: v for k, v in hypothesis.values.items() if not k.startswith(f"{effect.path}.")}
         for wider in candidates:
             if not effect.is_special_case_of(wider):

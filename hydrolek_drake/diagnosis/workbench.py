@@ -50,6 +50,10 @@ class Hypothesis:
         """What identifies it: id and joint of its effects."""
         return key_of(self.effects)
 
+    def without(self, effect: Candidate) -> tuple[Candidate, ...]:
+        """Its effects but for one."""
+        return tuple(c for c in self.effects if c is not effect)
+
     @property
     def extra(self) -> int:
         """Parameters that the nominal model does not have."""

@@ -6,6 +6,7 @@ import numpy as np
 
 from hydrolek_drake.errors import UninformativeError
 from hydrolek_drake.identification.neighbours import effects_of_others, rows_at
+from hydrolek_drake.identification.start import resting_position, without_offset
 from hydrolek_drake.identification.thinning import Blocks, block_size
 from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.replay.noise import noise_level
@@ -14,15 +15,9 @@ from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.kernel import PULLED
 from hydrolek_drake.rollout.rollout import Outcome, Signals, rest_state_at_reading, roll_out
 
-STANDS_STILL = 3.0
-"""The means of two halves of the leading samples differ by less than so many of their standard errors."""
-
 FAITHFUL = 3e-4
 """A model follows a machine to this share of a signal's range at best, however fine the sensor: a noise below it
 would only give weight to what no model holds (a tenth of the best published fits of real machines)."""
-
-MOST_OFF = 3.0
-"""So many standard deviations the start may be off: one in four hundred is more."""
 
 CONSTANT = 1e-12
 """A command that varies by less than this fraction of its size says nothing about the machine."""
@@ -186,7 +181,7 @@ class Experiment:
                 channel.model == "reading" if self.start_response is None else self.start_response[number]
             )
             offsets.append(self.start_error * counts * response / deviation)
-        return _without_offset(np.concatenate(parts), np.concatenate(offsets))
+        return without_offset(np.concatenate(parts), np.concatenate(offsets))
 
     def until(self, seconds: float) -> "Experiment":
         """The beginning of the experiment, up to so many seconds after its first sample."""
@@ -304,7 +299,7 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
             channels.append(Channel("supply.pressure", "Pa", "supply_pressure", measured, noise))
     start, start_error = None, 0.0
     if rig.initial_position == "recording":
-        start, start_error = _resting_position(position, command, _noise(position, rig, joint, "noise"))
+        start, start_error = resting_position(position, command, _noise(position, rig, joint, "noise"))
     return Experiment(
         name=recording.name,
         joint=joint,
@@ -330,44 +325,3 @@ def _noise(measured: np.ndarray, rig: Rig, joint: str, name: str) -> float:
 def faithful(measured: np.ndarray) -> float:
     """Smallest deviation that counts for a signal, see `FAITHFUL`."""
     return FAITHFUL * float(np.nanmax(measured) - np.nanmin(measured))
-
-
-def _without_offset(residual: np.ndarray, offset: np.ndarray) -> np.ndarray:
-    """(I + a a')^(-1/2) r for what an offset of one standard deviation does, a. # (n,).
-
-    That takes out the likeliest offset, a'r / (1 + a'a). Where it would be `MOST_OFF` or more something else is wrong,
-    and so much is taken out and no more: a model far from the noise is not to be excused by its start.
-    """
-    square = float(offset @ offset)
-    if square == 0.0:
-        return residual
-    likeliest = float(offset @ residual) / (1.0 + square)
-    share = (1.0 - 1.0 / np.sqrt(1.0 + square)) * (1.0 + square) / square
-    return residual - share * min(max(likeliest, -MOST_OFF), MOST_OFF) * offset
-
-
-def _resting_position(position: np.ndarray, command: np.ndarray, noise: float) -> tuple[float, float]:
-    """Mean of the leading samples while the command has not changed yet and the joint stands still, and its error.
-
-    The halves of these samples may differ by a slow movement that scatter hides: so far the first sample may be from
-    the mean.
-    """
-    changed = np.flatnonzero(command != command[0])
-    leading = position[: max(int(changed[0]) if changed.size else position.size, 1)]
-    finite = leading[np.isfinite(leading)]
-    if not finite.size:
-        finite = position[np.isfinite(position)][:1]
-    while finite.size >= 4 and not _still(finite):
-        finite = finite[: finite.size // 2]
-    crept = 0.0
-    if finite.size >= 4:
-        first, second = np.array_split(finite, 2)
-        crept = float(second.mean() - first.mean())
-    return float(finite.mean()), float(np.hypot(noise / np.sqrt(finite.size), crept))
-
-
-def _still(values: np.ndarray) -> bool:
-    """Whether the halves of some samples have one mean, as far as their scatter tells."""
-    first, second = np.array_split(values, 2)
-    error = np.sqrt(first.var(ddof=1) / first.size + second.var(ddof=1) / second.size)
-    return abs(float(first.mean() - second.mean())) <= STANDS_STILL * error

@@ -1,63 +1,26 @@
 """Contact of both grippers' hands and fingers with a pipe, clamped or loose, as forces on the simulated machine."""
 
-import xml.etree.ElementTree as ElementTree
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 from pydrake.common.value import AbstractValue, Value
-from pydrake.math import RollPitchYaw
 from pydrake.multibody.math import SpatialForce
 from pydrake.multibody.plant import ExternallyAppliedSpatialForce, MultibodyPlant
 from pydrake.multibody.tree import RigidBody
 from pydrake.systems.framework import BasicVector, Context, LeafSystem, State
 
 from hydrolek_drake.compiled import read_only
-from hydrolek_drake.kinematics.arms import arms_urdf_path
 from hydrolek_drake.kinematics.chain import SIDES
+from hydrolek_drake.workcell.fingers import FIXED, MOVING, fingers
 from hydrolek_drake.workcell.loose_pipe import GRAVITY, LoosePipe, Pose
 from hydrolek_drake.workcell.pipe import Pipe, workcell_entries
 from hydrolek_drake.workcell.table import Table
 
 Array = NDArray[np.float64]
 
-_MOVING, _FIXED = "jaw", "link6"
 _NO_TORQUE = np.zeros(3)
-
-
-@dataclass(frozen=True)
-class Finger:
-    """A box of the URDF as a rod with round ends: its middle line and its half thickness.
-
-    Attributes:
-        link: `jaw` or `link6`.
-        ends: Of the middle line in the link's frame, in m, shape (2, 3).
-        radius: Half the box's thickness in m.
-    """
-
-    link: str
-    ends: Array
-    radius: float
-
-
-def fingers(side: str) -> list[Finger]:
-    """Collision boxes of a gripper's hand, fixed fingers and moving finger."""
-    found = []
-    for link in ElementTree.parse(arms_urdf_path()).getroot().iter("link"):
-        for part in (_FIXED, _MOVING):
-            if link.get("name") != f"{side}_{part}":
-                continue
-            for collision in link.iter("collision"):
-                box, origin = collision.find("geometry/box"), collision.find("origin")
-                if box is None or origin is None:
-                    continue
-                size = _numbers(box.get("size"))
-                turned = RollPitchYaw(_numbers(origin.get("rpy", "0 0 0"))).ToRotationMatrix().matrix()
-                along = 0.5 * (size[0] - size[1]) * turned[:, 0]
-                middle = _numbers(origin.get("xyz"))
-                found.append(Finger(part, np.array([middle - along, middle + along]), 0.5 * size[1]))
-    return found
 
 
 class GripContact(LeafSystem):
@@ -99,8 +62,8 @@ class GripContact(LeafSystem):
         self._own = plant.CreateDefaultContext()
         self._sides = [
             (
-                plant.GetBodyByName(f"{side}_{_FIXED}"),
-                [self._part(side, link) for link in (_FIXED, _MOVING)],
+                plant.GetBodyByName(f"{side}_{FIXED}"),
+                [self._part(side, link) for link in (FIXED, MOVING)],
             )
             for side in SIDES
         ]
@@ -206,7 +169,7 @@ class GripContact(LeafSystem):
         gripped = []
         for side in SIDES:
             pressed = []
-            for part in (_MOVING, _FIXED):
+            for part in (MOVING, FIXED):
                 mine = [(owner, finger.link) == (side, part) for owner, finger in self.fingers]
                 pressed.append(float(sizes[mine].sum()) >= self._carries)
             takes = pressed[1] and self._jaws[side].get_angular_rate(self._own) <= 0.0
@@ -263,7 +226,7 @@ class GripContact(LeafSystem):
     def _calc_grip(self, context: Context, output: BasicVector) -> None:
         sizes = self.sizes(context)
         for place, side in enumerate(SIDES):
-            moving = [owner == side and finger.link == _MOVING for owner, finger in self.fingers]
+            moving = [owner == side and finger.link == MOVING for owner, finger in self.fingers]
             output[place] = float(sizes[moving].sum())
 
     def _calc_place(self, context: Context, output: BasicVector) -> None:
@@ -312,7 +275,3 @@ def _touch(
 def _square_to(pipe: Pipe, vector: Array) -> Array:
     """The part of a vector that is square to the pipe's axis."""
     return vector - (vector @ pipe.axis) * pipe.axis
-
-
-def _numbers(text: str | None) -> Array:
-    return np.array([float(word) for word in (text or "").split()])

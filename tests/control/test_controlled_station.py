@@ -8,6 +8,7 @@ from hydrolek_drake.control.closed_loop import loop_on_rollout
 from hydrolek_drake.control.controlled_station import run_controlled
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.station.station import StepSizes
 
 JOINT = "right_j2"
 
@@ -30,6 +31,17 @@ def test_diagram_and_compiled_loop_agree(rig, setting, name):
     plain = loop_on_rollout(law, rig.records(), wanted, 0.05, rows_per_sample=1, longest_step=5e-4)
     assert np.max(np.abs(diagram.angle_deg[:, 0] - plain.angle_deg[: len(diagram.angle_deg)])) < 0.5
     assert diagram.angle_deg[-1, 0] == pytest.approx(plain.angle_deg[len(diagram.angle_deg) - 1], abs=0.3)
+
+
+def test_signals_are_those_of_the_control_samples_whatever_the_diagram_is_to_log(rig, setting):
+    law, wanted = build_law("pip_idz_c", setting, noisy=False), np.full((40, 1), 40.0)
+    runs = [
+        run_controlled(rig, {JOINT: law}, wanted, 0.05, sizes=StepSizes(log_period=period))
+        for period in (0.01, 0.05)
+    ]
+    np.testing.assert_array_equal(runs[0].angle_deg, runs[1].angle_deg)
+    np.testing.assert_array_equal(runs[0].voltage_V, runs[1].voltage_V)
+    assert runs[0].angle_deg[-1, 0] == pytest.approx(40.0, abs=3.0)
 
 
 @pytest.mark.parametrize("name", ("pi", "pid", "pip_idz_b", "feedforward"))

@@ -10,7 +10,8 @@ from pydrake.systems.framework import DiagramBuilder
 from hydrolek_drake.kinematics.arms import add_arms, arm_joint_names, position_indices
 from hydrolek_drake.kinematics.forward import tool_pose
 from hydrolek_drake.kinematics.frames import in_frame
-from hydrolek_drake.workcell.grip_contact import GripContact, fingers
+from hydrolek_drake.workcell.fingers import fingers
+from hydrolek_drake.workcell.grip_contact import GripContact
 from hydrolek_drake.workcell.pipe import make_pipe, workcell_entries
 from hydrolek_drake.workcell.scene import home_posture
 from hydrolek_drake.workcell.table import make_table
