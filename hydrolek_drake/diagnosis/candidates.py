@@ -42,6 +42,12 @@ class Candidate:
         """Full path of the parameter that switches it on."""
         return f"{self.path}.{self.effect.size}"
 
+    @property
+    def moments(self) -> tuple[Free, ...]:
+        """Its parameters that say when something happens."""
+        pairs = zip(self.free, self.effect.search.values(), strict=True)
+        return tuple(free for free, search in pairs if search.moment)
+
     def taken_over(self, other: "Candidate", values: dict[str, float]) -> dict[str, float]:
         """Full path -> value of this effect's parameters that another one, fitted, also has; within the ranges."""
         known = {free.path.rpartition(".")[2]: values[free.path] for free in other.free}

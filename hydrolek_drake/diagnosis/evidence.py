@@ -173,7 +173,7 @@ def _predicted(
     far_off = plain.over_noise > SMALL
     if far_off and hypothesis.fit.over_noise > AT_NOISE:
         return plain
-    jacobian = problem.jacobian(unit, residuals)
+    jacobian = problem.jacobian(unit, residuals, bench.movable(hypothesis.effects, problem.parameters))
     bench.evaluations += problem.evaluations
     chi_squared, spread = predictive(residuals, jacobian, hypothesis.fit)
     if far_off or 2.0 * plain.half_chi_squared - chi_squared > NEARBY:

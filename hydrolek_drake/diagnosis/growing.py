@@ -18,7 +18,7 @@ from hydrolek_drake.diagnosis.effort import (
     NEARLY,
     POLISH,
 )
-from hydrolek_drake.diagnosis.moments import timed
+from hydrolek_drake.diagnosis.moments import begun, timed
 from hydrolek_drake.diagnosis.score import Score, gain_of_pair, scores_of
 from hydrolek_drake.diagnosis.unsticking import different, of_another_joint, unstuck
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
@@ -119,6 +119,7 @@ def grow(
         if over > AT_NOISE:
             items += [pair for parent in beam for pair in _pairs(parent, scored_by[parent.ids])]
         fits = bench.side_by_side(lambda i: bench.fit(i[0], min(i[1], key=_first)[1], step, POLISH), items)
+        fits = [timed(bench, h, step) for h in fits]
         return Grown(sorted(fits, key=lambda h: h.fit.objective), {})
     glances = bench.side_by_side(
         lambda item: _glance(bench, item[0], [start for _, start in item[1]], step), list(work.values())
@@ -146,6 +147,7 @@ def grow(
     nearest = looks[0].fit.over_noise
     near = [h for h in looks if h.fit.over_noise < max(1.5 * nearest, AT_NOISE)][:BEAM]
     polished = bench.side_by_side(lambda h: bench.refit(h, bench.fine, POLISH), near)
+    polished = [timed(bench, h, bench.fine) if h.fit.over_noise > AT_NOISE else h for h in polished]
     polished.sort(key=lambda h: h.fit.objective)
     return Grown([*polished, *looks[len(near) :]][: max(len(polished), 3)], behind)
 
@@ -184,7 +186,15 @@ def _glance(
     """A few steps from each start."""
     part = [experiment.until(GLANCE_S) for experiment in bench.training]
     fits = [
-        bench.fit(effects, start, step, GLANCE, tolerance=1e-3, experiments=part, alone=True)
+        bench.fit(
+            effects,
+            begun(bench, effects, start, step),
+            step,
+            GLANCE,
+            tolerance=1e-3,
+            experiments=part,
+            alone=True,
+        )
         for start in different(starts)[:2]
     ]
     return min(fits, key=lambda h: h.fit.objective)

@@ -7,7 +7,7 @@ from hydrolek_drake.diagnosis.balance import squares_of
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, EXPLAINED_AHEAD, MATERIAL, Conclusion
 from hydrolek_drake.diagnosis.evidence import Judged
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
-from hydrolek_drake.diagnosis.unlisted import find_law
+from hydrolek_drake.diagnosis.unlisted import find_law, without_effects
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiment import Experiment
@@ -59,12 +59,17 @@ def _law_and_model(
     Known effects that were fitted without the law may only have made up for it: the law is searched beside the
     nominal model too, which is preferred unless the effects make it predict better by `SIMPLER`. Effects that take
     no material part of the error are left out from the beginning, and so are all where the law alone explains the data.
+    A law that was found beside effects may be another one than the nominal model led to, so it is tried without them.
     """
     alone = find_law(bench, nominal, held_out, scales)
     if _immaterial(best, nominal) or (alone is not None and _explains(alone)):
         return alone, nominal
     law = find_law(bench, best, held_out, scales)
-    to_beat = SIMPLER * law.held_out_over_noise if law is not None else best.over_noise
+    to_beat = best.over_noise
+    if law is not None:
+        to_beat = SIMPLER * law.held_out_over_noise
+        again = without_effects(bench, nominal, law, held_out)
+        alone = min((found for found in (alone, again) if found is not None), key=_ahead)
     if alone is not None and alone.held_out_over_noise < to_beat:
         return alone, nominal
     return law, best
@@ -92,6 +97,10 @@ def material(conclusion: Conclusion, judged: Sequence[Judged], held_out: Sequenc
 
 def _immaterial(best: Judged, nominal: Judged) -> bool:
     return best.half_chi_squared > MATERIAL * nominal.half_chi_squared
+
+
+def _ahead(law: FoundLaw) -> float:
+    return law.held_out_over_noise
 
 
 def _explains(law: FoundLaw) -> bool:

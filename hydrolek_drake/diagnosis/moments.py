@@ -1,18 +1,22 @@
 """The moment at which something happens, such as a load that is picked up.
 
 Residuals do not tell least squares where such a moment lies: within an integration step they do not change with it at
-all, and from one move of the joint to the next they have hollows. So all moments are gone through.
+all, and from one move of the joint to the next they have hollows. So fits leave it where it is (`Workbench.fit`), and
+moments are gone through: first far apart with a short fit from each, then near the best one.
 """
 
 import itertools
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.stats import chi2
 
-from hydrolek_drake.diagnosis.effort import LOOK
+from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.diagnosis.effort import GLANCE, LOOK
 from hydrolek_drake.diagnosis.intervals import CONFIDENCE, Interval
 from hydrolek_drake.diagnosis.score import Across
-from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.unsticking import different
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, moments_of
 from hydrolek_drake.identification.parameter_set import Free
 
 GRID = 120
@@ -28,6 +32,30 @@ TIMES_FINER = 3
 """After which neighbours are a thousandth of the first ones' distance apart, milliseconds, as integration steps are."""
 
 
+def begun(
+    bench: Workbench, effects: Sequence[Candidate], values: dict[str, float], step: float
+) -> dict[str, float]:
+    """Full path -> value: the best of short fits from every moment at which the last effect's search begins.
+
+    The whole recording is fitted, for what begins late shows in no part of it.
+
+    Args:
+        bench: data and fits.
+        effects: what is added to the nominal model; of the last one no moment is known.
+        values: full path -> where the fits begin but for that moment.
+        step: integration step [s].
+    """
+    paths = [free.path for free in effects[-1].moments]
+    if not paths:
+        return values
+    moments = different([{path: start[path] for path in paths} for start in effects[-1].starts])
+    fits = [
+        bench.fit(effects, {**values, **moment}, step, GLANCE, tolerance=1e-3, alone=True)
+        for moment in moments
+    ]
+    return min(fits, key=lambda h: h.fit.objective).values
+
+
 def timed(bench: Workbench, hypothesis: Hypothesis, step: float) -> Hypothesis:
     """A hypothesis fitted again from the best moment of what it has happen; itself if that is no better.
 
@@ -36,7 +64,7 @@ def timed(bench: Workbench, hypothesis: Hypothesis, step: float) -> Hypothesis:
         hypothesis: a fitted one.
         step: integration step [s].
     """
-    moments = _moments(hypothesis)
+    moments = moments_of(hypothesis.effects)
     if not moments:
         return hypothesis
     best = hypothesis
@@ -65,7 +93,7 @@ def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis) -> dict[str, 
     Wild, Nonlinear Regression, 1989, chapter 5).
     """
     found = {}
-    for free in _moments(hypothesis):
+    for free in moments_of(hypothesis.effects):
         value, apart = hypothesis.values[free.path], (free.upper - free.lower) / GRID
         tried = np.linspace(free.lower, free.upper, GRID + 1)
         near = np.clip(value + apart * np.linspace(-2.0, 2.0, 4 * FINER + 1), free.lower, free.upper)
@@ -76,15 +104,6 @@ def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis) -> dict[str, 
         low, high = max(alike[0] - 1, 0), min(alike[-1] + 1, len(moments) - 1)
         found[free.path] = Interval(value, min(moments[low], value), max(moments[high], value))
     return found
-
-
-def _moments(hypothesis: Hypothesis) -> list[Free]:
-    return [
-        free
-        for candidate in hypothesis.effects
-        for free, search in zip(candidate.free, candidate.effect.search.values(), strict=True)
-        if search.moment
-    ]
 
 
 def _best(moments: np.ndarray, errors: np.ndarray) -> float:

@@ -12,7 +12,7 @@ from hydrolek_drake.diagnosis.effort import AT_NOISE, BEAM, COARSE, FAR, LOOK, N
 from hydrolek_drake.diagnosis.growing import HOPELESS, MOST_EFFECTS, gain_needed, grow, redundant
 from hydrolek_drake.diagnosis.lessening import lessened
 from hydrolek_drake.diagnosis.score import Score, scores_of
-from hydrolek_drake.diagnosis.unsticking import different, fit_pulled, led_on, starts_of
+from hydrolek_drake.diagnosis.unsticking import different, fit_pulled, led_on, started_again
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
 MATERIAL_GAIN = 0.3
@@ -218,7 +218,6 @@ def _lead_on(bench: Workbench, found: Search) -> None:
     best = found.best
     if found.smooth or not best.effects or not AT_NOISE < best.fit.over_noise < FAR:
         return
-    again = [{**best.values, **start} for start in starts_of(best.effects)]
-    led = led_on(bench, best.effects, [best.values, *again])
+    led = led_on(bench, best.effects, [best.values, *started_again(best)])
     found.keep(led)
     found.smooth = best.fit.objective - led.fit.objective < STUCK * (best.fit.objective - best.fit.counted)

@@ -14,8 +14,8 @@ from hydrolek_drake.diagnosis.evidence import Judged
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
 from hydrolek_drake.diagnosis.law_search import COARSE, promising
-from hydrolek_drake.diagnosis.laws import inputs_of, span_of
-from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.diagnosis.laws import Span, inputs_of, span_of
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiment import Experiment
 
@@ -45,13 +45,7 @@ def find_law(
     pressure = bench.rig.value("supply.pressure")
     limit = bench.rig.value(f"joints.{joint}.command.limit")
     inputs = inputs_of(scales, pressure, limit, bench.training[0].channels[0].unit)
-    parameters = bench.parameters(left.effects)
-    records = parameters.records(parameters.unit(left.values))
-    span = span_of(
-        [e.simulate(records, COARSE * bench.fine).signals for e in bench.training],
-        records[bench.training[0].index],
-        max(float(np.ptp(e.time)) for e in bench.training),
-    )
+    span = _span(bench, left)
     laws = sorted(promising(bench, left, inputs, span), key=lambda law: -law.gain)
     if not laws or laws[0].gain <= 0.0:
         return None
@@ -61,6 +55,32 @@ def find_law(
     ended = bench.side_by_side(lambda item: fitted(bench, left, item[0], held_out, span, item[1][1:]), ranked)
     best = min(ended, key=lambda found: found.held_out_over_noise)
     return best if best.held_out_over_noise < BETTER * named.over_noise else None
+
+
+def without_effects(
+    bench: Workbench, nominal: Judged, law: FoundLaw, held_out: Sequence[Experiment]
+) -> FoundLaw:
+    """A law that was found beside effects, fitted beside the nominal model.
+
+    Args:
+        bench: data and fits.
+        nominal: the model without effects.
+        law: found beside a model with some.
+        held_out: what decides.
+    """
+    begin = (law.parameters, law.values)
+    return fitted(bench, nominal.hypothesis, law.law, held_out, _span(bench, nominal.hypothesis), begin)
+
+
+def _span(bench: Workbench, left: Hypothesis) -> Span:
+    """What a law's variables are told in, from the training data as a model has them."""
+    parameters = bench.parameters(left.effects)
+    records = parameters.records(parameters.unit(left.values))
+    return span_of(
+        [e.simulate(records, COARSE * bench.fine).signals for e in bench.training],
+        records[bench.training[0].index],
+        max(float(np.ptp(e.time)) for e in bench.training),
+    )
 
 
 def _one_of_each(laws: Sequence[Law]) -> list[Law]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import BEAM, GLANCE_S, LOOK, POLISH
-from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, moments_of
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import PULLED_STEPS, PULLED_TOLERANCE
 from hydrolek_drake.identification.problem import PULL_S
@@ -51,8 +51,8 @@ def unstuck(
     def pulled(glance: Hypothesis) -> Hypothesis:
         joints = bench.joints_of(glance.effects)
         others = {k: v for k, v in glance.values.items() if of_another_joint(k, joints)}
-        starts = [{**others, **start} for start in ({}, *starts_of(glance.effects))]
-        return fit_pulled(bench, glance.effects, starts, step, part)
+        starts = [{**others, **start, **_timing(glance)} for start in ({}, *starts_of(glance.effects))]
+        return fit_pulled(bench, glance.effects, different(starts), step, part)
 
     ahead = sorted(bench.side_by_side(pulled, glances[:TRIED_PULLED]), key=lambda h: h.fit.objective)
 
@@ -94,6 +94,17 @@ def starts_of(effects: Sequence[Candidate]) -> list[dict[str, float]]:
     """Every combination of the places where searches of these effects begin."""
     combinations = itertools.product(*(candidate.starts for candidate in effects))
     return [{path: value for start in chosen for path, value in start.items()} for chosen in combinations]
+
+
+def started_again(hypothesis: Hypothesis) -> list[dict[str, float]]:
+    """Its values, with those of its effects where their searches begin; when something happens is kept."""
+    starts = starts_of(hypothesis.effects)
+    return different([{**hypothesis.values, **start, **_timing(hypothesis)} for start in starts])
+
+
+def _timing(hypothesis: Hypothesis) -> dict[str, float]:
+    """When something happens, which rollouts that forget do not tell."""
+    return {free.path: hypothesis.values[free.path] for free in moments_of(hypothesis.effects)}
 
 
 def led_on(bench: Workbench, effects: Sequence[Candidate], starts: Sequence[dict[str, float]]) -> Hypothesis:

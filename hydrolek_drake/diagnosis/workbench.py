@@ -65,6 +65,11 @@ def key_of(effects: Iterable[Candidate]) -> frozenset[str]:
     return frozenset(candidate.size_path for candidate in effects)
 
 
+def moments_of(effects: Iterable[Candidate]) -> list[Free]:
+    """Parameters of some effects that say when something happens."""
+    return [free for candidate in effects for free in candidate.moments]
+
+
 class Workbench:
     """Recordings for training, the rig's nominal parameters, and fits of any set of effects."""
 
@@ -153,7 +158,7 @@ class Workbench:
         alone: bool = False,
         difference: float = DIFFERENCE,
     ) -> Hypothesis:
-        """Fit the nominal model with these effects.
+        """Fit the nominal model with these effects; when something happens stays as it starts, see `moments`.
 
         Args:
             effects: what is added.
@@ -170,16 +175,25 @@ class Workbench:
         effects = tuple(effects)
         problem = self.problem(effects, step, experiments, pull_time, difference)
         parameters = problem.parameters
+        moving = self.movable(effects, parameters)
+        if alone and effects:
+            moving &= self._acted_on(effects, parameters)
         fit = fit_from(
             problem,
             parameters.unit(values),
             most_steps=most_steps,
             tolerance=tolerance,
             stop=self._stopped.is_set,
-            moving=self._acted_on(effects, parameters) if alone and effects else None,
+            moving=moving,
         )
         self.evaluations += fit.evaluations
         return Hypothesis(effects, parameters.values(fit.unit), fit, step)
+
+    @staticmethod
+    def movable(effects: Sequence[Candidate], parameters: ParameterSet) -> np.ndarray:
+        """Parameters that least squares can move: all but moments, see `moments`. # (n,)."""
+        held = {free.path for free in moments_of(effects)}
+        return np.array([path not in held for path in parameters.paths])
 
     def joints_of(self, effects: Sequence[Candidate]) -> set[str]:
         """Joints on which effects act: the supply's act on every joint, whichever carries their parameters."""

@@ -18,7 +18,7 @@ EFFECT = Effect(
     size="mass_kg",
     search={
         "mass_kg": Search("payload", 0.5, (0.02, 0.1)),
-        "time_s": Search("duration", 1, (0.0, 0.3, 0.6), moment=True),
+        "time_s": Search("duration", 1, tuple(part / 16 for part in range(16)), moment=True),
     },
     source="rigid-body mechanics, thesis (4.1)",
     confused_with={

@@ -25,9 +25,12 @@ def _law(train: float, ahead: float):
 
 @pytest.fixture
 def choose(monkeypatch):
-    """(best known, nominal, law beside best, law alone, verdict) -> conclusion, law, what laws were sought beside."""
+    """(best known, nominal, law beside best, law alone, verdict) -> conclusion, law, what laws were sought beside.
 
-    def run(best, nominal, beside, alone, verdict="unlisted_physics"):
+    `without` is the law beside the best model when it is fitted without that one's effects.
+    """
+
+    def run(best, nominal, beside, alone, verdict="unlisted_physics", without=None):
         asked = []
 
         def find(bench, named, held_out, scales):
@@ -35,6 +38,7 @@ def choose(monkeypatch):
             return alone if named is nominal else beside
 
         monkeypatch.setattr(law_choice, "find_law", find)
+        monkeypatch.setattr(law_choice, "without_effects", lambda *given: without)
         known = Conclusion(verdict, best, {}, ())
         return *with_law(None, known, (best, nominal), (), None, lambda text: None), asked
 
@@ -57,6 +61,18 @@ def test_known_effects_stay_if_the_law_needs_them(choose) -> None:
     near = _law(3.0, 2.0 * SIMPLER * 0.99)
     conclusion, law, _ = choose(best, nominal, beside, near)
     assert law is near and conclusion.best is nominal
+
+
+def test_a_law_found_beside_effects_is_preferred_without_them_if_it_does_as_well(choose) -> None:
+    best, nominal = _judged(4.0, effects=2), _judged(10.0)
+    beside, another = _law(1.0, 1.0), _law(3.0, 3.0)
+    as_good, worse = _law(1.0, SIMPLER * 0.99), _law(1.0, SIMPLER * 1.01)
+    conclusion, law, _ = choose(best, nominal, beside, another, without=as_good)
+    assert law is as_good and conclusion.best is nominal
+    conclusion, law, _ = choose(best, nominal, beside, None, without=as_good)
+    assert law is as_good and conclusion.best is nominal
+    conclusion, law, _ = choose(best, nominal, beside, another, without=worse)
+    assert law is beside and conclusion.best is best
 
 
 def test_effects_that_take_no_material_part_are_left_out(choose) -> None:

@@ -2,11 +2,12 @@
 
 from concurrent.futures import ThreadPoolExecutor
 
+import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.effort import GLANCE, LOOK
-from hydrolek_drake.diagnosis.moments import intervals_of_moments, timed
+from hydrolek_drake.diagnosis.moments import begun, intervals_of_moments, timed
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -29,6 +30,7 @@ def test_the_moment_of_a_pick_up_is_found_from_a_wrong_one(bench, recorded) -> N
         found = timed(workbench, stuck, step)
         known = intervals_of_moments(workbench, found)[f"{payload.path}.time_s"]
         plain = timed(workbench, workbench.fit((), {}, step, GLANCE), step)
+    assert stuck.values[f"{payload.path}.time_s"] == 7.0
     assert stuck.fit.over_noise > 2.0
     assert found.fit.over_noise < 1.1
     assert found.values[f"{payload.path}.time_s"] == pytest.approx(PICKED_UP["time_s"], abs=0.05)
@@ -36,3 +38,22 @@ def test_the_moment_of_a_pick_up_is_found_from_a_wrong_one(bench, recorded) -> N
     assert known.low <= PICKED_UP["time_s"] <= known.high
     assert 0.0 < known.high - known.low < 0.5
     assert not plain.effects
+
+
+def test_short_fits_from_moments_far_apart_come_near(bench, recorded) -> None:
+    machine = bench.with_values({f"effects.load.payload.{name}": value for name, value in PICKED_UP.items()})
+    experiments = recorded(machine, bench, largest_V=5.0)
+    candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
+    payload = next(c for c in candidates if c.id == "load.payload")
+    others = [c for c in candidates if not c.moments]
+    with ThreadPoolExecutor(2) as pool:
+        workbench = Workbench(bench, free_parameters(bench), experiments, pool)
+        step = 2.0 * workbench.fine
+        near = begun(workbench, (payload,), payload.starts[0], step)
+        kept = begun(workbench, (payload, others[0]), near, step)
+    moments = sorted({start[payload.moments[0].path] for start in payload.starts})
+    apart = max(np.diff(moments))
+    assert near[payload.moments[0].path] == pytest.approx(PICKED_UP["time_s"], abs=apart)
+    assert kept is near  # an effect without a moment begins where it was told to
+    assert {free.path for free in payload.moments} == {f"{payload.path}.time_s"}
+    assert len(others) == len(candidates) - 1
