@@ -119,8 +119,8 @@ def grow(
         if over > AT_NOISE:
             items += [pair for parent in beam for pair in _pairs(parent, scored_by[parent.ids])]
         fits = bench.side_by_side(lambda i: bench.fit(i[0], min(i[1], key=_first)[1], step, POLISH), items)
-        fits = [timed(bench, h, step) for h in fits]
-        return Grown(sorted(fits, key=lambda h: h.fit.objective), {})
+        fits.sort(key=lambda h: h.fit.objective)
+        return Grown(sorted([timed(bench, fits[0], step), *fits[1:]], key=lambda h: h.fit.objective), {})
     glances = bench.side_by_side(
         lambda item: _glance(bench, item[0], [start for _, start in item[1]], step), list(work.values())
     )
