@@ -15,6 +15,19 @@ from hydrolek_drake.identification.problem import Problem
 HIGHEST_HZ = 8.0
 """Frequencies up to this one are looked for; joints hardly follow faster ones."""
 
+LOWEST = 1.0
+"""Cycles at least within `SCAN_S`."""
+
+SPACING = 0.25
+"""Frequencies are tried so many cycles over the recording apart. Two half a cycle apart are hardly told from each other by
+their sines alone; but the fitted parameters undo a part of both, and what is left of a peak is narrower."""
+
+FOLLOWED = 6
+"""So many peaks of the first part are looked at with more of the recording, where frequencies lie further apart."""
+
+LONGER_S = 60.0
+"""With so many seconds of it."""
+
 TRIED = 1e-3
 """Amplitude of a trial, as a fraction of the input's scale: small enough to be linear."""
 
@@ -39,6 +52,7 @@ def promising(bench: Workbench, left: Hypothesis, inputs: Sequence[Input], span:
     step = COARSE * bench.fine
     across = Across(left.fit)
     off = left.fit.off_prior
+    counted = sum(e.counted for e in bench.training)
 
     def response(
         experiments: Sequence[Experiment],
@@ -75,38 +89,47 @@ def promising(bench: Workbench, left: Hypothesis, inputs: Sequence[Input], span:
             found.append(Law(given, term, 0.0, gain, (start,)))
         return found
 
-    def of_frequencies(given: Input) -> list[Law]:
-        bench.alive()
-        part = [e.until(SCAN_S) for e in bench.training[:1]]
+    def gains(given: Input, part: Sequence[Experiment], frequencies: np.ndarray) -> list[Law]:
         here = response(part, given, TERMS[0], 0.0)
         own = Problem(parameters, part, step)
         base = own.residuals(parameters.unit(left.values))
-        nearby = Across(
-            Fit(
-                left.fit.unit,
-                base,
-                off,
-                own.jacobian(left.fit.unit, base),
-                left.fit.prior_jacobian,
-                own.counted,
-                0,
-            )
-        )
+        jacobian = own.jacobian(left.fit.unit, base)
+        nearby = Across(Fit(left.fit.unit, base, off, jacobian, left.fit.prior_jacobian, own.counted, 0))
         rest = nearby(np.concatenate([here, off]))
-        spacing = 0.5 / SCAN_S
         found = []
-        for frequency in np.arange(2.0 * spacing, HIGHEST_HZ, spacing):
+        for frequency in frequencies.tolist():
+            bench.alive()
             columns = []
             for sine, cosine in ((TRIED, 0.0), (0.0, TRIED)):
-                moved = response(part, given, None, sine, cosine, float(frequency)) - here
+                moved = response(part, given, None, sine, cosine, frequency) - here
                 columns.append(nearby(np.concatenate([moved, np.zeros(off.size)])))
-            found.append(Law(given, None, float(frequency), *_gain(np.stack(columns, axis=1), rest)))
-        whole = sum(e.counted for e in bench.training) / max(own.counted, 1)
-        best = max(found, key=lambda law: law.gain)
-        return [Law(given, None, best.frequency, best.gain * whole, best.amplitudes)]
+            gain, amplitudes = _gain(np.stack(columns, axis=1), rest)
+            found.append(Law(given, None, frequency, gain * counted / max(own.counted, 1), amplitudes))
+        return found
+
+    def of_frequencies(given: Input) -> list[Law]:
+        first = bench.training[0]
+        seconds = min(float(np.ptp(first.time)), LONGER_S)
+        short, longer = ([first.until(until)] for until in (SCAN_S, seconds))
+        spacing = SPACING / SCAN_S
+        scanned = gains(given, short, np.arange(LOWEST / SCAN_S, HIGHEST_HZ, spacing))
+        around = np.arange(-0.5 * spacing, 0.5 * spacing, SPACING / seconds)
+        near = [law.frequency + around for law in _peaks(scanned)[:FOLLOWED]]
+        return [max(gains(given, longer, np.concatenate(near)), key=_promised)]
 
     work = [(kind, given) for given in inputs for kind in (of_terms, of_frequencies)]
     return [law for laws in bench.side_by_side(lambda item: item[0](item[1]), work) for law in laws]
+
+
+def _promised(law: Law) -> float:
+    return law.gain
+
+
+def _peaks(laws: Sequence[Law]) -> list[Law]:
+    """Those that promise more than their neighbours in frequency, the best first."""
+    gains = np.array([-np.inf, *(law.gain for law in laws), -np.inf])
+    higher = (gains[1:-1] > gains[:-2]) & (gains[1:-1] >= gains[2:])
+    return sorted((law for law, peak in zip(laws, higher, strict=True) if peak), key=lambda law: -law.gain)
 
 
 def _gain(columns: np.ndarray, rest: np.ndarray) -> tuple[float, tuple[float, ...]]:

@@ -19,7 +19,7 @@ def bench() -> Rig:
 
 @pytest.fixture(scope="session")
 def recorded() -> Callable[..., list[Experiment]]:
-    """(recorded machine, fitted rig, seed, noise, largest volts, pressures, unknown input) -> 12 s of it."""
+    """(recorded machine, fitted rig, seed, noise, largest volts, pressures, unknown input, its frequency) -> 12 s of it."""
 
     def make(
         machine: Rig,
@@ -29,6 +29,7 @@ def recorded() -> Callable[..., list[Experiment]]:
         largest_V: float = 9.0,
         pressure_noise_Pa: float | None = None,
         unknown: tuple[str, float] | None = None,
+        unknown_Hz: float = 0.0,
     ) -> list[Experiment]:
         rng = np.random.default_rng(seed)
         time = np.arange(0.0, 12.0, 0.01)
@@ -42,9 +43,11 @@ def recorded() -> Callable[..., list[Experiment]]:
         )
         probes = None
         if unknown is not None:
-            rows = np.zeros((13, len(PROBES)))
-            rows[:, PROBES.index(unknown[0])] = unknown[1]
-            probes = (1.0, rows)
+            rows = np.zeros((time.size + 1, len(PROBES)))
+            moments = 0.01 * np.arange(time.size + 1)
+            course = np.sin(2.0 * np.pi * unknown_Hz * moments) if unknown_Hz > 0.0 else 1.0
+            rows[:, PROBES.index(unknown[0])] = unknown[1] * course
+            probes = (0.01, rows)
         played = experiments_of(machine, blank)[0].simulate(machine.records(), 1e-4, probes).signals
         angle = played.reading + np.radians(noise_deg) * rng.standard_normal(time.size)
         signals = {"joint.command": levels, "joint.angle": angle}

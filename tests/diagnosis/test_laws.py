@@ -7,7 +7,8 @@ import pytest
 
 from hydrolek_drake.diagnosis.effort import POLISH
 from hydrolek_drake.diagnosis.evidence import Judged
-from hydrolek_drake.diagnosis.laws import Term, law_record, span_of
+from hydrolek_drake.diagnosis.law_search import promising
+from hydrolek_drake.diagnosis.laws import Term, inputs_of, law_record, span_of
 from hydrolek_drake.diagnosis.search import fit_baseline
 from hydrolek_drake.diagnosis.unlisted import find_law
 from hydrolek_drake.diagnosis.workbench import Workbench
@@ -17,6 +18,9 @@ from hydrolek_drake.rollout.law import law_value
 
 HOSE = 8e-13
 """Capacity of a hose on side A [m^3/Pa]: 5 to 10 times that of the bench's oil."""
+
+RIPPLE, RIPPLE_HZ = 2e6, 3.104
+"""Of the supply pressure [Pa]; midway between two frequencies that lie half a cycle over 12 s apart."""
 
 
 def test_a_law_means_the_same_in_a_shorter_and_gentler_recording(bench, recorded) -> None:
@@ -28,6 +32,24 @@ def test_a_law_means_the_same_in_a_shorter_and_gentler_recording(bench, recorded
         told = [law_value(law, 0.0, 0.0, w, 0.0, 0.0, 0.0) for w in run.velocity]
         assert told == pytest.approx(5.0 * run.velocity / np.abs(runs[0].velocity).max())
     assert np.abs(runs[1].velocity).max() < 0.8 * np.abs(runs[0].velocity).max()
+
+
+def test_a_ripple_is_found_between_the_frequencies_that_are_scanned(bench, recorded) -> None:
+    training = recorded(bench, bench, largest_V=7.0, unknown=("supply", RIPPLE), unknown_Hz=RIPPLE_HZ)
+    with ThreadPoolExecutor(2) as pool:
+        workbench = Workbench(bench, free_parameters(bench), training, pool)
+        nominal = workbench.refit(fit_baseline(workbench), workbench.fine, POLISH)
+        records = workbench.parameters(()).records(nominal.fit.unit)
+        signals = [e.simulate(records, workbench.fine).signals for e in training]
+        span = span_of(signals, records[training[0].index], 12.0)
+        scales = natural_scales(bench, "joint", training)
+        inputs = inputs_of(scales, bench.value("supply.pressure"), 10.0, training[0].channels[0].unit)
+        laws = promising(workbench, nominal, [i for i in inputs if i.stage == "supply"], span)
+    ripple = next(law for law in laws if law.term is None)
+    assert nominal.fit.over_noise > 2.0
+    assert ripple is max(laws, key=lambda law: law.gain)
+    assert ripple.frequency == pytest.approx(RIPPLE_HZ, abs=0.15 / 12.0)
+    assert np.hypot(*ripple.amplitudes) * ripple.input.scale == pytest.approx(RIPPLE, rel=0.5)
 
 
 def test_a_hose_that_expands_is_found_at_the_fluid(bench, recorded) -> None:
