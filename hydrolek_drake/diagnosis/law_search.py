@@ -19,8 +19,8 @@ LOWEST = 1.0
 """Cycles at least within `SCAN_S`."""
 
 SPACING = 0.25
-"""Frequencies are tried so many cycles over the recording apart. Two half a cycle apart are hardly told from each other by
-their sines alone; but the fitted parameters undo a part of both, and what is left of a peak is narrower."""
+"""Frequencies are tried so many cycles over the recording apart. Two half a cycle apart are hardly told from each other
+by their sines alone; but the fitted parameters undo a part of both, and what is left of a peak is narrower."""
 
 FOLLOWED = 6
 """So many peaks of the first part are looked at with more of the recording, where frequencies lie further apart."""

@@ -19,7 +19,7 @@ def bench() -> Rig:
 
 @pytest.fixture(scope="session")
 def recorded() -> Callable[..., list[Experiment]]:
-    """(recorded machine, fitted rig, seed, noise, largest volts, pressures, unknown input, its frequency) -> 12 s of it."""
+    """(machine, fitted rig, seed, noise, largest volts, pressures, unknown input, its frequency) -> 12 s of it."""
 
     def make(
         machine: Rig,
