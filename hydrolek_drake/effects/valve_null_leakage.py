@@ -22,7 +22,7 @@ EFFECT = Effect(
     ),
     size="conductance_m3_per_s_Pa",
     search={
-        "conductance_m3_per_s_Pa": Search("conductance", 0.4, (0.01, 0.06)),
+        "conductance_m3_per_s_Pa": Search("conductance", 1, (0.01, 0.06)),
     },
     source="Merritt, Hydraulic Control Systems (1967), ch. 5: laminar flow through the radial clearance of the lands",
     confused_with={
