@@ -58,7 +58,7 @@ def fit(
     from hydrolek_drake.identification.fit.profiles import check_profiled, profiles_of, write_profiles
     from hydrolek_drake.identification.fit.report import sentences, write_fit
     from hydrolek_drake.identification.least_squares import LOSSES
-    from hydrolek_drake.identification.parameter_set import free_parameters
+    from hydrolek_drake.identification.parameter_set import free_parameters, parameters_off
     from hydrolek_drake.recordings import read_recording
     from hydrolek_drake.rigs import load_rig
 
@@ -99,6 +99,10 @@ def fit(
     for name, (value, low, high) in fitted.intervals().items():
         table.add_row(name, f"{value:.6g}", f"{low:.6g} to {high:.6g}", loaded.entries[name].unit)
     output.print(table)
+    off = [] if parameter else parameters_off(loaded)
+    if off:
+        told = f"off, so not fitted: {', '.join(off)} (--parameter fits one all the same)"
+        output.print(told, markup=False, soft_wrap=True)
     for sentence in sentences(fitted):
         output.print(sentence, markup=False, soft_wrap=True)
     if out is not None:

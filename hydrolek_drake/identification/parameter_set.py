@@ -120,18 +120,19 @@ def free_parameters(rig: Rig, paths: Sequence[str] | None = None) -> tuple[Free,
 
     Args:
         rig: the machine.
-        paths: full or short paths; None for every parameter with a range.
+        paths: full or short paths; None for every parameter with a range but those of effects that are off: there
+            a range tells how far a diagnosis may look.
 
     Raises:
         InputError: no such parameter, or one without a range.
     """
     ranged = rig.free_parameters()
     if paths is None:
-        if not ranged:
+        chosen = [path for path in ranged if path not in parameters_off(rig)]
+        if not chosen:
             raise InputError(
                 f"rig {rig.name} has no free parameter; give one a range: [low, high] in {rig.path}"
             )
-        chosen = list(ranged)
     else:
         chosen = [rig.full_path(path) for path in paths]
     free = []
@@ -145,6 +146,16 @@ def free_parameters(rig: Rig, paths: Sequence[str] | None = None) -> tuple[Free,
         assert entry.range is not None
         free.append(Free(path, *entry.range, log=entry.scale == "log"))
     return tuple(free)
+
+
+def parameters_off(rig: Rig) -> list[str]:
+    """Full paths of parameters that have a range but belong to an effect that is off."""
+    off = []
+    for path in rig.free_parameters():
+        joint, _, effect = path.removeprefix("joints.").partition(".effects.")
+        if effect and effect.rpartition(".")[0] not in rig.effects_on(joint):
+            off.append(path)
+    return off
 
 
 def _places(rig: Rig, vectors: np.ndarray, parameter: Free) -> tuple[np.ndarray, np.ndarray]:

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.identification.parameter_set import Free, ParameterSet, free_parameters
+from hydrolek_drake.identification.parameter_set import Free, ParameterSet, free_parameters, parameters_off
 from hydrolek_drake.rigs import load_rig
 
 
@@ -62,3 +62,14 @@ def test_what_cannot_be_fitted_is_refused() -> None:
         Free("x", 0.0, 1.0, log=True)
     with pytest.raises(InputError, match="beyond what is possible"):
         ParameterSet(rig, [Free(rig.full_path("load.inertia"), -1.0, 5.0)])
+
+
+def test_an_effect_that_is_off_is_fitted_only_if_it_is_named() -> None:
+    rig = load_rig("emps_published", {})
+    drift = "joints.axis.effects.sensor.drift.rate_rad_per_min"
+    assert drift in parameters_off(rig)
+    assert drift not in {free.path for free in free_parameters(rig)}
+    assert [free.path for free in free_parameters(rig, [drift])] == [drift]
+    switched_on = rig.with_values({drift: 1e-7})
+    assert drift not in parameters_off(switched_on)
+    assert drift in {free.path for free in free_parameters(switched_on)}
