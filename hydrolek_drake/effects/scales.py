@@ -10,6 +10,9 @@ from typing import Any
 
 from hydrolek_drake.effects.effect import Search
 
+SLOWED = 5.0
+"""A payload with which the joint swings so many times slower is a large one."""
+
 
 @dataclass(frozen=True)
 class Scales:
@@ -30,7 +33,8 @@ class Scales:
         travel_time: for this travel at full speed [s].
         duration: of the recording [s].
         inertia: of the load [kg m^2 or kg].
-        payload: mass whose weight is the load force at the tool [kg]; infinite if payloads have no weight.
+        payload: mass at the tool whose weight is the load force or, if that is less, whose inertia makes the load
+            swing `SLOWED` times slower on the oil [kg]: about a vertical axis nothing weighs. Infinite without either.
         capacity: volume that a full chamber's travel takes over the supply pressure [m^3/Pa].
     """
 
@@ -116,9 +120,9 @@ def hydraulic_scales(joint: Any, full_flow: float, lever: float, travel: float, 
     valve, solenoid = joint["valve"], joint["solenoid"]
     overlap = float(valve["overlap_a"]) or float(valve["full_opening_a"])
     spring = float(solenoid["spring"])
-    weight = abs(float(joint["load"]["payload_gravity_cos"])) + abs(
-        float(joint["load"]["payload_gravity_sin"])
-    )
+    load = joint["load"]
+    weight = abs(float(load["payload_gravity_cos"])) + abs(float(load["payload_gravity_sin"]))
+    spun = float(load["payload_inertia"])
     force = pressure * area
     speed = full_flow / area
     return Scales(
@@ -137,6 +141,9 @@ def hydraulic_scales(joint: Any, full_flow: float, lever: float, travel: float, 
         travel_time=travel * lever / speed,
         duration=duration,
         inertia=float(joint["load"]["inertia"]),
-        payload=force * lever / weight if weight > 0.0 else math.inf,
+        payload=min(
+            force * lever / weight if weight > 0.0 else math.inf,
+            SLOWED**2 * float(load["inertia"]) / spun if spun > 0.0 else math.inf,
+        ),
         capacity=area * travel * lever / pressure,
     )

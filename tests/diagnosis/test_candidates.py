@@ -6,9 +6,10 @@ import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.effects import EFFECTS
-from hydrolek_drake.effects.scales import Scales
+from hydrolek_drake.effects.scales import SLOWED, Scales, hydraulic_scales
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import ParameterSet
+from hydrolek_drake.rigs import load_rig
 
 ON_THE_BENCH = {
     "command.delay", "amplifier.gain_fade", "valve.asymmetric_overlap", "valve.spool_stiction", "valve.null_leakage",
@@ -50,6 +51,20 @@ def test_starts_lie_in_the_ranges_and_reach_the_records(bench, recorded) -> None
         for start in candidate.starts:
             unit = parameters.unit(start)
             assert parameters.values(unit) == pytest.approx(start)
+
+
+@pytest.mark.parametrize("joint", ["left_j1", "left_j3"])
+def test_a_payload_is_searched_up_to_what_an_arm_could_carry(joint) -> None:
+    """Joint 1 turns about a vertical axis: there a payload has inertia and no weight."""
+    rig = load_rig(f"hydrolek_{joint}")
+    record = rig.records()[0]
+    load = record["load"]
+    scales = hydraulic_scales(record, full_flow=5e-5, lever=0.12, travel=1.0, duration=30.0)
+    weight = abs(load["payload_gravity_cos"]) + abs(load["payload_gravity_sin"])
+    assert scales.payload * load["payload_inertia"] <= SLOWED**2 * load["inertia"] * (1.0 + 1e-12)
+    assert scales.payload * weight <= scales.load_force * (1.0 + 1e-12)
+    payload = EFFECTS["load.payload"].search["mass_kg"]
+    assert 50.0 < scales.range_of(payload)[1] < 500.0  # an arm lifts 150 kg (thesis)
 
 
 def test_every_effect_says_how_far_it_is_searched() -> None:
