@@ -185,17 +185,11 @@ def _glance(
 ) -> Hypothesis:
     """A few steps from each start."""
     part = [experiment.until(GLANCE_S) for experiment in bench.training]
+    near = begun(bench, effects, starts[0], step)
+    moments = {free.path: near[free.path] for free in effects[-1].moments}
     fits = [
-        bench.fit(
-            effects,
-            begun(bench, effects, start, step),
-            step,
-            GLANCE,
-            tolerance=1e-3,
-            experiments=part,
-            alone=True,
-        )
-        for start in different(starts)[:2]
+        bench.fit(effects, start, step, GLANCE, tolerance=1e-3, experiments=part, alone=True)
+        for start in different([near, *({**start, **moments} for start in starts[1:])])[:2]
     ]
     return min(fits, key=lambda h: h.fit.objective)
 
