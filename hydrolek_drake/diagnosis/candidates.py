@@ -20,12 +20,15 @@ class Candidate:
         joint: where it acts.
         free: its parameters with the range of the search.
         starts: full path -> value, where searches begin.
+        utmost: how far the range of its size may be widened: what the size can be at all, or the range that the rig
+            states.
     """
 
     effect: Effect
     joint: str
     free: tuple[Free, ...]
     starts: tuple[dict[str, float], ...]
+    utmost: tuple[float, float]
 
     @property
     def id(self) -> str:
@@ -47,6 +50,11 @@ class Candidate:
         """Its parameters that say when something happens."""
         pairs = zip(self.free, self.effect.search.values(), strict=True)
         return tuple(free for free, search in pairs if search.moment)
+
+    @property
+    def size(self) -> Free:
+        """The parameter that switches it on."""
+        return next(free for free in self.free if free.path == self.size_path)
 
     def taken_over(self, other: "Candidate", values: dict[str, float]) -> dict[str, float]:
         """Full path -> value of this effect's parameters that another one, fitted, also has; within the ranges."""
@@ -91,6 +99,7 @@ def _acts(effect: Effect, rig: Rig, joint: str) -> bool:
 
 def _candidate(effect: Effect, rig: Rig, joint: str, scales: Scales) -> Candidate | None:
     free: list[Free] = []
+    utmost = (-math.inf, math.inf)
     starts: list[list[tuple[str, float]]] = []
     for name, search in effect.search.items():
         path = f"joints.{joint}.effects.{effect.id}.{name}"
@@ -101,9 +110,11 @@ def _candidate(effect: Effect, rig: Rig, joint: str, scales: Scales) -> Candidat
             lower, upper = entry.range
             log = entry.scale == "log"
         lower, upper = max(lower, declared.lowest), min(upper, declared.highest)
+        if name == effect.size:
+            utmost = (lower, upper) if entry.range is not None else (declared.lowest, declared.highest)
         if not (math.isfinite(lower) and math.isfinite(upper) and lower < upper):
             return None
         free.append(Free(path, lower, upper, log))
         inside = sorted({min(max(value, lower), upper) for value in begin})
         starts.append([(path, value) for value in inside])
-    return Candidate(effect, joint, tuple(free), tuple(dict(c) for c in itertools.product(*starts)))
+    return Candidate(effect, joint, tuple(free), tuple(dict(c) for c in itertools.product(*starts)), utmost)

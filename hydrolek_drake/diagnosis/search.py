@@ -5,12 +5,13 @@ that none of them was fitted to (`evidence`).
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import AT_NOISE, BEAM, COARSE, FAR, LOOK, NEAR, NEARLY, POLISH
 from hydrolek_drake.diagnosis.growing import HOPELESS, MOST_EFFECTS, gain_needed, grow, redundant
 from hydrolek_drake.diagnosis.lessening import lessened
+from hydrolek_drake.diagnosis.ranges import at_the_end, replaced, widened
 from hydrolek_drake.diagnosis.score import Score, scores_of
 from hydrolek_drake.diagnosis.unsticking import different, fit_pulled, led_on, started_again
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -25,6 +26,9 @@ second one is looked for: of two effects, one alone takes much of what both do."
 
 EXCHANGED = 3
 """So many effects are tried in the place of each one of a model to which none may be added."""
+
+MOST_WIDENED = 3
+"""So many times in turn: 64 times what a worn machine may have."""
 
 STUCK = 0.1
 """A fit was stuck if leading it on takes this share of what it leaves above the noise; if it was not, the land is
@@ -56,6 +60,16 @@ class Search:
         known = self.hypotheses.get(hypothesis.ids)
         if known is None or hypothesis.fit.objective < known.fit.objective:
             self.hypotheses[hypothesis.ids] = hypothesis
+
+    def forget(self, wide: Candidate) -> None:
+        """Drop what was fitted with a narrower range of an effect."""
+        for known in (self.hypotheses, self.given_up):
+            for key in [key for key in known if wide.size_path in key]:
+                del known[key]
+        for scores in (self.scores, self.left):
+            scores[:] = [
+                replace(s, candidate=wide) if s.candidate.size_path == wide.size_path else s for s in scores
+            ]
 
     @property
     def baseline(self) -> Hypothesis:
@@ -105,12 +119,14 @@ def search(
         for hypothesis in grown:
             found.keep(hypothesis)
         _prune(bench, found, candidates)
+        candidates = _further(bench, found, candidates, say)
         pruned = found.best
         if pruned.fit.over_noise > AT_NOISE:
             _widen(bench, found, pruned, candidates)
             _lead_on(bench, found)
         if found.best.ids != pruned.ids:  # in its place an effect may have become needless
             _prune(bench, found, candidates)
+        grown = [h for h in grown if all(c in candidates for c in h.effects)] or [found.best]
         beam = [h for h in grown if h.fit.objective < HOPELESS * grown[0].fit.objective][:BEAM]
         beam = [found.best] if found.best.fit.over_noise < NEAR else beam
         found.left = scores_of(bench, found.best, candidates, bench.fine)
@@ -162,6 +178,29 @@ def _prune(bench: Workbench, found: Search, candidates: Sequence[Candidate]) -> 
     """Fit the best hypothesis again with less."""
     for fitted in lessened(bench, found.best, candidates):
         found.keep(fitted)
+
+
+def _further(
+    bench: Workbench, found: Search, candidates: Sequence[Candidate], say: Callable[[str], None]
+) -> Sequence[Candidate]:
+    """The candidates, with wider ranges for effects of the best model that ended at the end of theirs, see `ranges`.
+
+    The best model is fitted again with them; others that have such an effect are forgotten.
+    """
+    for _ in range(MOST_WIDENED):
+        best = found.best
+        narrow = at_the_end(best) if best.fit.over_noise > AT_NOISE else []
+        if not narrow:
+            break
+        say(f"searching further for {' and '.join(c.effect.title for c in narrow)}: its range was too narrow")
+        effects: tuple[Candidate, ...] = best.effects
+        for wide in map(widened, narrow):
+            bench.forget(wide.size_path)
+            candidates, effects = replaced(candidates, wide), replaced(effects, wide)
+            found.forget(wide)
+        found.keep(bench.fit(effects, best.values, bench.fine, LOOK))
+        _prune(bench, found, candidates)
+    return candidates
 
 
 def _exchange(bench: Workbench, found: Search, candidates: Sequence[Candidate]) -> None:

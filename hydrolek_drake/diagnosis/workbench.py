@@ -124,6 +124,10 @@ class Workbench:
             self._sets[key] = ParameterSet(self.rig, free)
         return self._sets[key]
 
+    def forget(self, size_path: str) -> None:
+        """Parameters of every set with an effect, whose ranges have changed."""
+        self._sets = {key: known for key, known in self._sets.items() if size_path not in key}
+
     def problem(
         self,
         effects: Sequence[Candidate],
