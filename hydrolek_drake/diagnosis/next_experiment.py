@@ -118,7 +118,7 @@ def _with_command(template: Experiment, command: np.ndarray) -> Experiment:
     )
     return replace(
         template, name="proposal", time=time, command_times=time, command=command, channels=channels,
-        used=np.ones(command.size, dtype=bool),
+        used=np.ones(command.size, dtype=bool), start_response=None,
     )  # fmt: skip
 
 
@@ -132,7 +132,7 @@ def _with_pressures(bench: Workbench, experiment: Experiment) -> Experiment:
         for name in ("pressure_a", "pressure_b")
     )
     position = replace(experiment.channels[0], measured=nothing, model_error=None)
-    return replace(experiment, channels=(position, *more))
+    return replace(experiment, channels=(position, *more), start_response=None)
 
 
 def _separation(bench: Workbench, truth: Hypothesis, rival: Hypothesis, experiment: Experiment) -> float:
