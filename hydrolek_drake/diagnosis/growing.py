@@ -86,7 +86,7 @@ def grow(
         over: what the best model so far leaves, over the noise.
     """
     far = over > FAR
-    step = bench.fine * (COARSE if far else 2.0 if over > NEAR else 1.0)
+    step = bench.coarsest(beam[0], over, COARSE if far else 2.0 if over > NEAR else 1.0)
     work: dict[frozenset[str], _Start] = {}
     scored_by: dict[frozenset[str], Sequence[Score]] = {}
     for parent in beam:

@@ -27,6 +27,9 @@ second one is looked for: of two effects, one alone takes much of what both do."
 EXCHANGED = 3
 """So many effects are tried in the place of each one of a model to which none may be added."""
 
+MOST_ROUNDS = 8
+"""Of the last fit of the nominal model, as long as each takes `STUCK` of what is left."""
+
 MOST_WIDENED = 3
 """So many times in turn: 64 times what a worn machine may have."""
 
@@ -170,8 +173,14 @@ def fit_baseline(bench: Workbench) -> Hypothesis:
     if min(h.fit.over_noise for h in fits) > NEAR:
         pulled = fit_pulled(bench, (), [*starts, *(h.values for h in fits)], coarse, bench.training)
         fits.append(bench.refit(pulled, coarse, LOOK))
-    best = min(fits, key=lambda h: h.fit.objective)
-    return bench.refit(best, bench.fine, POLISH if best.fit.over_noise < FAR else POLISH // 2)
+    best = bench.refit(min(fits, key=lambda h: h.fit.objective), bench.fine, POLISH // 2)
+    for _ in range(MOST_ROUNDS):
+        again = bench.refit(best, bench.fine, POLISH // 2)
+        falling = again.fit.objective < (1.0 - STUCK) * best.fit.objective
+        best = min((again, best), key=lambda h: h.fit.objective)
+        if not falling:  # where the coarse step was too coarse for the oil, most of the way is left
+            break
+    return best
 
 
 def _prune(bench: Workbench, found: Search, candidates: Sequence[Candidate]) -> None:

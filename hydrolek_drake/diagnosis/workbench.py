@@ -29,6 +29,10 @@ OTHERS_UNKNOWN = 0.1
 speeds come from smoothed angles."""
 
 
+STEP_SHARE = 0.5
+"""A coarse step may be wrong by this share of what is to be explained: a quarter of the squared residuals."""
+
+
 @dataclass(frozen=True)
 class Hypothesis:
     """The nominal model with some effects, fitted.
@@ -239,6 +243,23 @@ class Workbench:
                 future.cancel()
             wait(futures)
             raise
+
+    def coarsest(self, hypothesis: Hypothesis, over: float, most: float) -> float:
+        """Integration step [s] at most so many times the rig's own whose error is below what is to be explained.
+
+        Args:
+            hypothesis: at whose values the error is told.
+            over: what is to be explained, in units of the noise.
+            most: the coarsest that is asked for, over the rig's own.
+        """
+        exact = self.residuals(hypothesis, self.training, self.fine)
+        counted = sum(experiment.counted for experiment in self.training)
+        while most > 1.0:
+            error = self.residuals(hypothesis, self.training, most * self.fine) - exact
+            if np.nan_to_num(error @ error, nan=np.inf) < (STEP_SHARE * over) ** 2 * counted:
+                break
+            most *= 0.5
+        return max(most, 1.0) * self.fine
 
     def weighted_by(self, hypothesis: Hypothesis, experiments: Sequence[Experiment]) -> list[Experiment]:
         """The same experiments with noise, model error and response to the start as they show beside this model.
