@@ -20,6 +20,10 @@ MATERIAL_GAIN = 0.3
 """A third effect is also looked for if one promises to take this share of the squared residuals: far from the noise,
 as on real machines. Where several signals count alike, of one signal's part of them."""
 
+MOST_GROWN = 5
+"""So many times at most one effect more is added. What is pruned again may have led the rest to a better place, from
+which others promise more."""
+
 FIRST_SHARE = 0.1
 """A first effect must take this share of the squared residuals of a nominal model that is far from the noise, or no
 second one is looked for: of two effects, one alone takes much of what both do."""
@@ -46,7 +50,8 @@ class Search:
         hypotheses: every set of effects that was fitted with the rig's own step, by its key.
         scores: of the effects against the fitted nominal model.
         left: gains of the effects that the best model has not.
-        rounds: how many effects at once were searched.
+        rounds: how many times models with one effect more were fitted.
+        extended: models to which one effect more was added, with the squared residuals that they left then.
         given_up: sets of effects that were too far behind after a few steps.
         smooth: whether a fit that was led on proved not to have been stuck.
     """
@@ -55,6 +60,7 @@ class Search:
     scores: list[Score] = field(default_factory=list)
     left: list[Score] = field(default_factory=list)
     rounds: int = 0
+    extended: dict[frozenset[str], float] = field(default_factory=dict)
     given_up: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
     smooth: bool = False
 
@@ -111,29 +117,43 @@ def search(
     found.scores = scores_of(bench, baseline, candidates, bench.fine)
     found.left = found.scores
     beam = [baseline]
-    while found.rounds < MOST_EFFECTS and _worth_going_on(found, MATERIAL_GAIN / bench.alike):
-        found.rounds += 1
-        say(f"fitting models with {_words(found.rounds)}")
-        more = grow(bench, beam, candidates, found.scores, found.best.fit.over_noise)
-        found.given_up.update(more.given_up)
-        grown = more.hypotheses
-        if not grown:
-            break
-        for hypothesis in grown:
-            found.keep(hypothesis)
+    while beam:
+        while found.rounds < MOST_GROWN and _worth_going_on(found, MATERIAL_GAIN / bench.alike):
+            candidates, beam = _grown(bench, found, beam, candidates, say)
+        beam = _exchanged(bench, found, candidates)
+
+
+def _grown(
+    bench: Workbench,
+    found: Search,
+    beam: Sequence[Hypothesis],
+    candidates: Sequence[Candidate],
+    say: Callable[[str], None],
+) -> tuple[Sequence[Candidate], list[Hypothesis]]:
+    """Add one effect to the models of the beam; the candidates, some with wider ranges, and the next beam."""
+    found.rounds += 1
+    found.extended.update({h.ids: h.fit.objective for h in beam})
+    say(f"fitting models with {_words(1 + len(found.best.effects))}")
+    more = grow(bench, beam, candidates, found.scores, found.best.fit.over_noise)
+    found.given_up.update(more.given_up)
+    for hypothesis in more.hypotheses:
+        found.keep(hypothesis)
+    _prune(bench, found, candidates)
+    candidates = _further(bench, found, candidates, say)
+    pruned = found.best
+    if pruned.fit.over_noise > AT_NOISE:
+        _widen(bench, found, pruned, candidates)
+        _lead_on(bench, found)
+    if found.best.ids != pruned.ids:  # in its place an effect may have become needless
         _prune(bench, found, candidates)
-        candidates = _further(bench, found, candidates, say)
-        pruned = found.best
-        if pruned.fit.over_noise > AT_NOISE:
-            _widen(bench, found, pruned, candidates)
-            _lead_on(bench, found)
-        if found.best.ids != pruned.ids:  # in its place an effect may have become needless
-            _prune(bench, found, candidates)
-        grown = [h for h in grown if all(c in candidates for c in h.effects)] or [found.best]
-        beam = [h for h in grown if h.fit.objective < HOPELESS * grown[0].fit.objective][:BEAM]
-        beam = [found.best] if found.best.fit.over_noise < NEAR else beam
-        found.left = scores_of(bench, found.best, candidates, bench.fine)
-    _exchange(bench, found, candidates)
+    found.left = scores_of(bench, found.best, candidates, bench.fine)
+    if found.best.fit.over_noise < NEAR:
+        return candidates, [found.best]
+    grown = [h for h in more.hypotheses if all(c in candidates for c in h.effects)]
+    near = [h for h in grown if h.fit.objective < HOPELESS * grown[0].fit.objective]
+    if found.best.ids not in {h.ids for h in near}:
+        near = [found.best, *near]
+    return candidates, near[:BEAM]
 
 
 def _words(count: int) -> str:
@@ -143,9 +163,10 @@ def _words(count: int) -> str:
 def _worth_going_on(found: Search, material: float) -> bool:
     """Whether anything is left over, and some effect promises to take a part of it."""
     best = found.best
-    if found.rounds and len(best.effects) < found.rounds:
+    before = found.extended.get(best.ids)
+    if before is not None and before - best.fit.objective < gain_needed(best.fit):
         return False  # one effect more did not pay
-    if not found.left:
+    if not found.left or len(best.effects) == MOST_EFFECTS:
         return False
     if (
         found.rounds == 1
@@ -154,7 +175,7 @@ def _worth_going_on(found: Search, material: float) -> bool:
     ):
         return False
     promised = found.left[0].gain
-    if found.rounds >= 2 and best.fit.over_noise > NEARLY and promised < material * best.fit.objective:
+    if len(best.effects) >= 2 and best.fit.over_noise > NEARLY and promised < material * best.fit.objective:
         return False
     return promised > gain_needed(best.fit)
 
@@ -184,9 +205,13 @@ def fit_baseline(bench: Workbench) -> Hypothesis:
 
 
 def _prune(bench: Workbench, found: Search, candidates: Sequence[Candidate]) -> None:
-    """Fit the best hypothesis again with less."""
-    for fitted in lessened(bench, found.best, candidates):
-        found.keep(fitted)
+    """Fit the best hypothesis again with less, as long as that makes it another one."""
+    for _ in range(MOST_EFFECTS):
+        best = found.best
+        for fitted in lessened(bench, best, candidates):
+            found.keep(fitted)
+        if found.best.ids == best.ids:
+            break
 
 
 def _further(
@@ -212,15 +237,15 @@ def _further(
     return candidates
 
 
-def _exchange(bench: Workbench, found: Search, candidates: Sequence[Candidate]) -> None:
+def _exchanged(bench: Workbench, found: Search, candidates: Sequence[Candidate]) -> list[Hypothesis]:
     """Where no further effect may be added, try those that promise most in the place of each that the best model has.
 
     Far from the noise an effect that came first may do a little of what another one does better (stepwise regression
-    with exchange).
+    with exchange). What is found so is the next beam.
     """
     best = found.best
     if len(best.effects) < MOST_EFFECTS or best.fit.over_noise < NEARLY:
-        return
+        return []
     needed = gain_needed(best.fit)
     work: list[tuple[tuple[Candidate, ...], dict[str, float]]] = []
     for effect in best.effects:
@@ -229,10 +254,12 @@ def _exchange(bench: Workbench, found: Search, candidates: Sequence[Candidate]) 
         work += [((*rest, s.candidate), {**best.values, **s.start}) for s in promising[:EXCHANGED]]
     for fitted in bench.side_by_side(lambda item: bench.fit(item[0], item[1], bench.fine, POLISH), work):
         found.keep(fitted)
-    if found.best is not best:
-        found.keep(bench.refit(found.best, bench.fine, LOOK))
-        _prune(bench, found, candidates)
-        found.left = scores_of(bench, found.best, candidates, bench.fine)
+    if found.best is best:
+        return []
+    found.keep(bench.refit(found.best, bench.fine, LOOK))
+    _prune(bench, found, candidates)
+    found.left = scores_of(bench, found.best, candidates, bench.fine)
+    return [found.best]
 
 
 def _widen(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: Sequence[Candidate]) -> None:

@@ -12,7 +12,7 @@ from hydrolek_drake.diagnosis.effort import NEARLY, POLISH
 from hydrolek_drake.diagnosis.growing import gain_needed
 from hydrolek_drake.diagnosis.lessening import SLIGHT, slightly_worse, start_of_lesser
 from hydrolek_drake.diagnosis.score import scores_of
-from hydrolek_drake.diagnosis.search import Search, _exchange, _prune, _widen
+from hydrolek_drake.diagnosis.search import Search, _exchanged, _prune, _widen
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -118,7 +118,7 @@ def test_where_no_effect_may_be_added_one_that_does_little_gives_way(bench, reco
         before = found.best
         assert before.fit.over_noise > NEARLY
         found.left = scores_of(work, before, candidates, work.fine)
-        _exchange(work, found, candidates)
+        _exchanged(work, found, candidates)
     assert found.best.ids == frozenset(c.size_path for c in (coulomb, leak, droop))
     assert found.best.fit.over_noise < 1.1
     assert found.best.values[droop.size_path] == pytest.approx(6e10, rel=0.05)
