@@ -20,11 +20,11 @@ from hydrolek_drake.workcell.scene import home_posture
 from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect, as_machine_stands
 
 
-def _served(work, source=None):
+def _served(work, source=None, rate=25.0):
     """Run `work(console)` against a console with a fast machine, and the simulated camera if no other is given."""
 
     async def main():
-        machine = Machine(home_posture(), realtime_rate=25.0)
+        machine = Machine(home_posture(), realtime_rate=rate)
         if source is None:
             session = OperatorSession(
                 lambda: SimulatedKinect(make_pipe(), np.random.default_rng(1)),
@@ -101,7 +101,7 @@ def test_the_page_and_the_whole_task():
                 break
         assert state["mode"] == "done" and {"approach", "cut"} <= seen
 
-    _served(work)
+    _served(work, rate=8.0)  # slow enough for the states, ten a second, to show every step
 
 
 def test_of_two_browsers_the_second_watches_and_may_stop():
