@@ -21,7 +21,6 @@ from hydrolek_drake.diagnosis.score import Score
 from hydrolek_drake.diagnosis.search import Search
 from hydrolek_drake.diagnosis.splitting import mixed, prepared
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
-from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import Free, free_parameters
@@ -214,16 +213,8 @@ def _refused(rig: Rig, reasons: Sequence[str], seconds: float) -> Diagnosis:
 def _nominal(rig: Rig, training: Sequence[Experiment]) -> tuple[Free, ...]:
     """The rig's free parameters, of the joints that were driven; effects that are off are searched, not nominal."""
     driven = {experiment.joint for experiment in training}
-    on = {
-        f"joints.{rig.owner(EFFECTS[id_], joint)}.effects.{id_}."
-        for joint in driven
-        for id_ in rig.effects_on(joint)
-    }
     return tuple(
-        p
-        for p in free_parameters(rig)
-        if not p.path.startswith("joints.")
-        or (p.path.split(".")[1] in driven and (".effects." not in p.path or p.path.startswith(tuple(on))))
+        p for p in free_parameters(rig) if not p.path.startswith("joints.") or p.path.split(".")[1] in driven
     )
 
 

@@ -1,6 +1,7 @@
 """Which laws could explain what a model leaves, from rollouts and linear algebra alone (as in `score`)."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -36,6 +37,15 @@ SIZES = (0.3, 0.1, 0.03)
 
 COARSE = 4.0
 """Integration step over the rig's own while laws are looked for."""
+
+
+@dataclass(frozen=True)
+class _Part:
+    """The beginning of the first recording, and what of a change there the fitted parameters cannot undo."""
+
+    experiments: list[Experiment]
+    across: Across
+    counted: int
 
 
 def promising(bench: Workbench, left: Hypothesis, inputs: Sequence[Input], span: Span) -> list[Law]:
@@ -89,31 +99,35 @@ def promising(bench: Workbench, left: Hypothesis, inputs: Sequence[Input], span:
             found.append(Law(given, term, 0.0, gain, (start,)))
         return found
 
-    def gains(given: Input, part: Sequence[Experiment], frequencies: np.ndarray) -> list[Law]:
-        here = response(part, given, TERMS[0], 0.0)
+    def beginning(seconds: float) -> _Part:
+        part = [bench.training[0].until(seconds)]
         own = Problem(parameters, part, step)
         base = own.residuals(parameters.unit(left.values))
         jacobian = own.jacobian(left.fit.unit, base)
         nearby = Across(Fit(left.fit.unit, base, off, jacobian, left.fit.prior_jacobian, own.counted, 0))
-        rest = nearby(np.concatenate([here, off]))
+        return _Part(part, nearby, own.counted)
+
+    longest = min(float(np.ptp(bench.training[0].time)), LONGER_S)
+    short, longer = bench.side_by_side(beginning, (SCAN_S, longest))
+
+    def gains(given: Input, part: _Part, frequencies: np.ndarray) -> list[Law]:
+        here = response(part.experiments, given, TERMS[0], 0.0)
+        rest = part.across(np.concatenate([here, off]))
         found = []
         for frequency in frequencies.tolist():
             bench.alive()
             columns = []
             for sine, cosine in ((TRIED, 0.0), (0.0, TRIED)):
-                moved = response(part, given, None, sine, cosine, frequency) - here
-                columns.append(nearby(np.concatenate([moved, np.zeros(off.size)])))
+                moved = response(part.experiments, given, None, sine, cosine, frequency) - here
+                columns.append(part.across(np.concatenate([moved, np.zeros(off.size)])))
             gain, amplitudes = _gain(np.stack(columns, axis=1), rest)
-            found.append(Law(given, None, frequency, gain * counted / max(own.counted, 1), amplitudes))
+            found.append(Law(given, None, frequency, gain * counted / max(part.counted, 1), amplitudes))
         return found
 
     def of_frequencies(given: Input) -> list[Law]:
-        first = bench.training[0]
-        seconds = min(float(np.ptp(first.time)), LONGER_S)
-        short, longer = ([first.until(until)] for until in (SCAN_S, seconds))
         spacing = SPACING / SCAN_S
         scanned = gains(given, short, np.arange(LOWEST / SCAN_S, HIGHEST_HZ, spacing))
-        around = np.arange(-0.5 * spacing, 0.5 * spacing, SPACING / seconds)
+        around = np.arange(-0.5 * spacing, 0.5 * spacing, SPACING / longest)
         near = [law.frequency + around for law in _peaks(scanned)[:FOLLOWED]]
         return [max(gains(given, longer, np.concatenate(near)), key=_promised)]
 

@@ -228,11 +228,13 @@ def _further(
             break
         say(f"searching further for {' and '.join(c.effect.title for c in narrow)}: its range was too narrow")
         effects: tuple[Candidate, ...] = best.effects
-        for wide in map(widened, narrow):
-            bench.forget(wide.size_path)
-            candidates, effects = replaced(candidates, wide), replaced(effects, wide)
-            found.forget(wide)
-        found.keep(bench.fit(effects, best.values, bench.fine, LOOK))
+        wide = [widened(c) for c in narrow]
+        for candidate in wide:
+            candidates, effects = replaced(candidates, candidate), replaced(effects, candidate)
+        fitted = bench.fit(effects, best.values, bench.fine, LOOK)
+        for candidate in wide:  # only now: an interrupt of the fit loses nothing
+            found.forget(candidate)
+        found.keep(fitted)
         _prune(bench, found, candidates)
     return candidates
 

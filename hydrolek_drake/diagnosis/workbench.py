@@ -98,7 +98,7 @@ class Workbench:
         self.pool = pool
         self._stopped = threading.Event()
         self.evaluations = 0
-        self._sets: dict[frozenset[str], ParameterSet] = {}
+        self._sets: dict[frozenset[Free], ParameterSet] = {}
 
     def alive(self) -> None:
         """End this thread's work if the user has interrupted."""
@@ -122,15 +122,11 @@ class Workbench:
 
     def parameters(self, effects: Sequence[Candidate]) -> ParameterSet:
         """The searched parameters of the nominal model with these effects."""
-        key = key_of(effects)
+        own = [p for candidate in effects for p in candidate.free]
+        key = frozenset(own)  # with their ranges, which may be widened
         if key not in self._sets:
-            free = [*self.nominal, *(p for candidate in effects for p in candidate.free)]
-            self._sets[key] = ParameterSet(self.rig, free)
+            self._sets[key] = ParameterSet(self.rig, [*self.nominal, *own])
         return self._sets[key]
-
-    def forget(self, size_path: str) -> None:
-        """Parameters of every set with an effect, whose ranges have changed."""
-        self._sets = {key: known for key, known in self._sets.items() if size_path not in key}
 
     def problem(
         self,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.records import flat
 from hydrolek_drake.rigs import Rig
@@ -128,7 +129,8 @@ def free_parameters(rig: Rig, paths: Sequence[str] | None = None) -> tuple[Free,
     """
     ranged = rig.free_parameters()
     if paths is None:
-        chosen = [path for path in ranged if path not in parameters_off(rig)]
+        off = parameters_off(rig)
+        chosen = [path for path in ranged if path not in off]
         if not chosen:
             raise InputError(
                 f"rig {rig.name} has no free parameter; give one a range: [low, high] in {rig.path}"
@@ -150,12 +152,12 @@ def free_parameters(rig: Rig, paths: Sequence[str] | None = None) -> tuple[Free,
 
 def parameters_off(rig: Rig) -> list[str]:
     """Full paths of parameters that have a range but belong to an effect that is off."""
-    off = []
-    for path in rig.free_parameters():
-        joint, _, effect = path.removeprefix("joints.").partition(".effects.")
-        if effect and effect.rpartition(".")[0] not in rig.effects_on(joint):
-            off.append(path)
-    return off
+    on = tuple(
+        f"joints.{rig.owner(EFFECTS[id_], joint)}.effects.{id_}."
+        for joint in rig.joints
+        for id_ in rig.effects_on(joint)
+    )
+    return [path for path in rig.free_parameters() if ".effects." in path and not path.startswith(on)]
 
 
 def _places(rig: Rig, vectors: np.ndarray, parameter: Free) -> tuple[np.ndarray, np.ndarray]:

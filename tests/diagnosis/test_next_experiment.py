@@ -1,7 +1,6 @@
 """The next experiment is proposed from simulation, whatever was recorded so far and however it began."""
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -64,4 +63,4 @@ def test_nothing_is_proposed_where_nothing_is_alike(alike) -> None:
     judged = Judged(fits[0], np.zeros(1), 1)
     assert propose(bench, Conclusion("missing_physics", judged, {}, ()), fits) is None
     assert propose(bench, Conclusion("ambiguous", judged, {}, (RIVALS,)), fits[:1]) is None
-    assert propose(bench, replace(Conclusion("unlisted_physics", judged, {}, (RIVALS,))), fits) is None
+    assert propose(bench, Conclusion("unlisted_physics", judged, {}, (RIVALS,)), fits) is None
