@@ -14,6 +14,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.chain import SIDES
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.plan import (
+    CLOSING,
     OPENING,
     TaskPlan,
     pipe_in_world,
@@ -33,10 +34,10 @@ from hydrolek_drake.workcell.table import Table, table_under
 
 Array = NDArray[np.float64]
 
-PLACE_STEPS = ("approach", "grasp", "close", "lift", "carry", "lower", OPENING, "back off", "home")
+PLACE_STEPS = ("approach", "grasp", CLOSING, "lift", "carry", "lower", OPENING, "back off", "home")
 _BACK_OFF = (1.0, 0.9, 0.8, 0.7)  # of the way onto the pipe: as far as the arm can and must, backwards
 
-HOLDING_STEPS = ("close", "lift", "carry", "lower")
+HOLDING_STEPS = (CLOSING, "lift", "carry", "lower")
 """Steps in which the pipe may be in the gripper."""
 
 
@@ -131,7 +132,7 @@ def plan_place(
     paths = {
         "approach": approach,
         "grasp": without_doubles(on_the_way),
-        "close": np.array([on_the_way[-1], lift[0]]),
+        CLOSING: np.array([on_the_way[-1], lift[0]]),
         "lift": without_doubles(lift),
         "carry": without_doubles(carry),
         "lower": without_doubles(lower),
@@ -140,12 +141,11 @@ def plan_place(
         "home": home,
     }
     straight = ("grasp", "lift", "lower", "back off", "carry" if carried.across is not None else "")
-    jaw = (0 if grasping == "right" else 7) + 6
     steps = [
         timed_step(
             name,
             paths[name],
-            jaw if name in HOLDING_STEPS else None,
+            grasping if name in HOLDING_STEPS else None,
             line=name in straight,
             least=height / teleop_entries("task")["place_speed"] if name in ("lift", "lower") else 0.0,
         )

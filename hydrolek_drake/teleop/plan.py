@@ -22,7 +22,8 @@ from hydrolek_drake.workcell.trajectory import smooth_trajectory, time_parametri
 
 Array = NDArray[np.float64]
 
-STEPS = ("approach", "grasp", "close", "cut start", "cut", "retreat")
+CLOSING = "close"
+STEPS = ("approach", "grasp", CLOSING, "cut start", "cut", "retreat")
 OPENING = "open"
 RELEASE_STEPS = ("cutter home", OPENING, "back off", "home")
 
@@ -38,13 +39,16 @@ class Step:
         trajectory: Joints `right_j1` ... `left_j7` over time from 0, in rad; a PiecewisePolynomial of 14 rows.
         timed_out_after: Seconds after which the step counts as failed.
         watched: Which joints must be within the tolerance at its end, shape (14,); a gripper that closes on a
-            pipe cannot reach its set point.
+            pipe cannot reach its set point, and draws its arm towards the pipe.
+        gripping: Joints of the arm whose gripper is closed on the pipe, shape (14,). Closing it draws the arm until
+            all fingers press; from the next step on the set points of these joints are moved by as much.
     """
 
     name: str
     trajectory: Any
     timed_out_after: float
     watched: NDArray[np.bool_]
+    gripping: NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -125,19 +129,17 @@ def plan_task(
     paths = {
         "approach": approach,
         "grasp": without_doubles(np.array([with_arm(opened, grasping, row) for row in grasp.angles])),
-        "close": np.array([on_pipe, closed]),
+        CLOSING: np.array([on_pipe, closed]),
         "cut start": to_cut,
         "cut": without_doubles(np.array(cut_postures)),
         "retreat": retreat,
     }
-    jaw = _of(grasping).start + 6
-    # a gripper that closes on a pipe cannot reach its set point
     feed = float(np.linalg.norm(cut.points[-1] - cut.points[0])) / teleop_entries("task")["cut_speed"]
     steps = [
         timed_step(
             name,
             paths[name],
-            None if STEPS.index(name) < STEPS.index("close") else jaw,
+            None if STEPS.index(name) < STEPS.index(CLOSING) else grasping,
             line=name in ("grasp", "cut"),
             least=feed if name == "cut" else 0.0,
         )
@@ -178,23 +180,26 @@ def plan_release(plan: TaskPlan, posture: ArrayLike, generator: np.random.Genera
     return TaskPlan(steps, plan.pipe, plan.grasp, plan.cut, holds=False)
 
 
-def timed_step(name: str, path: Array, unwatched: int | None, *, line: bool, least: float = 0.0) -> Step:
+def timed_step(name: str, path: Array, gripping: str | None, *, line: bool, least: float = 0.0) -> Step:
     """A path in time.
 
     Args:
         name: Of the step.
         path: Postures in rad, shape (n, 14).
-        unwatched: Joint that cannot reach its set point, from 0: a gripper that closes on a pipe; None for none.
+        gripping: Side whose gripper closes on the pipe or is closed on it; None for none.
         line: Whether it is a straight path of the tool, which becomes one spline; else it rests at each posture.
         least: Seconds it takes at least.
     """
     trajectory = smooth_trajectory(path) if line else time_parametrised(path)
     if trajectory.end_time() < least:
         trajectory.ScaleTime(least / trajectory.end_time())
-    watched = np.ones(14, bool)
-    if unwatched is not None:
-        watched[unwatched] = False
-    return Step(name, trajectory, trajectory.end_time() + teleop_entries("task")["patience"], watched)
+    watched, grips = np.ones(14, bool), np.zeros(14, bool)
+    if gripping is not None:
+        *arm, jaw = range(14)[_of(gripping)]
+        grips[arm] = True
+        watched[jaw] = False
+        watched[arm] = name != CLOSING
+    return Step(name, trajectory, trajectory.end_time() + teleop_entries("task")["patience"], watched, grips)
 
 
 def pipe_in_world(targets: PipeTargets, camera: CameraModel) -> Pipe:

@@ -11,7 +11,8 @@ from pydrake.systems.framework import BasicVector, Context, EventStatus, LeafSys
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.configuration import teleop_entries
-from hydrolek_drake.teleop.plan import TaskPlan
+from hydrolek_drake.teleop.hand import travel
+from hydrolek_drake.teleop.plan import CLOSING, Step, TaskPlan
 
 Array = NDArray[np.float64]
 
@@ -54,7 +55,9 @@ class TaskSequencer(LeafSystem):
     time in the step in s, planned time of the step in s (4).
 
     A step ends when its trajectory has ended and every watched joint has been within the tolerance for the settling
-    time. It fails when it takes longer than it may. On a stop, a failure or an abort the set point becomes the
+    time. It fails when it takes longer than it may. An arm whose gripper has closed is held by the pipe: its set points
+    are moved to where it then stands in the mean, for as long as the gripper is closed, so that the controllers do not
+    press against the pipe. On a stop, a failure or an abort the set point becomes the
     measured position and the valves close; a resume continues the trajectory where it was stopped; an aborted task
     cannot be resumed. All of it is state of the Context; every output depends on that alone.
     """
@@ -63,12 +66,17 @@ class TaskSequencer(LeafSystem):
         super().__init__()
         self.set_name("task_sequencer")
         self._values = teleop_entries("task")
+        self._travel = travel()
         self.position_measured_input = self.DeclareVectorInputPort("position_measured", _JOINTS)
         self.order_input = self.DeclareVectorInputPort("order", 1)
         self._plan = self.DeclareAbstractState(Value[object]())
         # mode, step, time in step, time on trajectory, time within tolerance, last order
         self._clock = self.DeclareDiscreteState(6)
         self._held = self.DeclareDiscreteState(_JOINTS)
+        self._off = self.DeclareDiscreteState(_JOINTS)  # mean of readings less set points while all are near
+        self._drawn = self.DeclareDiscreteState(
+            _JOINTS
+        )  # that of the gripping arm when its gripper had closed
         tickets = {self.all_state_ticket()}
         self.position_desired_output = self.DeclareVectorOutputPort(
             "position_desired", _JOINTS, self._calc_position, tickets
@@ -103,6 +111,7 @@ class TaskSequencer(LeafSystem):
         order = context.get_discrete_state(self._clock).value()[5]
         context.SetDiscreteState(self._clock, [Mode.RUNNING, 0, 0, 0, 0, order])
         context.SetDiscreteState(self._held, posture)
+        context.SetDiscreteState(self._drawn, np.zeros(_JOINTS))
 
     def mode(self, context: Context) -> Mode:
         """What the sequencer does now."""
@@ -159,11 +168,18 @@ class TaskSequencer(LeafSystem):
         step, period = plan.steps[int(clock[1])], self._values["period"]
         clock[2] += period
         clock[3] = min(clock[3] + period, step.trajectory.end_time())
-        desired = step.trajectory.value(clock[3])[:, 0]
+        drawn = np.array(context.get_discrete_state(self._drawn).value())
+        desired = self._set_points(step, clock[3], drawn)
         near = np.abs(measured - desired)[step.watched].max() <= np.radians(self._values["tolerance_deg"])
         arrived = near and clock[3] >= step.trajectory.end_time()
         clock[4] = clock[4] + period if arrived else 0.0
+        off = state.get_mutable_discrete_state(self._off)
+        readings = max(round(clock[4] / period), 1)
+        off.SetFromVector(off.value() + (measured - desired - off.value()) / readings)
         if clock[4] >= self._values["settled"]:
+            if step.name == CLOSING:
+                drawn = np.where(step.gripping, off.value(), 0.0)
+                state.get_mutable_discrete_state(self._drawn).SetFromVector(drawn)
             if int(clock[1]) + 1 == len(plan.steps):
                 state.get_mutable_discrete_state(self._held).SetFromVector(desired)
                 return Mode.DONE
@@ -172,15 +188,22 @@ class TaskSequencer(LeafSystem):
             return self._hold(state, measured, Mode.TIMED_OUT)
         return Mode.RUNNING
 
+    def _set_points(self, step: Step, seconds: float, drawn: Array) -> Array:
+        """Where the joints should be in a step, in rad, shape (14,)."""
+        planned = step.trajectory.value(seconds)[:, 0]
+        return np.where(step.gripping, np.clip(planned + drawn, *self._travel), planned)
+
     def _hold(self, state: State, measured: Array, mode: Mode) -> Mode:
-        state.get_mutable_discrete_state(self._held).SetFromVector(measured)
+        within = np.clip(measured, *self._travel)  # noise at a stop is no set point
+        state.get_mutable_discrete_state(self._held).SetFromVector(within)
         return mode
 
     def _calc_position(self, context: Context, output: BasicVector) -> None:
         clock = context.get_discrete_state(self._clock).value()
         plan = self._planned(context)
         if plan is not None and int(clock[0]) == Mode.RUNNING:
-            output.SetFromVector(plan.steps[int(clock[1])].trajectory.value(clock[3])[:, 0])
+            drawn = context.get_discrete_state(self._drawn).value()
+            output.SetFromVector(self._set_points(plan.steps[int(clock[1])], clock[3], drawn))
         else:
             output.SetFromVector(context.get_discrete_state(self._held).value())
 

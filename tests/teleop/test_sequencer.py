@@ -6,6 +6,8 @@ from pydrake.systems.analysis import Simulator
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.configuration import teleop_entries
+from hydrolek_drake.teleop.hand import travel
+from hydrolek_drake.teleop.link import decode, encode
 from hydrolek_drake.teleop.plan import STEPS
 from hydrolek_drake.teleop.sequencer import Mode, Order, TaskSequencer
 from hydrolek_drake.workcell.scene import home_posture
@@ -92,6 +94,39 @@ def test_a_step_waits_until_the_joints_are_within_the_tolerance(plan):
     rig.lag = np.radians(teleop_entries("task")["tolerance_deg"]) * 0.8
     rig.advance(int(1.0 / PERIOD))
     assert rig.system.step_name(rig.context) == STEPS[1]
+
+
+def test_an_arm_that_its_gripper_has_drawn_to_the_pipe_is_not_pressed_back(plan):
+    """Set points of the gripping arm, and of no other joint, follow it once the gripper has closed."""
+    rig, beyond = Rig(plan), 1.6 * np.radians(teleop_entries("task")["tolerance_deg"])
+    while rig.system.step_name(rig.context) != "close":
+        rig.advance()
+    rig.lag = np.zeros(14)
+    rig.lag[[0, 6, 7]] = [-beyond, -np.radians(20.0), 0.0]  # drawn, and the jaw closed on the pipe
+    while rig.system.step_name(rig.context) == "close":
+        rig.advance()
+    assert rig.system.step_name(rig.context) == "cut start"
+    closed = plan.steps[2].trajectory.value(plan.steps[2].trajectory.end_time())[:, 0]
+    rig.lag = np.zeros(14)
+    rig.advance()
+    moved = rig.desired() - closed
+    assert moved[0] == pytest.approx(beyond, abs=1e-9)
+    assert not moved[1:7].any()
+    while rig.mode() is Mode.RUNNING:
+        rig.advance()
+    assert rig.mode() is Mode.DONE
+    assert rig.desired()[0] - closed[0] == pytest.approx(beyond, abs=1e-9)
+
+
+def test_what_is_held_lies_within_the_travel_whatever_the_sensors_noise(plan):
+    rig, (lower, upper) = Rig(plan), travel()
+    rig.advance(5)
+    rig.jammed = True
+    rig.position[[6, 13]] = [lower[6] - 1e-3, upper[13] + 1e-3]
+    rig.order = Order.STOP
+    rig.advance()
+    assert rig.desired()[6] == lower[6] and rig.desired()[13] == upper[13]
+    decode(encode(rig.desired()))  # the link takes it
 
 
 def test_stop_holds_at_once_with_closed_valves_and_resume_goes_on_from_there(plan):
