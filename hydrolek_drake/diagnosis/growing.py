@@ -34,6 +34,9 @@ FIDELITY = 0.004
 """Fall of the squared residuals, as a share of the values, below which an effect is not told from what every
 model leaves out: 0.2 % of the noise's rms."""
 
+LIKELY = 4
+"""So many moments are fitted from, of those at which an effect may begin."""
+
 MOST_EFFECTS = 3
 """At most so many effects are searched together."""
 
@@ -103,7 +106,9 @@ def grow(
                 continue
             effects = (*parent.effects, score.candidate)
             starts = work.setdefault(key_of(effects), (effects, []))[1]
-            starts.append((score.left, {**parent.values, **score.start}))
+            start = {**parent.values, **score.start}
+            starts.append((score.left, start))
+            starts += [(math.inf, {**start, **moment}) for moment in score.moments[:LIKELY]]
             if (
                 far and not parent.effects
             ):  # the parent's values may have gone far astray to make up for what is missing
@@ -185,11 +190,12 @@ def _glance(
 ) -> Hypothesis:
     """A few steps from each start."""
     part = [experiment.until(GLANCE_S) for experiment in bench.training]
-    near = begun(bench, effects, starts[0], step)
+    near = begun(bench, effects, starts, step)
     moments = {free.path: near[free.path] for free in effects[-1].moments}
+    others = different([{**start, **moments} for start in starts])[1:]
     fits = [
         bench.fit(effects, start, step, GLANCE, tolerance=1e-3, experiments=part, alone=True)
-        for start in different([near, *({**start, **moments} for start in starts[1:])])[:2]
+        for start in (near, *others[:1])
     ]
     return min(fits, key=lambda h: h.fit.objective)
 

@@ -33,24 +33,24 @@ TIMES_FINER = 3
 
 
 def begun(
-    bench: Workbench, effects: Sequence[Candidate], values: dict[str, float], step: float
+    bench: Workbench, effects: Sequence[Candidate], starts: Sequence[dict[str, float]], step: float
 ) -> dict[str, float]:
-    """Full path -> value: the best of short fits from every moment at which the last effect's search begins.
+    """Full path -> value: the best of short fits from the first start with every start's moment of the last effect.
 
     The whole recording is fitted, for what begins late shows in no part of it.
 
     Args:
         bench: data and fits.
         effects: what is added to the nominal model; of the last one no moment is known.
-        values: full path -> where the fits begin but for that moment.
+        starts: full path -> where the fits begin, the most promising first.
         step: integration step [s].
     """
     paths = [free.path for free in effects[-1].moments]
     if not paths:
-        return values
-    moments = different([{path: start[path] for path in paths} for start in effects[-1].starts])
+        return starts[0]
+    moments = different([{path: start[path] for path in paths} for start in starts])
     fits = [
-        bench.fit(effects, {**values, **moment}, step, GLANCE, tolerance=1e-3, alone=True)
+        bench.fit(effects, {**starts[0], **moment}, step, GLANCE, tolerance=1e-3, alone=True)
         for moment in moments
     ]
     return min(fits, key=lambda h: h.fit.objective).values

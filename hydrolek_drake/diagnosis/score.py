@@ -31,6 +31,8 @@ class Score:
         candidate: the effect.
         gain: predicted fall of the squared residuals, in units of the noise squared.
         start: full path -> value at which its fit should begin.
+        moments: full path -> value, for an effect that begins at some moment: those at which searches begin, in the
+            order of what the effect's best multiple would gain.
         left: squared residuals with the effect at its start, after the best change of the fitted parameters.
         visible_from: size of the effect (SI) whose gain would be `VISIBLE`.
         change: of the residuals across the fitted parameters' columns, at the size of that gain. # (values,)
@@ -40,6 +42,7 @@ class Score:
     candidate: Candidate
     gain: float
     start: dict[str, float]
+    moments: tuple[dict[str, float], ...]
     left: float
     visible_from: float
     change: np.ndarray
@@ -101,6 +104,9 @@ def _score(
     start = candidate.starts[0]
     weakens = candidate.effect.weakens
     visible = 0.0 if weakens else float("inf")
+    gain_at = dict.fromkeys(
+        (tuple(begin[free.path] for free in candidate.moments) for begin in candidate.starts), 0.0
+    )
     for begin in candidate.starts:
         for shrink in SHRUNK:
             size = begin[candidate.size_path] * (1.0 / shrink if weakens else shrink)
@@ -116,6 +122,8 @@ def _score(
                 continue
             along = -float(e @ left)
             gain = along * along / power if along > 0.0 else 0.0
+            at = tuple(begin[free.path] for free in candidate.moments)
+            gain_at[at] = max(gain_at[at], gain)
             remaining = float(np.sum((left + e) ** 2))
             if remaining < best_left:
                 best_left, start = remaining, tried
@@ -124,7 +132,10 @@ def _score(
             root = (VISIBLE / power) ** 0.5
             visible = max(visible, size / root) if weakens else min(visible, abs(size) * root)
     bench.evaluations += problem.evaluations
-    return Score(candidate, best_gain, start, best_left, visible, best_change, left)
+    paths = [free.path for free in candidate.moments]
+    ordered = sorted(gain_at, key=lambda at: -gain_at[at]) if paths else []
+    moments = tuple(dict(zip(paths, at, strict=True)) for at in ordered)
+    return Score(candidate, best_gain, start, moments, best_left, visible, best_change, left)
 
 
 def gain_of_pair(first: Score, second: Score) -> float:

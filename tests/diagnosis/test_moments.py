@@ -7,7 +7,9 @@ import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.effort import GLANCE, LOOK
+from hydrolek_drake.diagnosis.growing import LIKELY
 from hydrolek_drake.diagnosis.moments import begun, intervals_of_moments, timed
+from hydrolek_drake.diagnosis.score import scores_of
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -40,6 +42,23 @@ def test_the_moment_of_a_pick_up_is_found_from_a_wrong_one(bench, recorded) -> N
     assert not plain.effects
 
 
+def test_moments_that_promise_most_come_first(bench, recorded) -> None:
+    machine = bench.with_values({f"effects.load.payload.{name}": value for name, value in PICKED_UP.items()})
+    experiments = recorded(machine, bench, largest_V=5.0)
+    candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
+    with ThreadPoolExecutor(2) as pool:
+        workbench = Workbench(bench, free_parameters(bench), experiments, pool)
+        baseline = workbench.fit((), {}, 2.0 * workbench.fine, 15)
+        scores = {s.candidate.id: s for s in scores_of(workbench, baseline, candidates, workbench.fine)}
+    payload = scores.pop("load.payload")
+    path = payload.candidate.moments[0].path
+    assert sorted(m[path] for m in payload.moments) == sorted({s[path] for s in payload.candidate.starts})
+    apart = max(np.diff(sorted(moment[path] for moment in payload.moments)))
+    nearest = min(abs(moment[path] - PICKED_UP["time_s"]) for moment in payload.moments[:LIKELY])
+    assert nearest <= apart
+    assert not any(score.moments for score in scores.values())
+
+
 def test_short_fits_from_moments_far_apart_come_near(bench, recorded) -> None:
     machine = bench.with_values({f"effects.load.payload.{name}": value for name, value in PICKED_UP.items()})
     experiments = recorded(machine, bench, largest_V=5.0)
@@ -49,8 +68,8 @@ def test_short_fits_from_moments_far_apart_come_near(bench, recorded) -> None:
     with ThreadPoolExecutor(2) as pool:
         workbench = Workbench(bench, free_parameters(bench), experiments, pool)
         step = 2.0 * workbench.fine
-        near = begun(workbench, (payload,), payload.starts[0], step)
-        kept = begun(workbench, (payload, others[0]), near, step)
+        near = begun(workbench, (payload,), payload.starts, step)
+        kept = begun(workbench, (payload, others[0]), [near], step)
     moments = sorted({start[payload.moments[0].path] for start in payload.starts})
     apart = max(np.diff(moments))
     assert near[payload.moments[0].path] == pytest.approx(PICKED_UP["time_s"], abs=apart)

@@ -43,7 +43,7 @@ def test_the_visible_size_is_where_the_gain_says_it_is(bench, recorded, effect_i
 
 
 def _held_against(rest: np.ndarray, change: np.ndarray) -> Score:
-    return Score(None, 0.0, {}, 0.0, 0.0, change, rest)
+    return Score(None, 0.0, {}, (), 0.0, 0.0, change, rest)
 
 
 def test_two_effects_that_add_up_to_what_is_left_promise_all_of_it() -> None:
