@@ -5,56 +5,30 @@ import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
-from enum import Enum
 from typing import Any
 
-import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.camera_thread import CameraThread
-from hydrolek_drake.teleop.clicks import Clicks, Task, Wanted
+from hydrolek_drake.teleop.clicks import Clicks, Task
 from hydrolek_drake.teleop.hand import travel, within_limits
 from hydrolek_drake.teleop.machine import Machine, MachineState
-from hydrolek_drake.teleop.place_plan import PLACE_STEPS, plan_place_by_either
+from hydrolek_drake.teleop.pictures import Pictures
+from hydrolek_drake.teleop.place_plan import plan_place_by_either
 from hydrolek_drake.teleop.plan import STEPS, TaskPlan, plan_task
 from hydrolek_drake.teleop.release import plan_letting_go
 from hydrolek_drake.teleop.sequencer import Mode, Order
 from hydrolek_drake.teleop.signals import shown
+from hydrolek_drake.teleop.stages import STAGE_FOR, STEPS_OF, Stage
 from hydrolek_drake.vision.edges import EdgeSettings, default_settings
 from hydrolek_drake.vision.frames import FrameSource
 from hydrolek_drake.vision.selection import Fill
-
-_QUALITY = [cv2.IMWRITE_JPEG_QUALITY, 85]
 
 _HALF_TURN_DEG = 180.0  # shown of a joint that turns without end
 _SLIDERS_DEG = [
     np.clip(np.degrees(ends), -_HALF_TURN_DEG, _HALF_TURN_DEG).round(2).tolist() for ends in travel()
 ]
-
-
-class Stage(Enum):
-    """Where the operator is; each but the first and the last three waits for one click."""
-
-    LIVE = "Take a snapshot when the pipe is in view."
-    OBJECT = "Click the pipe, in either picture."
-    GRASP = "Click where to grasp it."
-    CUT = "Click where to cut it."
-    PLACE = "Click where to put it down, on the table."
-    CONFIRM = "Check the marks, then confirm."
-    PLANNING = "Planning the motion."
-    MOVING = "The arms are moving."
-
-
-_STAGES = {
-    Wanted.OBJECT: Stage.OBJECT,
-    Wanted.GRASP: Stage.GRASP,
-    Wanted.CUT: Stage.CUT,
-    Wanted.PLACE: Stage.PLACE,
-    Wanted.NOTHING: Stage.CONFIRM,
-}
-_STEPS = {Task.CUT: STEPS, Task.PLACE: PLACE_STEPS}
 
 
 class OperatorSession:
@@ -90,8 +64,7 @@ class OperatorSession:
         self._clicks: Clicks | None = None
         self._settings, self._fill = default_settings(), Fill.SURFACES
         self._message, self._error = "", ""
-        self._pictures: dict[str, bytes] = {}
-        self._version = 0
+        self._pictures = Pictures()
         self._planning: Future[None] | None = None
         self._asked: object = None  # the planning whose plan is still wanted
         self._under_way: TaskPlan | None = None
@@ -116,7 +89,7 @@ class OperatorSession:
                 self._error = str(error)
             return
         with self._lock:
-            self._show("live", frame.colour)
+            self._pictures.show("live", frame.colour)
 
     def snapshot(self) -> None:
         """Stage 2: take a frame and process it. Discards what was clicked before.
@@ -142,10 +115,10 @@ class OperatorSession:
         self._not_while_moving()
         with self._lock:
             self._task = Task(name)
-            self._steps = _STEPS[self._task]
+            self._steps = STEPS_OF[self._task]
             if self._clicks is not None:
                 self._clicks.change_task(self._task)
-                self._stage, self._message = _STAGES[self._clicks.wanted()], ""
+                self._stage, self._message = STAGE_FOR[self._clicks.wanted()], ""
             self._draw()
 
     def set_sliders(self, **values: float) -> None:
@@ -188,7 +161,7 @@ class OperatorSession:
             if self._stage in (Stage.PLANNING, Stage.MOVING):
                 raise InputError("no click is needed now; confirm, or go back")
             self._clicks.click(u, v, self._fill)
-            self._stage, self._message = _STAGES[self._clicks.wanted()], self._clicks.told()
+            self._stage, self._message = STAGE_FOR[self._clicks.wanted()], self._clicks.told()
             self._draw()
 
     def back(self) -> None:
@@ -200,7 +173,7 @@ class OperatorSession:
         self._not_while_moving()
         with self._lock:
             if self._clicks is not None and self._clicks.back():
-                self._stage = _STAGES[self._clicks.wanted()]
+                self._stage = STAGE_FOR[self._clicks.wanted()]
             else:
                 self._clicks, self._stage = None, Stage.LIVE
             self._message = ""
@@ -283,7 +256,7 @@ class OperatorSession:
                 },
                 "fill": self._fill.value,
                 "task": self._task.value,
-                "version": self._version,
+                "version": self._pictures.version,
                 "mode": machine.mode.name.lower(),
                 "steps": list(self._steps),
                 "can_release": self._done is not None
@@ -307,21 +280,14 @@ class OperatorSession:
             if name == "colour":
                 clicking = self._clicks is not None and self._stage is not Stage.MOVING
                 name = "colour" if clicking else "live"
-            return self._pictures.get(name, b"")
+            return self._pictures.jpeg(name)
 
     def _draw(self) -> None:
         if self._clicks is None:
-            self._pictures.pop("edges", None)
-            self._version += 1
+            self._pictures.drop("edges")
             return
         for name, picture in self._clicks.pictures().items():
-            self._show(name, picture)
-
-    def _show(self, name: str, picture: NDArray[np.uint8]) -> None:
-        done, data = cv2.imencode(".jpg", picture, _QUALITY)
-        if done:
-            self._pictures[name] = data.tobytes()
-            self._version += 1
+            self._pictures.show(name, picture)
 
     def _plan_and_go(self, clicks: Clicks, asked: object) -> None:
         def told(name: str) -> None:
@@ -352,7 +318,7 @@ class OperatorSession:
                 self._machine.start(plan)
                 self._under_way, self._steps = plan, tuple(step.name for step in plan.steps)
                 self._stage, self._message = Stage.MOVING, f"Planned for {plan.duration():.1f} s."
-                self._version += 1
+                self._pictures.changed()
         except InputError as error:
             with self._lock:
                 self._stage, self._error, self._message = otherwise, str(error), ""
@@ -378,7 +344,7 @@ class OperatorSession:
         assert plan is not None  # it moved
         if done:
             self._done = (plan, "") if plan.holds else None
-        elif self._steps in _STEPS.values():  # an aborted release is begun again from the task before it
+        elif self._steps in STEPS_OF.values():  # an aborted release is begun again from the task before it
             self._done = (plan, machine.step)
         self._message = f"{'Done' if done else 'Aborted'} after {self._took:.1f} s."
         self._clicks, self._stage = None, Stage.LIVE
