@@ -18,15 +18,12 @@ STEPS, GLANCE = 15, 4
 GLANCE_S = 20.0
 """First fits see so many seconds."""
 
-COARSE, FINER = 4.0, 2.0
-"""Integration steps over the rig's own, of first fits and of the others."""
-
 PHASES = 12
 """Where a periodic law may stand when a recording begins is first tried at so many places."""
 
 
 def glance(
-    bench: Workbench, left: Hypothesis, law: Law, span: Span
+    bench: Workbench, left: Hypothesis, law: Law, span: Span, step: float
 ) -> tuple[float, dict[str, float], np.ndarray]:
     """A few steps with a law on the first part of the training data.
 
@@ -45,8 +42,9 @@ def glance(
         amplitudes = law.input.scale * np.array(law.amplitudes)
         for seconds in (SCAN_S, GLANCE_S) if law.term is None else (GLANCE_S,):
             part = [experiment.until(seconds) for experiment in bench.training]
-            problem = LawProblem(parameters, part, COARSE * bench.fine, law, span)
-            fit = fit_from(problem, problem.start(unit, amplitudes), most_steps=GLANCE, tolerance=1e-3)
+            problem = LawProblem(parameters, part, step, law, span)
+            start = problem.start(unit, amplitudes)
+            fit = fit_from(problem, start, most_steps=GLANCE, tolerance=1e-3, stop=bench.interrupted)
             unit, amplitudes = fit.unit[: len(parameters)], problem.law_values(fit.unit)
             bench.evaluations += problem.evaluations
         ended.append((fit.objective, unit, amplitudes))
@@ -61,6 +59,7 @@ def fitted(
     held_out: Sequence[Experiment],
     span: Span,
     begin: tuple[dict[str, float], np.ndarray],
+    step: float,
 ) -> FoundLaw:
     """Fit a law together with the parameters of a model, from where a glance ended.
 
@@ -71,13 +70,13 @@ def fitted(
         held_out: data that nothing is fitted to.
         span: what the law's variables are told in.
         begin: nominal parameters and the law's values (SI).
+        step: of the integration [s].
     """
     bench.alive()
     parameters = bench.parameters(left.effects)
-    step = FINER * bench.fine
     problem = LawProblem(parameters, bench.training, step, law, span)
     start = problem.start(parameters.unit(begin[0]), begin[1])
-    fit = fit_from(problem, start, most_steps=STEPS, tolerance=1e-4)
+    fit = fit_from(problem, start, most_steps=STEPS, tolerance=1e-4, stop=bench.interrupted)
     count = len(parameters)
     values = problem.law_values(fit.unit)
     without = bench.training[0].simulate(parameters.records(fit.unit[:count]), step).signals

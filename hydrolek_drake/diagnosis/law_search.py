@@ -35,9 +35,6 @@ TRIED = 1e-3
 SIZES = (0.3, 0.1, 0.03)
 """Larger amplitudes, where a law may not act in proportion any more."""
 
-COARSE = 4.0
-"""Integration step over the rig's own while laws are looked for."""
-
 
 @dataclass(frozen=True)
 class _Part:
@@ -48,7 +45,9 @@ class _Part:
     counted: int
 
 
-def promising(bench: Workbench, left: Hypothesis, inputs: Sequence[Input], span: Span) -> list[Law]:
+def promising(
+    bench: Workbench, left: Hypothesis, inputs: Sequence[Input], span: Span, step: float
+) -> list[Law]:
     """Every law with the gain that it promises, and the amplitude at which its fit should begin.
 
     Args:
@@ -56,10 +55,10 @@ def promising(bench: Workbench, left: Hypothesis, inputs: Sequence[Input], span:
         left: the model that leaves the mismatch.
         inputs: unknown inputs of the joint.
         span: what the laws' variables are told in.
+        step: of the integration [s].
     """
     parameters = bench.parameters(left.effects)
     records = parameters.records(parameters.unit(left.values))
-    step = COARSE * bench.fine
     across = Across(left.fit)
     off = left.fit.off_prior
     counted = sum(e.counted for e in bench.training)

@@ -10,10 +10,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.effort import COARSE
 from hydrolek_drake.diagnosis.evidence import Judged
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
-from hydrolek_drake.diagnosis.law_search import COARSE, promising
+from hydrolek_drake.diagnosis.law_search import promising
 from hydrolek_drake.diagnosis.laws import Span, inputs_of, span_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
@@ -21,6 +22,9 @@ from hydrolek_drake.identification.experiment import Experiment
 
 TRIED = 24
 """So many laws are fitted with a few steps: the best of every input, periodic or not, and what promises most."""
+
+FINER = 2.0
+"""Integration step of the last fits over the rig's own, at most."""
 
 FITTED = 6
 """So many of them are fitted to the end."""
@@ -45,14 +49,18 @@ def find_law(
     pressure = bench.rig.value("supply.pressure")
     limit = bench.rig.value(f"joints.{joint}.command.limit")
     inputs = inputs_of(scales, pressure, limit, bench.training[0].channels[0].unit)
-    span = _span(bench, left)
-    laws = sorted(promising(bench, left, inputs, span), key=lambda law: -law.gain)
+    step = bench.coarsest(left, left.fit.over_noise, COARSE)
+    span = _span(bench, left, step)
+    laws = sorted(promising(bench, left, inputs, span, step), key=lambda law: -law.gain)
     if not laws or laws[0].gain <= 0.0:
         return None
     chosen = _one_of_each(laws)
-    begun = bench.side_by_side(lambda law: glance(bench, left, law, span), chosen)
+    begun = bench.side_by_side(lambda law: glance(bench, left, law, span, step), chosen)
     ranked = sorted(zip(chosen, begun, strict=True), key=lambda item: item[1][0])[:FITTED]
-    ended = bench.side_by_side(lambda item: fitted(bench, left, item[0], held_out, span, item[1][1:]), ranked)
+    finer = min(step, FINER * bench.fine)
+    ended = bench.side_by_side(
+        lambda item: fitted(bench, left, item[0], held_out, span, item[1][1:], finer), ranked
+    )
     best = min(ended, key=lambda found: found.held_out_over_noise)
     return best if best.held_out_over_noise < BETTER * named.over_noise else None
 
@@ -68,16 +76,18 @@ def without_effects(
         law: found beside a model with some.
         held_out: what decides.
     """
+    left = nominal.hypothesis
+    step = bench.coarsest(left, left.fit.over_noise, FINER)
     begin = (law.parameters, law.values)
-    return fitted(bench, nominal.hypothesis, law.law, held_out, _span(bench, nominal.hypothesis), begin)
+    return fitted(bench, left, law.law, held_out, _span(bench, left, step), begin, step)
 
 
-def _span(bench: Workbench, left: Hypothesis) -> Span:
+def _span(bench: Workbench, left: Hypothesis, step: float) -> Span:
     """What a law's variables are told in, from the training data as a model has them."""
     parameters = bench.parameters(left.effects)
     records = parameters.records(parameters.unit(left.values))
     return span_of(
-        [e.simulate(records, COARSE * bench.fine).signals for e in bench.training],
+        [e.simulate(records, step).signals for e in bench.training],
         records[bench.training[0].index],
         max(float(np.ptp(e.time)) for e in bench.training),
     )

@@ -100,9 +100,13 @@ class Workbench:
         self.evaluations = 0
         self._sets: dict[frozenset[Free], ParameterSet] = {}
 
+    def interrupted(self) -> bool:
+        """Whether the user has interrupted."""
+        return self._stopped.is_set()
+
     def alive(self) -> None:
         """End this thread's work if the user has interrupted."""
-        if self._stopped.is_set():
+        if self.interrupted():
             raise KeyboardInterrupt
 
     def resume(self) -> None:
@@ -187,7 +191,7 @@ class Workbench:
             parameters.unit(values),
             most_steps=most_steps,
             tolerance=tolerance,
-            stop=self._stopped.is_set,
+            stop=self.interrupted,
             moving=moving,
         )
         self.evaluations += fit.evaluations
@@ -248,6 +252,8 @@ class Workbench:
             over: what is to be explained, in units of the noise.
             most: the coarsest that is asked for, over the rig's own.
         """
+        if most <= 1.0:
+            return self.fine
         exact = self.residuals(hypothesis, self.training, self.fine)
         counted = sum(experiment.counted for experiment in self.training)
         while most > 1.0:

@@ -44,7 +44,9 @@ def test_a_ripple_is_found_between_the_frequencies_that_are_scanned(bench, recor
         span = span_of(signals, records[training[0].index], 12.0)
         scales = natural_scales(bench, "joint", training)
         inputs = inputs_of(scales, bench.value("supply.pressure"), 10.0, training[0].channels[0].unit)
-        laws = promising(workbench, nominal, [i for i in inputs if i.stage == "supply"], span)
+        laws = promising(
+            workbench, nominal, [i for i in inputs if i.stage == "supply"], span, 4 * workbench.fine
+        )
     ripple = next(law for law in laws if law.term is None)
     assert nominal.fit.over_noise > 2.0
     assert ripple is max(laws, key=lambda law: law.gain)
