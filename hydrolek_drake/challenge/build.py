@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from hydrolek_drake.challenge import arm_machine, arm_numbers, bench_machine
+from hydrolek_drake.challenge import arm_machine, arm_numbers, bench_machine, bench_numbers
 from hydrolek_drake.challenge.driving import Driving, Played, arm_driving, bench_driving, unhindered
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
@@ -33,7 +33,6 @@ class Build:
         listed: effects that a machine may conceal -> size and draws, as in sizes.yaml.
         unlisted: physics in no list, likewise, and its stage.
         driving: commands and controller.
-        with_effects: gives a machine listed effects.
         run: machine, driving, command or None, set points, noise and step -> what it did.
     """
 
@@ -43,7 +42,6 @@ class Build:
     listed: Mapping[str, Any]
     unlisted: Mapping[str, Any]
     driving: Driving
-    with_effects: Callable[[Any, Mapping[str, Mapping[str, float]]], Any]
     run: Callable[..., Played]
 
     @property
@@ -88,12 +86,11 @@ def build_of(rig: Rig) -> Build:
     if rig.name == BENCH:
         return Build(
             rig,
-            bench_machine.nominal_machine(rig),
-            bench_machine.SPREAD,
+            bench_numbers.nominal_machine(rig),
+            bench_numbers.SPREAD,
             sizes["listed"],
             sizes["unlisted"],
             bench_driving(),
-            bench_machine.with_effects,
             bench_machine.play,
         )
     arm = sizes["arm"]
@@ -110,6 +107,5 @@ def build_of(rig: Rig) -> Build:
         listed,
         {name: {**entry, **own.get(name, {})} for name, entry in sizes["unlisted"].items()},
         arm_driving(rig),
-        arm_numbers.with_effects,
         arm_machine.play,
     )

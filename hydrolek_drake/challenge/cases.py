@@ -13,6 +13,7 @@ import numpy as np
 from hydrolek_drake.challenge.bench_machine import STEP_S
 from hydrolek_drake.challenge.build import BENCH, Build, build_of
 from hydrolek_drake.challenge.driving import SAMPLE_S, Played, random_series
+from hydrolek_drake.challenge.listed import with_effects
 from hydrolek_drake.recordings import write_signals
 from hydrolek_drake.rigs import Rig
 
@@ -154,7 +155,7 @@ def machine_of(build: Build, case: Case) -> Any:
     """The machine of a case."""
     plain = build.nominal._replace(**case.machine)
     fields = {name: value for numbers in case.unlisted.values() for name, value in numbers.items()}
-    return build.with_effects(plain, case.effects)._replace(**fields)
+    return with_effects(plain, case.effects)._replace(**fields)
 
 
 def _scaled(
@@ -175,7 +176,7 @@ def _scaled(
     shown = 0.0
     for _ in range(SCALINGS):
         parameters = {p: sign * v * factor for p, v in entry["size"].items()} | drawn
-        changed = build.with_effects(machine, {name: parameters}) if name else machine._replace(**parameters)
+        changed = with_effects(machine, {name: parameters}) if name else machine._replace(**parameters)
         shown = _mismatch(build, machine, changed, drive, seed)
         if not math.isfinite(shown):
             shown = 10.0 * SHOWS["large"]

@@ -8,9 +8,9 @@ import pytest
 from scipy.constants import g as GRAVITY
 
 from hydrolek_drake.challenge.arm_body import turned_body
-from hydrolek_drake.challenge.arm_numbers import LISTED
 from hydrolek_drake.challenge.build import ARM_JOINTS, Build, build_of
 from hydrolek_drake.challenge.driving import SAMPLE_S, Played, random_series, turned_back
+from hydrolek_drake.challenge.listed import LISTED, with_effects
 from hydrolek_drake.kinematics.arms import arms_urdf_path
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rollout.rollout import rest_state, roll_out
@@ -110,7 +110,7 @@ def test_an_effect_changes_both_alike(number: int, effect: str) -> None:
     fine = STEP_S if effect == "cylinder.stribeck_friction" else None
     plain, plain_rolled_out = _without(name, fine)
     joint, parameters = build.rig.joints[0], _parameters(build, effect)
-    changed = build.replay(build.with_effects(build.nominal, {effect: parameters}), plain.volts, STEP_S)
+    changed = build.replay(with_effects(build.nominal, {effect: parameters}), plain.volts, STEP_S)
     with_it = build.rig.with_values(
         {f"joints.{joint}.effects.{effect}.{p}": v for p, v in parameters.items()}
     )

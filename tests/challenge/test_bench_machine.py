@@ -6,8 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrolek_drake.challenge.bench_machine import LISTED, nominal_machine, play, with_effects
+from hydrolek_drake.challenge.bench_machine import play
+from hydrolek_drake.challenge.bench_numbers import Machine, nominal_machine
 from hydrolek_drake.challenge.driving import bench_driving
+from hydrolek_drake.challenge.listed import listed_of, with_effects
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.rigs import load_rig
 
@@ -19,7 +21,9 @@ FIELDS = {
 }  # fmt: skip
 SAMPLES = 1000
 NOISE_DEG = 0.05
-LISTED_PAIRS = [name for name, label in LABELS.items() if set(label["effects"]) <= set(LISTED)]
+LISTED_PAIRS = [
+    name for name, label in LABELS.items() if set(label["effects"]) <= set(listed_of(Machine._fields))
+]
 
 
 @pytest.mark.parametrize("pair", LISTED_PAIRS)

@@ -9,6 +9,7 @@ from hydrolek_drake.challenge.build import ARM_JOINTS, BENCH, build_of, rig_name
 from hydrolek_drake.challenge.calibration import calibration_png
 from hydrolek_drake.challenge.cases import _in_turn, digest, draw_cases, labels_of, read_case, record
 from hydrolek_drake.challenge.confusion import confusion_markdown, confusions
+from hydrolek_drake.challenge.listed import with_effects
 from hydrolek_drake.challenge.scoring import markdown, score, summaries, summaries_markdown, summary
 from hydrolek_drake.challenge.visibility import visibility_markdown
 from hydrolek_drake.errors import InputError
@@ -164,7 +165,7 @@ def test_every_size_fits_its_machine(name: str) -> None:
     build = build_of(load_rig(name, {}))
     fields = set(build.nominal._fields)
     for effect, entry in build.listed.items():
-        assert build.with_effects(
+        assert with_effects(
             build.nominal, {effect: entry["size"] | dict.fromkeys(entry.get("draw", {}), 1.0)}
         )
     for entry in build.unlisted.values():
