@@ -49,9 +49,9 @@ def conclude(judged: Sequence[Judged]) -> Conclusion:
     paths = {path for j in judged for path in j.hypothesis.ids}
     probability = {path: probability_of(path, judged) for path in paths}
     explained = _explains(best)
-    if not explained:
-        return Conclusion("unlisted_physics", best, probability, ())
     groups = _groups(best, judged)
+    if not explained:
+        return Conclusion("unlisted_physics", best, probability, groups if best.hypothesis.effects else ())
     if not best.hypothesis.effects:
         return Conclusion("none" if best.probability >= SURE else "ambiguous", best, probability, groups)
     verdict = "missing_physics" if best.probability >= SURE or not groups else "ambiguous"

@@ -42,7 +42,8 @@ def with_law(
     if conclusion.verdict == "unlisted_physics":
         say("searching a law for physics that is in no list")
         law, named = _law_and_model(bench, conclusion.best, nominal, held_out, scales)
-        return replace(conclusion, best=named), law
+        groups = conclusion.groups if named is conclusion.best else ()
+        return replace(conclusion, best=named, groups=groups), law
     if len(conclusion.best.hypothesis.effects) >= MANY:
         say("searching one law that could stand for so many effects")
         law = find_law(bench, nominal, held_out, scales)
@@ -92,7 +93,9 @@ def material(conclusion: Conclusion, judged: Sequence[Judged], held_out: Sequenc
     matters = best.over_noise <= nominal.over_noise and any(
         left[key] < MATERIAL * before[key] for key in before
     )
-    return replace(conclusion, verdict="unlisted_physics", best=best if matters else nominal, groups=())
+    if not matters:
+        return replace(conclusion, verdict="unlisted_physics", best=nominal, groups=())
+    return replace(conclusion, verdict="unlisted_physics")
 
 
 def _immaterial(best: Judged, nominal: Judged) -> bool:

@@ -59,6 +59,18 @@ def test_what_no_effect_explains_is_unlisted(effect) -> None:
     )
 
 
+def test_what_is_named_beside_unlisted_physics_may_have_rivals(effect) -> None:
+    leak, gap, play = (
+        effect[name] for name in ("cylinder.cross_port_leakage", "linkage.backlash", "sensor.hysteresis")
+    )
+    judged = [_judged((), 9.0), _judged((leak, gap), 4.0), _judged((leak, play), 4.0)]
+    done = conclude(with_probabilities(judged))
+    assert done.verdict == "unlisted_physics"
+    assert done.groups == (("linkage.backlash", "sensor.hysteresis"),)
+    alone = conclude(with_probabilities([_judged((), 4.0), _judged((gap,), 4.0 + 1e-4)]))
+    assert alone.verdict == "unlisted_physics" and alone.groups == ()
+
+
 def test_probabilities_sum_to_one_and_follow_the_likelihood(effect) -> None:
     leak = effect["cylinder.cross_port_leakage"]
     judged = with_probabilities([_judged((), 1.002), _judged((leak,), 1.0)])
