@@ -66,6 +66,15 @@ class Candidate:
             if value is not None
         }
 
+    def shifted(self, values: dict[str, float]) -> dict[str, float]:
+        """Full path -> value of the joint's own parameters that do what this effect does, see `Effect.shifts`."""
+        return {
+            f"joints.{self.joint}.{path}": values[f"joints.{self.joint}.{path}"]
+            + sign * values[f"{self.path}.{name}"]
+            for path, (name, sign) in self.effect.shifts.items()
+            if f"joints.{self.joint}.{path}" in values
+        }
+
     def is_special_case_of(self, other: "Candidate") -> bool:
         """Whether another effect at the same joint contains this one."""
         return self.joint == other.joint and self.id in other.effect.contains

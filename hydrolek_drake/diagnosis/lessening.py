@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import POLISH
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.parameter_set import Free
 
 SLIGHT = 0.05
 """An effect that takes no more than this share of the squared residuals may have found another way down instead."""
@@ -19,7 +20,7 @@ def lessened(bench: Workbench, hypothesis: Hypothesis, candidates: Sequence[Cand
     work: list[tuple[tuple[Candidate, ...], dict[str, float]]] = []
     for effect in hypothesis.effects:
         rest = hypothesis.without(effect)
-        work.append((rest, hypothesis.values))
+        work.append((rest, passed_on(bench.nominal, effect, hypothesis.values)))
         work += [
             ((*rest, special), {**hypothesis.values, **special.taken_over(effect, hypothesis.values)})
             for special in candidates
@@ -42,7 +43,7 @@ def slightly_worse(
     for contender in contenders:
         least = contender.fit.objective
         for other in known.values():
-            start = start_of_lesser(contender, other)
+            start = start_of_lesser(contender, other, bench.nominal)
             if start is None or not least < other.fit.objective <= (1.0 + SLIGHT) * least:
                 continue
             if other.ids not in work or least < work[other.ids][0].fit.objective:
@@ -53,15 +54,24 @@ def slightly_worse(
     )
 
 
-def start_of_lesser(hypothesis: Hypothesis, other: Hypothesis) -> dict[str, float] | None:
+def start_of_lesser(
+    hypothesis: Hypothesis, other: Hypothesis, nominal: Sequence[Free]
+) -> dict[str, float] | None:
     """Full path -> value where a fit of another hypothesis begins that this one contains; None if it does not.
 
     It contains what has fewer of its effects, and what has a special case in the place of one.
+
+    Args:
+        hypothesis: fitted.
+        other: what is to be fitted.
+        nominal: the rig's own free parameters.
     """
     own = [c for c in hypothesis.effects if c.size_path not in other.ids]
     if not own:
         return None
     start = dict(hypothesis.values)
+    for effect in own:
+        start = passed_on(nominal, effect, start)
     for special in other.effects:
         if special.size_path in hypothesis.ids:
             continue
@@ -70,3 +80,13 @@ def start_of_lesser(hypothesis: Hypothesis, other: Hypothesis) -> dict[str, floa
             return None
         start |= special.taken_over(wider, hypothesis.values)
     return start
+
+
+def passed_on(nominal: Sequence[Free], effect: Candidate, values: dict[str, float]) -> dict[str, float]:
+    """Full path -> value with what an effect does done by the joint's own parameters, where they are free to do it."""
+    free = {own.path: own for own in nominal}
+    shifted = effect.shifted(values)
+    able = len(shifted) == len(effect.effect.shifts) and all(
+        path in free and free[path].lower <= value <= free[path].upper for path, value in shifted.items()
+    )
+    return {**values, **shifted} if able else values

@@ -20,6 +20,7 @@ EFFECT = Effect(
     confused_with={
         "valve.spool_stiction": "stiction delays small commands more than large ones, a delay all alike",
     },
+    shifts={"command.delay": ("delay_s", 1.0)},
 )
 
 

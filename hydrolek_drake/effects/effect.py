@@ -71,6 +71,8 @@ class Effect:
             on where another effect says the same of a hydraulic joint.
         weakens: whether it fades as its size grows, like a spring that becomes stiffer.
         contains: ids of effects that are special cases of it, so that both together say nothing new.
+        shifts: what it adds to a joint's own parameters: their path under the joint -> parameter and sign. Where these
+            are free to take it over, the joint is only another one of its kind, and nothing is missing.
     """
 
     id: str
@@ -85,6 +87,7 @@ class Effect:
     searched_on: dict[str, tuple[str, ...]] = field(default_factory=dict)
     weakens: bool = False
     contains: tuple[str, ...] = ()
+    shifts: dict[str, tuple[str, float]] = field(default_factory=dict)
     hooks: dict[str, Callable[..., Any]] = field(default_factory=dict)
 
     @property

@@ -10,12 +10,12 @@ import pytest
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.effort import NEARLY, POLISH
 from hydrolek_drake.diagnosis.growing import gain_needed
-from hydrolek_drake.diagnosis.lessening import SLIGHT, slightly_worse, start_of_lesser
+from hydrolek_drake.diagnosis.lessening import SLIGHT, lessened, passed_on, slightly_worse, start_of_lesser
 from hydrolek_drake.diagnosis.score import scores_of
 from hydrolek_drake.diagnosis.search import Search, _exchanged, _prune, _widen
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
-from hydrolek_drake.identification.parameter_set import free_parameters
+from hydrolek_drake.identification.parameter_set import Free, free_parameters
 
 COULOMB = 600.0
 
@@ -83,19 +83,56 @@ def test_a_model_that_ended_elsewhere_is_fitted_from_where_a_wider_one_ended(ben
         assert left_behind(-0.01) == []  # what is better already needs no other start
 
 
+DELAY, OWN_DELAY = 0.08, "joints.joint.command.delay"
+
+
+def test_a_delay_that_the_machine_s_own_may_take_over_is_no_missing_physics(bench, recorded) -> None:
+    """As on the arms, whose rig knows the delay only roughly: a fit that got stuck without the effect goes on."""
+    machine = bench.with_values({"effects.command.delay.delay_s": DELAY})
+    experiments = recorded(machine, bench)
+    delay = next(
+        c
+        for c in candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
+        if c.id == "command.delay"
+    )
+    own = bench.value(OWN_DELAY)
+    with ThreadPoolExecutor(2) as pool:
+        for upper, taken in ((0.4, True), (own + 0.5 * DELAY, False)):
+            work = Workbench(bench, [Free(OWN_DELAY, 0.5 * own, upper, True)], experiments, pool)
+            with_effect = work.fit((delay,), {delay.size_path: DELAY, OWN_DELAY: own}, work.fine, POLISH)
+            start = passed_on(work.nominal, delay, with_effect.values)
+            total = with_effect.values[OWN_DELAY] + with_effect.values[delay.size_path]
+            assert start[OWN_DELAY] == pytest.approx(total if taken else with_effect.values[OWN_DELAY])
+            (without,) = lessened(work, with_effect, [delay])
+            worse = without.fit.objective - with_effect.fit.objective
+            assert (worse < gain_needed(with_effect.fit)) is taken
+
+
+def test_a_shifted_null_is_passed_on_to_both_overlaps_or_none(bench, recorded) -> None:
+    candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", recorded(bench, bench)))
+    shift = next(c for c in candidates if c.id == "valve.asymmetric_overlap")
+    own = [Free(f"joints.joint.valve.overlap_{side}", 1e-5, 9e-5, True) for side in "ab"]
+    values = {own[0].path: 6e-5, own[1].path: 6e-5, shift.size_path: 2e-5}
+    assert passed_on(own, shift, values) == pytest.approx({**values, own[0].path: 8e-5, own[1].path: 4e-5})
+    assert (
+        passed_on(own[:1], shift, {k: v for k, v in values.items() if k != own[1].path})[own[0].path] == 6e-5
+    )
+
+
 def test_what_a_hypothesis_contains(bench, recorded) -> None:
     with _searched(bench, recorded(bench, bench)) as (work, candidates, stribeck, coulomb):
         bow = next(c for c in candidates if c.id == "sensor.nonlinearity")
         both = work.fit((stribeck, bow), {**stribeck.starts[0], **bow.starts[0]}, work.fine, 1)
         nominal, special, other = (work.fit(e, {}, work.fine, 1) for e in ((), (coulomb, bow), (coulomb,)))
-    assert start_of_lesser(both, nominal) == both.values
-    start = start_of_lesser(both, special)
+    own = work.nominal
+    assert start_of_lesser(both, nominal, own) == both.values
+    start = start_of_lesser(both, special, own)
     assert start is not None
     assert start[coulomb.size_path] == both.values[f"{stribeck.path}.coulomb_N"]
-    assert start_of_lesser(both, other) is not None
-    assert start_of_lesser(both, both) is None
-    assert start_of_lesser(nominal, both) is None
-    assert start_of_lesser(other, special) is None
+    assert start_of_lesser(both, other, own) is not None
+    assert start_of_lesser(both, both, own) is None
+    assert start_of_lesser(nominal, both, own) is None
+    assert start_of_lesser(other, special, own) is None
 
 
 def test_where_no_effect_may_be_added_one_that_does_little_gives_way(bench, recorded) -> None:
