@@ -4,10 +4,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from hydrolek_drake.diagnosis.balance import squares_of
-from hydrolek_drake.diagnosis.conclusion import EXPLAINED, EXPLAINED_AHEAD, MATERIAL, Conclusion
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED, EXPLAINED_AHEAD, MATERIAL, SURE, Conclusion
+from hydrolek_drake.diagnosis.effort import AT_NOISE
 from hydrolek_drake.diagnosis.evidence import Judged
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
-from hydrolek_drake.diagnosis.unlisted import find_law, without_effects
+from hydrolek_drake.diagnosis.unlisted import find_law, left_in_all, without_effects
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiment import Experiment
@@ -16,8 +17,8 @@ SIMPLER = 1.1
 """A law beside the nominal model may leave so many times what it leaves beside known effects, and is preferred."""
 
 MANY = 3
-"""So many effects at once are less likely than one in no list, which they may only imitate: where one law predicts
-the held-out data as well, it is preferred."""
+"""So many effects at once are less likely than one in no list, which they may only imitate: where one law leaves no
+more of all data, it is preferred. Of one less the same is asked if they are not sure, or not at the noise."""
 
 
 def with_law(
@@ -44,10 +45,13 @@ def with_law(
         law, named = _law_and_model(bench, conclusion.best, nominal, held_out, scales)
         groups = conclusion.groups if named is conclusion.best else ()
         return replace(conclusion, best=named, groups=groups), law
-    if len(conclusion.best.hypothesis.effects) >= MANY:
+    if _imitating(conclusion.best):
         say("searching one law that could stand for so many effects")
         law = find_law(bench, nominal, held_out, scales)
-        if law is not None and law.held_out_over_noise <= conclusion.best.over_noise:
+        best = conclusion.best
+        if law is not None and left_in_all(law.fit, law.held_out_over_noise, held_out) <= left_in_all(
+            best.hypothesis.fit, best.over_noise, held_out
+        ):
             return replace(conclusion, verdict="unlisted_physics", best=nominal, groups=()), law
     return conclusion, None
 
@@ -96,6 +100,13 @@ def material(conclusion: Conclusion, judged: Sequence[Judged], held_out: Sequenc
     if not matters:
         return replace(conclusion, verdict="unlisted_physics", best=nominal, groups=())
     return replace(conclusion, verdict="unlisted_physics")
+
+
+def _imitating(best: Judged) -> bool:
+    """Whether the effects of a model may only imitate one in no list."""
+    effects = len(best.hypothesis.effects)
+    doubtful = best.probability < SURE or best.hypothesis.fit.over_noise > AT_NOISE
+    return effects >= MANY or (doubtful and effects == MANY - 1)
 
 
 def _immaterial(best: Judged, nominal: Judged) -> bool:

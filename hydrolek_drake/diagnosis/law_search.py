@@ -74,7 +74,7 @@ def promising(
         scale = given.scale
         law = law_record(given.probe, span, term, scale * sine, scale * cosine, frequency)
         parts = [e.residuals(e.simulate(records, step, law=law).signals) for e in experiments]
-        return np.nan_to_num(np.concatenate(parts))
+        return np.concatenate(parts)
 
     def of_terms(given: Input) -> list[Law]:
         bench.alive()
@@ -146,9 +146,12 @@ def _peaks(laws: Sequence[Law]) -> list[Law]:
 
 
 def _gain(columns: np.ndarray, rest: np.ndarray) -> tuple[float, tuple[float, ...]]:
-    """Fall of the squared residuals if the columns take their best multiples, and these, in scales of the input."""
+    """Fall of the squared residuals if the columns take their best multiples, and these, in scales of the input.
+
+    A column of a rollout that diverged promises nothing.
+    """
     norms = np.linalg.norm(columns, axis=0)
-    if not (norms > 0.0).all():
+    if not (np.isfinite(norms) & (norms > 0.0)).all():
         return 0.0, (0.0,) * columns.shape[1]
     multiples, *_ = np.linalg.lstsq(columns / norms, -rest, rcond=None)
     fitted = columns / norms @ multiples
@@ -157,6 +160,6 @@ def _gain(columns: np.ndarray, rest: np.ndarray) -> tuple[float, tuple[float, ..
 
 
 def _along(change: np.ndarray, rest: np.ndarray) -> float:
-    """Fall of the squared residuals if a change takes its best positive multiple."""
+    """Fall of the squared residuals if a change takes its best positive multiple; of one that diverged nothing."""
     power, along = float(change @ change), -float(change @ rest)
-    return along * along / power if along > 0.0 and power > 0.0 else 0.0
+    return along * along / power if along > 0.0 and 0.0 < power < np.inf else 0.0

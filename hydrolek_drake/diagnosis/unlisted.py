@@ -2,8 +2,9 @@
 
 What the best model leaves is held against every law of `laws`, at every stage, by the gain that its response
 promises (`law_search`), as for a listed effect. The most promising are fitted together with the nominal parameters
-(`law_fit`), and the one that predicts the held-out data best is named. Where a periodic disturbance stands in its
-cycle when a recording begins is no property of the machine, so its phase is fitted to each recording.
+(`law_fit`), and the one that leaves least of training and held-out data is named if it predicts the latter better.
+Where a periodic disturbance stands in its cycle when a recording begins is no property of the machine, so its phase
+is fitted to each recording.
 """
 
 from collections.abc import Sequence
@@ -19,6 +20,7 @@ from hydrolek_drake.diagnosis.laws import Span, inputs_of, span_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import Fit
 
 TRIED = 24
 """So many laws are fitted with a few steps: the best of every input, periodic or not, and what promises most."""
@@ -61,8 +63,17 @@ def find_law(
     ended = bench.side_by_side(
         lambda item: fitted(bench, left, item[0], held_out, span, item[1][1:], finer), ranked
     )
-    best = min(ended, key=lambda found: found.held_out_over_noise)
+    best = min(ended, key=lambda found: left_in_all(found.fit, found.held_out_over_noise, held_out))
     return best if best.held_out_over_noise < BETTER * named.over_noise else None
+
+
+def left_in_all(fit: Fit, held_out_over_noise: float, held_out: Sequence[Experiment]) -> float:
+    """Squared residuals, in units of the noise, of training and held-out data together.
+
+    Where two laws do about as well on the one, the other decides: no parameter was fitted to the held-out data, and
+    to the training data as many in both.
+    """
+    return fit.objective + held_out_over_noise**2 * sum(experiment.counted for experiment in held_out)
 
 
 def without_effects(

@@ -6,21 +6,24 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis import law_choice
-from hydrolek_drake.diagnosis.conclusion import EXPLAINED, EXPLAINED_AHEAD, Conclusion
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED, EXPLAINED_AHEAD, SURE, Conclusion
+from hydrolek_drake.diagnosis.effort import AT_NOISE
 from hydrolek_drake.diagnosis.evidence import Judged
 from hydrolek_drake.diagnosis.law_choice import MANY, SIMPLER, with_law
 
 VALUES = 1000
+HELD_OUT = (SimpleNamespace(counted=VALUES),)
 
 
-def _judged(over_noise: float, effects: int = 0) -> Judged:
+def _judged(over_noise: float, effects: int = 0, probability: float = 1.0) -> Judged:
     fit = SimpleNamespace(over_noise=over_noise, objective=VALUES * over_noise**2)
     hypothesis = SimpleNamespace(effects=tuple(range(effects)), fit=fit, ids=frozenset(range(effects)))
-    return Judged(hypothesis, np.full(VALUES, over_noise), VALUES, probability=1.0)
+    return Judged(hypothesis, np.full(VALUES, over_noise), VALUES, probability=probability)
 
 
 def _law(train: float, ahead: float):
-    return SimpleNamespace(fit=SimpleNamespace(over_noise=train), held_out_over_noise=ahead)
+    fit = SimpleNamespace(over_noise=train, objective=VALUES * train**2)
+    return SimpleNamespace(fit=fit, held_out_over_noise=ahead)
 
 
 @pytest.fixture
@@ -40,7 +43,7 @@ def choose(monkeypatch):
         monkeypatch.setattr(law_choice, "find_law", find)
         monkeypatch.setattr(law_choice, "without_effects", lambda *given: without)
         known = Conclusion(verdict, best, {}, ())
-        return *with_law(None, known, (best, nominal), (), None, lambda text: None), asked
+        return *with_law(None, known, (best, nominal), HELD_OUT, None, lambda text: None), asked
 
     return run
 
@@ -88,6 +91,9 @@ def test_one_law_that_predicts_as_well_is_preferred_to_many_effects(choose) -> N
     assert law is as_good and conclusion.verdict == "unlisted_physics" and conclusion.best is nominal
     conclusion, law, _ = choose(best, nominal, None, worse, verdict="missing_physics")
     assert law is None and conclusion.verdict == "missing_physics" and conclusion.best is best
-    fewer = _judged(1.1, effects=MANY - 1)
+    for doubtful in (_judged(1.0, MANY - 1, 0.99 * SURE), _judged(1.01 * AT_NOISE, MANY - 1)):
+        conclusion, law, _ = choose(doubtful, nominal, None, _law(1.0, 1.0), verdict="missing_physics")
+        assert law is not None and conclusion.best is nominal
+    fewer = _judged(1.0, MANY - 1)
     conclusion, law, asked = choose(fewer, nominal, None, as_good, verdict="missing_physics")
     assert law is None and conclusion.best is fewer and not asked

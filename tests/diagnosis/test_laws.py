@@ -7,7 +7,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.effort import POLISH
 from hydrolek_drake.diagnosis.evidence import Judged
-from hydrolek_drake.diagnosis.law_search import promising
+from hydrolek_drake.diagnosis.law_search import _along, _gain, promising
 from hydrolek_drake.diagnosis.laws import Term, inputs_of, law_record, span_of
 from hydrolek_drake.diagnosis.search import fit_baseline
 from hydrolek_drake.diagnosis.unlisted import find_law
@@ -52,6 +52,16 @@ def test_a_ripple_is_found_between_the_frequencies_that_are_scanned(bench, recor
     assert ripple is max(laws, key=lambda law: law.gain)
     assert ripple.frequency == pytest.approx(RIPPLE_HZ, abs=0.15 / 12.0)
     assert np.hypot(*ripple.amplitudes) * ripple.input.scale == pytest.approx(RIPPLE, rel=0.5)
+
+
+def test_a_law_with_which_the_rollout_diverged_promises_nothing() -> None:
+    rest, good = np.array([1.0, -2.0, 2.0]), np.array([-0.5, 1.0, -1.0])
+    assert _gain(good[:, None], rest)[0] == pytest.approx(9.0)
+    assert _along(good, rest) == pytest.approx(9.0)
+    for bad in (np.nan, np.inf):
+        away = np.array([-0.5, bad, bad])
+        assert _gain(np.stack([good, away], axis=1), rest) == (0.0, (0.0, 0.0))
+        assert _along(away, rest) == 0.0
 
 
 def test_a_hose_that_expands_is_found_at_the_fluid(bench, recorded) -> None:
