@@ -74,7 +74,8 @@ def promising(
         scale = given.scale
         law = law_record(given.probe, span, term, scale * sine, scale * cosine, frequency)
         parts = [e.residuals(e.simulate(records, step, law=law).signals) for e in experiments]
-        return np.concatenate(parts)
+        residuals = np.concatenate(parts)
+        return residuals if np.isfinite(residuals).all() else np.full_like(residuals, np.nan)
 
     def of_terms(given: Input) -> list[Law]:
         bench.alive()
@@ -151,7 +152,7 @@ def _gain(columns: np.ndarray, rest: np.ndarray) -> tuple[float, tuple[float, ..
     A column of a rollout that diverged promises nothing.
     """
     norms = np.linalg.norm(columns, axis=0)
-    if not (np.isfinite(norms) & (norms > 0.0)).all():
+    if not np.isfinite(columns).all() or not norms.all():
         return 0.0, (0.0,) * columns.shape[1]
     multiples, *_ = np.linalg.lstsq(columns / norms, -rest, rcond=None)
     fitted = columns / norms @ multiples
@@ -161,5 +162,7 @@ def _gain(columns: np.ndarray, rest: np.ndarray) -> tuple[float, tuple[float, ..
 
 def _along(change: np.ndarray, rest: np.ndarray) -> float:
     """Fall of the squared residuals if a change takes its best positive multiple; of one that diverged nothing."""
+    if not np.isfinite(change).all():
+        return 0.0
     power, along = float(change @ change), -float(change @ rest)
-    return along * along / power if along > 0.0 and 0.0 < power < np.inf else 0.0
+    return along * along / power if along > 0.0 and power > 0.0 else 0.0
