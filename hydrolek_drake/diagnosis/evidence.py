@@ -143,7 +143,7 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
         refitted = _finished(bench, refitted)
     paying = [h for h in refitted if pays(h, refitted)]
     judged = bench.side_by_side(lambda h: _predicted(bench, h, held_out, counted, finer), paying)
-    return with_probabilities(judged)
+    return with_probabilities([j for j in judged if predicts(j, judged)])
 
 
 def _finished(bench: Workbench, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
@@ -216,6 +216,18 @@ def pays(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
     """
     return all(
         other.fit.objective - hypothesis.fit.objective >= _to_pay(hypothesis, other) for other in others
+    )
+
+
+def predicts(judged: Judged, others: Sequence[Judged]) -> bool:
+    """Whether a hypothesis predicts the held-out data better than everything that it contains.
+
+    What lowers the error of the training data alone stands for something else there, such as an error of the step.
+    """
+    return all(
+        other.over_noise > judged.over_noise
+        for other in others
+        if _to_pay(judged.hypothesis, other.hypothesis) > -math.inf
     )
 
 

@@ -2,7 +2,8 @@
 
 What the best model leaves is held against every law of `laws`, at every stage, by the gain that its response
 promises (`law_search`), as for a listed effect. The most promising are fitted together with the nominal parameters
-(`law_fit`), and the one that leaves least of training and held-out data is named if it predicts the latter better.
+(`law_fit`), and the one that predicts the held-out data best is named; of several that predict alike, the one that
+leaves least of all data.
 Where a periodic disturbance stands in its cycle when a recording begins is no property of the machine, so its phase
 is fitted to each recording.
 """
@@ -30,6 +31,9 @@ FINER = 2.0
 
 FITTED = 6
 """So many of them are fitted to the end."""
+
+ALIKE = 1.1
+"""Laws whose held-out errors lie within this factor predict alike: so much the parameters' own uncertainty adds."""
 
 BETTER = 0.8
 """A law must take the held-out error below this share of what it was, or it is no law of this machine."""
@@ -63,15 +67,17 @@ def find_law(
     ended = bench.side_by_side(
         lambda item: fitted(bench, left, item[0], held_out, span, item[1][1:], finer), ranked
     )
-    best = min(ended, key=lambda found: left_in_all(found.fit, found.held_out_over_noise, held_out))
-    return best if best.held_out_over_noise < BETTER * named.over_noise else None
+    least = min(found.held_out_over_noise for found in ended)
+    if not least < BETTER * named.over_noise:
+        return None
+    alike = [found for found in ended if found.held_out_over_noise <= ALIKE * least]
+    return min(alike, key=lambda found: left_in_all(found.fit, found.held_out_over_noise, held_out))
 
 
 def left_in_all(fit: Fit, held_out_over_noise: float, held_out: Sequence[Experiment]) -> float:
     """Squared residuals, in units of the noise, of training and held-out data together.
 
-    Where two laws do about as well on the one, the other decides: no parameter was fitted to the held-out data, and
-    to the training data as many in both.
+    Where two laws predict alike, what they leave of the training data decides too.
     """
     return fit.objective + held_out_over_noise**2 * sum(experiment.counted for experiment in held_out)
 

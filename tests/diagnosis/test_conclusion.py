@@ -5,7 +5,14 @@ import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import conclude
-from hydrolek_drake.diagnosis.evidence import Judged, dispersion, pays, probability_of, with_probabilities
+from hydrolek_drake.diagnosis.evidence import (
+    Judged,
+    dispersion,
+    pays,
+    predicts,
+    probability_of,
+    with_probabilities,
+)
 from hydrolek_drake.diagnosis.workbench import Hypothesis
 from hydrolek_drake.identification.least_squares import Fit
 
@@ -57,6 +64,17 @@ def test_what_no_effect_explains_is_unlisted(effect) -> None:
     assert (
         conclude(with_probabilities([_judged((), 9.0), _judged((leak,), 4.0)])).verdict == "unlisted_physics"
     )
+
+
+def test_what_does_not_predict_better_is_not_named(effect) -> None:
+    """However much better it fits the training data: improvement counts on held-out data."""
+    leak, gap = effect["cylinder.cross_port_leakage"], effect["linkage.backlash"]
+    nominal = _judged((), 1.0, ahead=1.05)
+    better, worse = _judged((leak,), 0.95, ahead=1.04), _judged((gap,), 0.90, ahead=1.06)
+    both = _judged((leak, gap), 0.80, ahead=1.045)
+    judged = [nominal, better, worse, both]
+    assert [predicts(j, judged) for j in judged] == [True, True, False, False]
+    assert predicts(both, [nominal, worse, both])  # of what it contains
 
 
 def test_what_is_named_beside_unlisted_physics_may_have_rivals(effect) -> None:
