@@ -44,7 +44,7 @@ def with_law(
         say("searching a law for physics that is in no list")
         law, named = _law_and_model(bench, conclusion.best, nominal, held_out, scales)
         groups = conclusion.groups if named is conclusion.best else ()
-        return replace(conclusion, best=named, groups=groups), law
+        return replace(conclusion, best=named, groups=(*groups, *_stages(law))), law
     if _imitating(conclusion.best):
         say("searching one law that could stand for so many effects")
         law = find_law(bench, nominal, held_out, scales)
@@ -52,7 +52,7 @@ def with_law(
         if law is not None and left_in_all(law.fit, law.held_out_over_noise, held_out) <= left_in_all(
             best.hypothesis.fit, best.over_noise, held_out
         ):
-            return replace(conclusion, verdict="unlisted_physics", best=nominal, groups=()), law
+            return replace(conclusion, verdict="unlisted_physics", best=nominal, groups=_stages(law)), law
     return conclusion, None
 
 
@@ -107,6 +107,13 @@ def _imitating(best: Judged) -> bool:
     effects = len(best.hypothesis.effects)
     doubtful = best.probability < SURE or best.hypothesis.fit.over_noise > AT_NOISE
     return effects >= MANY or (doubtful and effects == MANY - 1)
+
+
+def _stages(law: FoundLaw | None) -> tuple[tuple[str, ...], ...]:
+    """The stages of a law that the data cannot tell apart, as a group; none where there is one."""
+    if law is None or not law.rivals:
+        return ()
+    return (tuple(f"unlisted.{stage}" for stage in (law.law.input.stage, *law.rivals)),)
 
 
 def _immaterial(best: Judged, nominal: Judged) -> bool:

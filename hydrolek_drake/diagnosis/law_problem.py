@@ -53,6 +53,7 @@ class FoundLaw:
         fit: on the training data.
         held_out_over_noise: root mean square on held-out data over the noise.
         difference: of the reading on the first training recording, with and without the law. # (n,)
+        rivals: other stages at which a law leaves as little of all data.
     """
 
     law: Law
@@ -61,6 +62,7 @@ class FoundLaw:
     fit: Fit
     held_out_over_noise: float
     difference: np.ndarray
+    rivals: tuple[str, ...] = ()
 
     @property
     def amplitude(self) -> float:

@@ -9,11 +9,13 @@ is fitted to each recording.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from hydrolek_drake.diagnosis.effort import COARSE
 from hydrolek_drake.diagnosis.evidence import Judged
+from hydrolek_drake.diagnosis.growing import GAIN_NEEDED
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
 from hydrolek_drake.diagnosis.law_search import promising
@@ -71,7 +73,12 @@ def find_law(
     if not least < BETTER * named.over_noise:
         return None
     alike = [found for found in ended if found.held_out_over_noise <= ALIKE * least]
-    return min(alike, key=lambda found: left_in_all(found.fit, found.held_out_over_noise, held_out))
+    in_all = [left_in_all(found.fit, found.held_out_over_noise, held_out) for found in alike]
+    best = alike[int(np.argmin(in_all))]
+    near = {
+        f.law.input.stage for f, each in zip(alike, in_all, strict=True) if each < min(in_all) + GAIN_NEEDED
+    }
+    return replace(best, rivals=tuple(sorted(near - {best.law.input.stage})))
 
 
 def left_in_all(fit: Fit, held_out_over_noise: float, held_out: Sequence[Experiment]) -> float:

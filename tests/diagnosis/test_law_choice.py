@@ -21,9 +21,10 @@ def _judged(over_noise: float, effects: int = 0, probability: float = 1.0) -> Ju
     return Judged(hypothesis, np.full(VALUES, over_noise), VALUES, probability=probability)
 
 
-def _law(train: float, ahead: float):
+def _law(train: float, ahead: float, rivals: tuple[str, ...] = ()):
     fit = SimpleNamespace(over_noise=train, objective=VALUES * train**2)
-    return SimpleNamespace(fit=fit, held_out_over_noise=ahead)
+    law = SimpleNamespace(input=SimpleNamespace(stage="load"))
+    return SimpleNamespace(law=law, fit=fit, held_out_over_noise=ahead, rivals=rivals)
 
 
 @pytest.fixture
@@ -53,6 +54,15 @@ def test_a_law_that_explains_all_alone_is_not_sought_beside_known_effects(choose
     alone = _law(EXPLAINED, EXPLAINED_AHEAD)
     conclusion, law, asked = choose(best, nominal, None, alone)
     assert law is alone and conclusion.best is nominal and asked == [nominal]
+
+
+def test_stages_that_the_data_cannot_tell_apart_are_told(choose) -> None:
+    """As the rod and the load of a vane, whose lever is constant."""
+    best, nominal = _judged(2.0, effects=1), _judged(10.0)
+    conclusion, _, _ = choose(best, nominal, None, _law(1.0, 1.0, rivals=("cylinder",)))
+    assert conclusion.groups == (("unlisted.load", "unlisted.cylinder"),)
+    conclusion, _, _ = choose(best, nominal, None, _law(1.0, 1.0))
+    assert conclusion.groups == ()
 
 
 def test_known_effects_stay_if_the_law_needs_them(choose) -> None:
