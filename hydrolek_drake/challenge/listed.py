@@ -28,11 +28,6 @@ LISTED: dict[str, dict[str, str]] = {
 """Effect -> its parameters -> field of the machine."""
 
 
-def listed_of(fields: tuple[str, ...]) -> dict[str, dict[str, str]]:
-    """The effects that a machine with these fields may conceal."""
-    return {effect: own for effect, own in LISTED.items() if set(own.values()) <= set(fields)}
-
-
 def with_effects(machine: Any, effects: Mapping[str, Mapping[str, float]]) -> Any:
     """The machine, a named tuple of its numbers, with listed effects as they stand in labels and reports."""
     fields: dict[str, float] = {}
