@@ -7,8 +7,9 @@ that none of them was fitted to (`evidence`).
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
+from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.diagnosis.effort import AT_NOISE, BEAM, COARSE, FAR, LOOK, NEAR, NEARLY, POLISH
+from hydrolek_drake.diagnosis.effort import AT_NOISE, BEAM, FAR, LOOK, NEAR, NEARLY, POLISH
 from hydrolek_drake.diagnosis.growing import HOPELESS, MOST_EFFECTS, gain_needed, grow, redundant
 from hydrolek_drake.diagnosis.lessening import lessened
 from hydrolek_drake.diagnosis.ranges import at_the_end, replaced, widened
@@ -30,9 +31,6 @@ second one is looked for: of two effects, one alone takes much of what both do."
 
 EXCHANGED = 3
 """So many effects are tried in the place of each one of a model to which none may be added."""
-
-MOST_ROUNDS = 8
-"""Of the last fit of the nominal model, as long as each takes `STUCK` of what is left."""
 
 MOST_WIDENED = 3
 """So many times in turn: 64 times what a worn machine may have."""
@@ -110,8 +108,6 @@ def search(
     """
     say("fitting the nominal model")
     baseline = fit_baseline(bench)
-    bench.training = tuple(bench.weighted_by(baseline, bench.training))
-    baseline = bench.refit(baseline, bench.fine, POLISH if baseline.fit.over_noise < FAR else 1)
     found.keep(baseline)
     say("trying what could explain the rest")
     found.scores = scores_of(bench, baseline, candidates, bench.fine)
@@ -178,30 +174,6 @@ def _worth_going_on(found: Search, material: float) -> bool:
     if len(best.effects) >= 2 and best.fit.over_noise > NEARLY and promised < material * best.fit.objective:
         return False
     return promised > gain_needed(best.fit)
-
-
-def fit_baseline(bench: Workbench) -> Hypothesis:
-    """The nominal model, from its own values and the middle of its ranges, and led there by pulled rollouts."""
-    coarse = COARSE * bench.fine
-    centre = {free.path: free.from_unit(0.5) for free in bench.nominal}
-    starts = (
-        [{}, centre]
-        if any(abs(p.to_unit(bench.rig.value(p.path)) - 0.5) > 0.1 for p in bench.nominal)
-        else [{}]
-    )
-    fits = bench.side_by_side(lambda start: bench.fit((), start, coarse, LOOK), starts)
-    # stuck, perhaps: a healthy machine must not need an effect
-    if min(h.fit.over_noise for h in fits) > NEAR:
-        pulled = fit_pulled(bench, (), [*starts, *(h.values for h in fits)], coarse, bench.training)
-        fits.append(bench.refit(pulled, coarse, LOOK))
-    best = bench.refit(min(fits, key=lambda h: h.fit.objective), bench.fine, POLISH // 2)
-    for _ in range(MOST_ROUNDS):
-        again = bench.refit(best, bench.fine, POLISH // 2)
-        falling = again.fit.objective < (1.0 - STUCK) * best.fit.objective
-        best = min((again, best), key=lambda h: h.fit.objective)
-        if not falling:  # where the coarse step was too coarse for the oil, most of the way is left
-            break
-    return best
 
 
 def _prune(bench: Workbench, found: Search, candidates: Sequence[Candidate]) -> None:

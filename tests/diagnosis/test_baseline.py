@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.diagnosis import _nominal
 from hydrolek_drake.diagnosis.effort import COARSE, LOOK
-from hydrolek_drake.diagnosis.search import fit_baseline
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import experiments_of
 from hydrolek_drake.identification.natural_scales import natural_scales

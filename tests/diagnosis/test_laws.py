@@ -5,11 +5,11 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.effort import POLISH
 from hydrolek_drake.diagnosis.evidence import Judged
 from hydrolek_drake.diagnosis.law_search import _along, _gain, promising
 from hydrolek_drake.diagnosis.laws import Term, inputs_of, law_record, span_of
-from hydrolek_drake.diagnosis.search import fit_baseline
 from hydrolek_drake.diagnosis.unlisted import find_law
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
