@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.effects.scales import Scales
-from hydrolek_drake.physics import linkage
 from hydrolek_drake.rollout.law import LAW, OTHERS, PLACES, SPEEDS, TIMES
+from hydrolek_drake.rollout.one_point import stroke_and_lever
 from hydrolek_drake.rollout.probes import PROBES
 from hydrolek_drake.rollout.rollout import Signals
 
@@ -166,7 +166,7 @@ def span_of(signals: Sequence[Signals], record: np.void, seconds: float) -> Span
     smoothed = float(record["cylinder"]["friction_velocity"])
     lever = 1.0
     if math.isfinite(smoothed):
-        _, lever = linkage.stroke_and_lever(0.5 * (low + high), record)
+        _, lever = stroke_and_lever(0.5 * (low + high), record)
     else:
         smoothed = float(record["load"]["friction_velocity"])
         lever = float(record["linkage"]["direction"])

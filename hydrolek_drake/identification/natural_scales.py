@@ -7,8 +7,8 @@ import numpy as np
 
 from hydrolek_drake.effects.scales import Scales, hydraulic_scales, motor_scales
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.physics import linkage, valve
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rollout.one_point import inlet_conductance, stroke_and_lever
 
 HALF = 0.5
 """Half of the supply pressure falls over the inlet edge of a valve that moves its largest load."""
@@ -34,10 +34,8 @@ def natural_scales(rig: Rig, joint: str, experiments: Sequence[Experiment]) -> S
         speed = max(_fastest(experiment) for experiment in own)
         return motor_scales(force, speed, float(record["load"]["inertia"]), travel, duration)
     pressure = float(record["supply"]["pressure"])
-    inlet, _, _, _ = valve.edge_conductances(
-        1.0, 0.0, pressure, HALF * pressure, HALF * pressure, 0.0, rig.records()[rig.joints.index(joint)]
-    )
-    _, lever = linkage.stroke_and_lever(0.5 * (low + high), record)
+    inlet = inlet_conductance(pressure, HALF * pressure, HALF * pressure, record)
+    _, lever = stroke_and_lever(0.5 * (low + high), record)
     return hydraulic_scales(record, inlet * HALF * pressure, abs(lever), travel, duration)
 
 

@@ -9,10 +9,10 @@ its area times the rod's speed, and the load is the inverse dynamics of the whol
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.signal import savgol_filter
 
-from hydrolek_drake.physics import linkage, load
+from hydrolek_drake.physics import load
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rollout.one_point import stroke_and_lever
 from hydrolek_drake.rollout.probes import PROBES
 
 SPACING_S = 0.01
@@ -41,6 +41,8 @@ def motion(
     spacing = float(grid[1] - grid[0])
     width = max(2 * round(0.5 * WINDOW_S / spacing) + 1, ORDER + 2)
     width = min(width, 2 * ((grid.size - 1) // 2) + 1)
+    from scipy.signal import savgol_filter  # only here: it takes as long to load as a healthy joint to judge
+
     position, velocity, acceleration = (
         savgol_filter(uniform, width, ORDER, deriv=order, delta=spacing, mode="interp") for order in range(3)
     )
@@ -49,7 +51,7 @@ def motion(
 
 def drawn_flow(record: np.void, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     """Flow that a joint draws from the supply [m^3/s]: area of the fed side times the rod's speed. # (n,)."""
-    lever = np.array([linkage.stroke_and_lever(q, record)[1] for q in position])
+    lever = np.array([stroke_and_lever(q, record)[1] for q in position])
     rod_speed = lever * velocity
     area_a, area_b = float(record["cylinder"]["area_a"]), float(record["cylinder"]["area_b"])
     return np.where(rod_speed > 0.0, area_a * rod_speed, -area_b * rod_speed)

@@ -7,9 +7,10 @@ import numpy as np
 
 from hydrolek_drake.compiled import read_only
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.physics import cylinder, hooks, linkage, load, sensor
+from hydrolek_drake.physics import cylinder, hooks, load, sensor
 from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, flat, position_of
 from hydrolek_drake.rollout import kernel
+from hydrolek_drake.rollout.one_point import stroke_and_lever
 from hydrolek_drake.rollout.probes import NO_PROBE
 
 STATE_SIZE = 2 + len(kernel.State._fields) + 2
@@ -111,7 +112,7 @@ def rest_pressures(record: np.void, side: float, needed: float) -> tuple[float, 
     """Chamber pressures that hold a moment `needed` [N m] with the actuator's side at `side` [rad or m]."""
     p = record["cylinder"]
     area_a, area_b = float(p["area_a"]), float(p["area_b"])
-    _, lever = linkage.stroke_and_lever(side, record)
+    _, lever = stroke_and_lever(side, record)
     p_b = float(p["initial_pressure_b"])
     p_a = (needed / lever + area_b * p_b) / area_a
     if p_a < 0.0:  # the load pulls the rod out: side B carries it

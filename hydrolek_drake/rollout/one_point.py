@@ -1,0 +1,23 @@
+"""Equations of the stages at one point, for callers in Python.
+
+A call of an equation alone compiles it anew in every run; these are compiled once and kept.
+"""
+
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.physics import linkage, valve
+
+
+@njit(cache=True)
+def inlet_conductance(p_supply: float, p_a: float, p_b: float, joint: Any) -> float:
+    """Conductance of the inlet edge of side A of a valve that is wide open [m^3/(s Pa)]."""
+    inlet, _, _, _ = valve.edge_conductances(1.0, 0.0, p_supply, p_a, p_b, 0.0, joint)
+    return inlet
+
+
+@njit(cache=True)
+def stroke_and_lever(angle: float, joint: Any) -> tuple[float, float]:
+    """Stroke [m] and lever [m] of a joint's linkage at an angle [rad]; see `linkage.stroke_and_lever`."""
+    return linkage.stroke_and_lever(angle, joint)
