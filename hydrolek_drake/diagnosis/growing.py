@@ -51,8 +51,11 @@ HOPELESS = 4.0
 
 
 def gain_needed(fit: Fit) -> float:
-    """Fall of the squared residuals that one more effect must bring."""
-    return max(GAIN_NEEDED, FIDELITY * fit.counted)
+    """Fall of the squared residuals that one more effect must bring.
+
+    It is more than chance would bring, and more than what is known but roughly may leave.
+    """
+    return max(GAIN_NEEDED, FIDELITY * fit.counted, fit.unsure)
 
 
 _Start = tuple[tuple[Candidate, ...], list[tuple[float, dict[str, float]]]]

@@ -14,7 +14,8 @@ import numpy as np
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.score import Across
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.experiment import Channel, Experiment
+from hydrolek_drake.identification.channel import Channel
+from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
 
 DURATION_S = 40.0

@@ -15,7 +15,8 @@ from hydrolek_drake.diagnosis.words import (
     path_of,
     quantity,
 )
-from hydrolek_drake.identification.experiment import Channel, Experiment
+from hydrolek_drake.identification.channel import Channel
+from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.replay.display import display_factor, display_unit
 
 MOST_LISTED = 12

@@ -136,6 +136,8 @@ def _grown(
         found.keep(hypothesis)
     _prune(bench, found, candidates)
     candidates = _further(bench, found, candidates, say)
+    if any(experiment.others is not None for experiment in bench.training):
+        _weigh_anew(bench, found)
     pruned = found.best
     if pruned.fit.over_noise > AT_NOISE:
         _widen(bench, found, pruned, candidates)
@@ -145,11 +147,28 @@ def _grown(
     found.left = scores_of(bench, found.best, candidates, bench.fine)
     if found.best.fit.over_noise < NEAR:
         return candidates, [found.best]
-    grown = [h for h in more.hypotheses if all(c in candidates for c in h.effects)]
-    near = [h for h in grown if h.fit.objective < HOPELESS * grown[0].fit.objective]
+    grown = [found.hypotheses[h.ids] for h in more.hypotheses if h.ids in found.hypotheses]
+    least = min((h.fit.objective for h in grown), default=0.0)
+    near = [h for h in grown if h.fit.objective < HOPELESS * least]
     if found.best.ids not in {h.ids for h in near}:
         near = [found.best, *near]
     return candidates, near[:BEAM]
+
+
+def _weigh_anew(bench: Workbench, found: Search) -> None:
+    """Weigh the training data by the best model, and fit again with these weights what is near it.
+
+    What is known of other joints that move at the same time is a share of what they do, and beside a model in which
+    they do more, such as a supply that they share, more is unknown.
+    """
+    best = found.best
+    bench.training = tuple(bench.weighted_by(best, bench.training))
+    near = [h for h in found.hypotheses.values() if h.fit.objective < HOPELESS * best.fit.objective]
+    chosen = {h.ids: h for h in (found.baseline, best, *near)}
+    found.given_up.update(found.hypotheses)
+    found.hypotheses.clear()
+    for fitted in bench.side_by_side(lambda h: bench.refit(h, bench.fine, POLISH), list(chosen.values())):
+        found.keep(fitted)
 
 
 def _words(count: int) -> str:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.errors import UninformativeError
+from hydrolek_drake.identification.channel import Channel, faithful
 from hydrolek_drake.identification.neighbours import effects_of_others, rows_at
 from hydrolek_drake.identification.start import resting_position, without_offset
 from hydrolek_drake.identification.thinning import Blocks, block_size
@@ -15,59 +16,8 @@ from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.kernel import PULLED
 from hydrolek_drake.rollout.rollout import Outcome, Signals, rest_state_at_reading, roll_out
 
-FAITHFUL = 3e-4
-"""A model follows a machine to this share of a signal's range at best, however fine the sensor: a noise below it
-would only give weight to what no model holds (a tenth of the best published fits of real machines)."""
-
 CONSTANT = 1e-12
 """A command that varies by less than this fraction of its size says nothing about the machine."""
-
-
-@dataclass(frozen=True)
-class Channel:
-    """A measured signal that the model must follow.
-
-    Attributes:
-        key: `<joint>.<quantity>`.
-        unit: SI unit.
-        model: attribute of `Signals` that it is compared with.
-        measured: NaN where the recording has no value. # (n,)
-        noise: standard deviation of its noise.
-        model_error: standard deviation of what the model's integration adds, sample by sample; None for
-            nothing. # (n,)
-        blur: what averaging over blocks of samples adds, sample by sample; None for a recording that is kept as
-            it is. # (n,)
-        widened: factor for all of this where no model comes near the noise, see `diagnosis.balance`.
-    """
-
-    key: str
-    unit: str
-    model: str
-    measured: np.ndarray
-    noise: float
-    model_error: np.ndarray | None = None
-    blur: np.ndarray | None = None
-    widened: float = 1.0
-
-    @property
-    def deviation(self) -> np.ndarray | float:
-        """Standard deviation that the residual of a perfect model would have."""
-        variance: np.ndarray | float = self.noise**2
-        for error in (self.model_error, self.blur):
-            if error is not None:
-                variance = variance + error**2
-        return self.widened * (self.noise if isinstance(variance, float) else np.sqrt(variance))
-
-    def until(self, count: int) -> "Channel":
-        """Its first so many samples."""
-        error, blur = (None if v is None else v[:count] for v in (self.model_error, self.blur))
-        return replace(self, measured=self.measured[:count], model_error=error, blur=blur)
-
-    def averaged(self, blocks: Blocks, floor: float) -> "Channel":
-        """The same signal averaged over blocks; its noise is estimated anew and is `floor` at least."""
-        means = blocks.mean(self.measured)
-        noise = min(self.noise, max(noise_level(means), floor))
-        return replace(self, measured=means, noise=noise, blur=blocks.blur(means))
 
 
 @dataclass(frozen=True)
@@ -214,9 +164,23 @@ class Experiment:
         """How many measured values count."""
         return sum(map(self.counted_of, self.channels))
 
+    @property
+    def unsure(self) -> float:
+        """Squared residuals, in units of the noise, that the uncertainty of what other joints do may leave.
+
+        It is one error over the whole recording and not one of each sample, so a wrong model may take all of it.
+        """
+        if self.others is None:
+            return 0.0
+        return float(sum(np.sum(c.model_share[self._counts(c)]) for c in self.channels))
+
     def counted_of(self, channel: Channel) -> int:
         """How many measured values of one of its channels count."""
-        return int((self.used & np.isfinite(channel.measured)).sum())
+        return int(self._counts(channel).sum())
+
+    def _counts(self, channel: Channel) -> np.ndarray:
+        """Samples of a channel that count. # (n,)."""
+        return self.used & np.isfinite(channel.measured)
 
     def split(self, used: np.ndarray) -> "Experiment":
         """The same experiment with other samples that count, a truth value each."""
@@ -320,8 +284,3 @@ def _noise(measured: np.ndarray, rig: Rig, joint: str, name: str) -> float:
     """Noise of a channel from the recording itself, or from the rig if the recording shows none."""
     level = noise_level(measured) or rig.value(f"joints.{joint}.sensor.{name}")
     return max(level, faithful(measured), np.finfo(float).tiny)
-
-
-def faithful(measured: np.ndarray) -> float:
-    """Smallest deviation that counts for a signal, see `FAITHFUL`."""
-    return FAITHFUL * float(np.nanmax(measured) - np.nanmin(measured))

@@ -33,6 +33,11 @@ class LeastSquares(Protocol):
         """How many measured values count."""
         ...
 
+    @property
+    def unsure(self) -> float:
+        """Squared residuals that what is known but roughly may leave; see `Experiment.unsure`."""
+        ...
+
     def residuals(self, unit: np.ndarray) -> np.ndarray:
         """Residuals in units of their noise. # (n,) -> (values,)."""
         ...
@@ -64,6 +69,7 @@ class Fit:
         prior_jacobian: d off_prior / d unit. # (n, n)
         counted: values that count; where a sample does not count its residual is zero.
         evaluations: rollouts of all experiments that it took.
+        unsure: squared residuals that what is known but roughly may leave.
     """
 
     unit: np.ndarray
@@ -73,6 +79,7 @@ class Fit:
     prior_jacobian: np.ndarray
     counted: int
     evaluations: int
+    unsure: float = 0.0
 
     @property
     def chi_squared(self) -> float:
@@ -165,6 +172,7 @@ def fit_from(
         prior_jacobian=prior_jacobian,
         counted=problem.counted,
         evaluations=problem.evaluations - before,
+        unsure=problem.unsure,
     )
 
 

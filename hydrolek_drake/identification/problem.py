@@ -63,6 +63,7 @@ class Problem:
         self._anchor: list[tuple[bytes, np.ndarray]] | None = None
         self.evaluations = 0
         self.counted = sum(experiment.counted for experiment in self.experiments)
+        self.unsure = sum(experiment.unsure for experiment in self.experiments)
 
     def pulled(self) -> "Problem":
         """The same with rollouts that are pulled to what was measured."""
