@@ -1,6 +1,5 @@
 """The whole diagnosis: data, fair baseline, search, judgement, place and words."""
 
-import math
 import time as clock
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
@@ -17,9 +16,9 @@ from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
 from hydrolek_drake.diagnosis.moments import intervals_of_moments
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
-from hydrolek_drake.diagnosis.score import Score
 from hydrolek_drake.diagnosis.search import Search
 from hydrolek_drake.diagnosis.splitting import mixed, prepared
+from hydrolek_drake.diagnosis.visible import Visible, visible_sizes
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.natural_scales import natural_scales
@@ -53,6 +52,7 @@ class Diagnosis:
         intervals: full path -> fitted value of the best model.
         law: for physics in no list, the law found for it, if one was.
         proposal: the experiment that would decide, if one is needed.
+        visible: smallest sizes of effects that would have been seen beside the best model, by id.
         seconds: that it took.
     """
 
@@ -69,6 +69,7 @@ class Diagnosis:
     intervals: dict[str, Interval]
     law: FoundLaw | None
     proposal: Proposal | None
+    visible: tuple[Visible, ...]
     seconds: float
 
     @property
@@ -186,6 +187,7 @@ def diagnose(
         },
         law=law,
         proposal=propose(bench, conclusion, [j.hypothesis for j in judged]),
+        visible=visible_sizes(bench, best, found.left),
         seconds=clock.perf_counter() - begun,
     )
 
@@ -206,6 +208,7 @@ def _refused(rig: Rig, reasons: Sequence[str], seconds: float) -> Diagnosis:
         intervals={},
         law=None,
         proposal=None,
+        visible=(),
         seconds=seconds,
     )
 
@@ -226,14 +229,3 @@ def fitted_rig(rig: Rig, hypothesis: Hypothesis) -> Rig:
         full = fitted.full_path(path)
         entries[full] = replace(entries[full], source="fitted to recordings by hydrolek diagnose")
     return replace(fitted, entries=entries)
-
-
-def smallest_visible(diagnosis: Diagnosis) -> list[Score]:
-    """Effects that were not found, with the smallest size that would have shown, by id."""
-    assert diagnosis.search is not None
-    named = {candidate.size_path for candidate in diagnosis.best.hypothesis.effects}
-    scores = [s for s in diagnosis.search.left if s.candidate.size_path not in named]
-    return sorted(
-        (s for s in scores if math.isfinite(s.visible_from) and s.visible_from > 0.0),
-        key=lambda s: s.candidate.id,
-    )

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.diagnosis import Diagnosis, smallest_visible
+from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.words import (
     effect_sentence,
@@ -102,14 +102,12 @@ def _law_probability(diagnosis: Diagnosis, law: FoundLaw) -> float:
 
 def detectable(diagnosis: Diagnosis) -> dict[str, str]:
     """Effect -> smallest size that these data would have shown."""
-    if diagnosis.search is None:
-        return {}
     found = {}
-    for score in smallest_visible(diagnosis):
-        effect = score.candidate.effect
+    for visible in diagnosis.visible:
+        effect = visible.candidate.effect
         unit = next(p.unit for p in effect.parameters if p.name == effect.size)
         bound = "at most" if effect.weakens else "at least"
-        found[effect.id] = f"{effect.size} {bound} {quantity(score.visible_from, unit)}"
+        found[effect.id] = f"{effect.size} {bound} {quantity(visible.size, unit)}"
     return found
 
 

@@ -1,0 +1,97 @@
+"""The smallest size of each effect that a recording would have shown.
+
+A size is seen if what it changes, less what the model's own parameters undo of it, has the squared size that one more
+effect must bring (`growing.gain_needed`). The change is not in proportion to the size: much of what a large effect does
+beyond the reach of the parameters is of second order. So the size is sought by rollouts and not by a rule of three.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.diagnosis.growing import gain_needed
+from hydrolek_drake.diagnosis.score import VISIBLE, Across, Score
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.effects import EFFECTS
+
+ROUNDS = 6
+"""Sizes that are tried for an effect."""
+
+STRIDE = 5.0
+"""From one to the next, at most."""
+
+NEAR_ENOUGH = 3.0
+"""A size is taken that shows at most so many times what is needed."""
+
+AIM = 1.5
+"""The next size is to show so many times what is needed, so that it is not missed by a hair."""
+
+
+@dataclass(frozen=True)
+class Visible:
+    """Smallest size of an effect that would have been seen (SI)."""
+
+    candidate: Candidate
+    size: float
+
+
+def visible_sizes(bench: Workbench, hypothesis: Hypothesis, scores: Sequence[Score]) -> tuple[Visible, ...]:
+    """Smallest size of each effect that the training data would have shown beside a model, by id.
+
+    Args:
+        bench: fits.
+        hypothesis: the model, fitted.
+        scores: effects held against it; a first estimate of their sizes. Those that the model has are left out.
+    """
+    across = Across(hypothesis.fit)
+    here = np.concatenate(
+        [bench.residuals(hypothesis, bench.training, hypothesis.step), hypothesis.fit.off_prior]
+    )
+    own = hypothesis.ids
+    wanted = [s for s in scores if s.candidate.size_path not in own and 0.0 < s.visible_from < math.inf]
+    sizes = bench.side_by_side(lambda s: _visible_size(bench, hypothesis, s, across, here), wanted)
+    found = [Visible(s.candidate, size) for s, size in zip(wanted, sizes, strict=True) if math.isfinite(size)]
+    return tuple(sorted(found, key=lambda v: v.candidate.id))
+
+
+def _visible_size(
+    bench: Workbench, hypothesis: Hypothesis, score: Score, across: Across, here: np.ndarray
+) -> float:
+    """That of one effect; NaN if none in its range is seen."""
+    candidate = score.candidate
+    path = candidate.size_path
+    problem = bench.problem((*hypothesis.effects, candidate), hypothesis.step)
+    sign = math.copysign(1.0, score.start[path])
+    alone = {**hypothesis.values, **score.start, **_without_special_cases(candidate)}
+    power = -1.0 if candidate.effect.weakens else 1.0  # a spring that is seen is at most so stiff
+    needed = max(VISIBLE, gain_needed(hypothesis.fit))
+    size, seen = score.visible_from, math.nan
+    for _ in range(ROUNDS):
+        size = min(max(sign * size, candidate.size.lower), candidate.size.upper) * sign
+        moved = problem.residuals(problem.parameters.unit({**alone, path: sign * size}))
+        change = across(np.concatenate([moved, hypothesis.fit.off_prior]) - here)
+        shown = float(change @ change) / needed
+        if shown >= 1.0:
+            seen = size
+            if shown <= NEAR_ENOUGH:
+                break
+        elif math.isfinite(seen):
+            break
+        stride = math.sqrt(AIM / max(shown, np.finfo(float).tiny))
+        size *= min(max(stride, 1.0 / STRIDE), STRIDE) ** power
+    bench.evaluations += problem.evaluations
+    return seen
+
+
+def _without_special_cases(candidate: Candidate) -> dict[str, float]:
+    """Full path -> neutral value of what its special cases are in it: the Coulomb part of Stribeck friction."""
+    special = {EFFECTS[contained].size for contained in candidate.effect.contains}
+    neutral = {p.name: p.neutral for p in candidate.effect.parameters if p.name in special}
+    return {
+        f"{candidate.path}.{name}": value
+        for name, value in neutral.items()
+        if value is not None and name != candidate.effect.size
+    }
