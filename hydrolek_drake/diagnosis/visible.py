@@ -26,6 +26,9 @@ STRIDE = 5.0
 NEAR_ENOUGH = 3.0
 """A size is taken that shows at most so many times what is needed."""
 
+NOTHING = 1e-6
+"""So much of the first estimate does nothing."""
+
 AIM = 1.5
 """The next size is to show so many times what is needed, so that it is not missed by a hair."""
 
@@ -47,32 +50,33 @@ def visible_sizes(bench: Workbench, hypothesis: Hypothesis, scores: Sequence[Sco
         scores: effects held against it; a first estimate of their sizes. Those that the model has are left out.
     """
     across = Across(hypothesis.fit)
-    here = np.concatenate(
-        [bench.residuals(hypothesis, bench.training, hypothesis.step), hypothesis.fit.off_prior]
-    )
     own = hypothesis.ids
     wanted = [s for s in scores if s.candidate.size_path not in own and 0.0 < s.visible_from < math.inf]
-    sizes = bench.side_by_side(lambda s: _visible_size(bench, hypothesis, s, across, here), wanted)
+    sizes = bench.side_by_side(lambda s: _visible_size(bench, hypothesis, s, across), wanted)
     found = [Visible(s.candidate, size) for s, size in zip(wanted, sizes, strict=True) if math.isfinite(size)]
     return tuple(sorted(found, key=lambda v: v.candidate.id))
 
 
-def _visible_size(
-    bench: Workbench, hypothesis: Hypothesis, score: Score, across: Across, here: np.ndarray
-) -> float:
+def _visible_size(bench: Workbench, hypothesis: Hypothesis, score: Score, across: Across) -> float:
     """That of one effect; NaN if none in its range is seen."""
     candidate = score.candidate
     path = candidate.size_path
-    problem = bench.problem((*hypothesis.effects, candidate), hypothesis.step)
+    problem = bench.problem((*hypothesis.effects, candidate), bench.fine)
     sign = math.copysign(1.0, score.start[path])
     alone = {**hypothesis.values, **score.start, **_without_special_cases(candidate)}
     power = -1.0 if candidate.effect.weakens else 1.0  # a spring that is seen is at most so stiff
+
+    def residuals(size: float) -> np.ndarray:
+        inside = min(max(sign * size, candidate.size.lower), candidate.size.upper)
+        return problem.residuals(problem.parameters.unit({**alone, path: inside}))
+
+    # a play without a gap is still a contact that gives way: what counts is what the size does
+    nothing = residuals(score.visible_from * NOTHING**power)
     needed = max(VISIBLE, gain_needed(hypothesis.fit))
+    unmoved = np.zeros_like(hypothesis.fit.off_prior)
     size, seen = score.visible_from, math.nan
     for _ in range(ROUNDS):
-        size = min(max(sign * size, candidate.size.lower), candidate.size.upper) * sign
-        moved = problem.residuals(problem.parameters.unit({**alone, path: sign * size}))
-        change = across(np.concatenate([moved, hypothesis.fit.off_prior]) - here)
+        change = across(np.concatenate([residuals(size) - nothing, unmoved]))
         shown = float(change @ change) / needed
         if shown >= 1.0:
             seen = size
