@@ -271,7 +271,12 @@ def _contenders(first: Sequence[Judged], found: Search) -> list[Hypothesis]:
     near = [
         j.hypothesis for j in ranked if (j.half_chi_squared - best.half_chi_squared) / scale < OUT_OF_REACH
     ]
-    chosen = [best.hypothesis, found.baseline, found.best, *near]
+    lesser = [
+        h
+        for h in found.hypotheses.values()
+        if h.ids < best.hypothesis.ids and len(h.ids) == len(best.hypothesis.ids) - 1
+    ]
+    chosen = [best.hypothesis, found.baseline, found.best, *lesser, *near]
     unique = {h.ids: h for h in chosen}
     return list(unique.values())[:CONTENDERS]
 

@@ -32,6 +32,9 @@ second one is looked for: of two effects, one alone takes much of what both do."
 EXCHANGED = 3
 """So many effects are tried in the place of each one of a model to which none may be added."""
 
+NEARER = 0.5
+"""A model that leaves this share of what the one left by which the data are weighed tells their noise better."""
+
 MOST_WIDENED = 3
 """So many times in turn: 64 times what a worn machine may have."""
 
@@ -52,6 +55,7 @@ class Search:
         extended: models to which one effect more was added, with the squared residuals that they left then.
         given_up: sets of effects that were too far behind after a few steps.
         smooth: whether a fit that was led on proved not to have been stuck.
+        weighed_at: what the model left, over the noise, by which the data are weighed.
     """
 
     hypotheses: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
@@ -61,6 +65,7 @@ class Search:
     extended: dict[frozenset[str], float] = field(default_factory=dict)
     given_up: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
     smooth: bool = False
+    weighed_at: float = 0.0
 
     def keep(self, hypothesis: Hypothesis) -> None:
         """Remember it if it is the best fit of these effects."""
@@ -109,6 +114,7 @@ def search(
     say("fitting the nominal model")
     baseline = fit_baseline(bench)
     found.keep(baseline)
+    found.weighed_at = baseline.fit.over_noise
     say("trying what could explain the rest")
     found.scores = scores_of(bench, baseline, candidates, bench.fine)
     found.left = found.scores
@@ -136,8 +142,7 @@ def _grown(
         found.keep(hypothesis)
     _prune(bench, found, candidates)
     candidates = _further(bench, found, candidates, say)
-    if any(experiment.others is not None for experiment in bench.training):
-        _weigh_anew(bench, found)
+    _weigh_anew(bench, found)
     pruned = found.best
     if pruned.fit.over_noise > AT_NOISE:
         _widen(bench, found, pruned, candidates)
@@ -158,17 +163,25 @@ def _grown(
 def _weigh_anew(bench: Workbench, found: Search) -> None:
     """Weigh the training data by the best model, and fit again with these weights what is near it.
 
-    What is known of other joints that move at the same time is a share of what they do, and beside a model in which
-    they do more, such as a supply that they share, more is unknown.
+    What a model far from the noise leaves moves fast, and some of it passes for noise. And what is known of other
+    joints that move at the same time is a share of what they do: beside a model in which they do more, such as a supply
+    that they share, more is unknown.
     """
     best = found.best
+    together = any(experiment.others is not None for experiment in bench.training)
+    if not together and best.fit.over_noise > NEARER * found.weighed_at:
+        return
     bench.training = tuple(bench.weighted_by(best, bench.training))
     near = [h for h in found.hypotheses.values() if h.fit.objective < HOPELESS * best.fit.objective]
     chosen = {h.ids: h for h in (found.baseline, best, *near)}
+    again = bench.side_by_side(
+        lambda h: bench.refit(h, bench.fine, POLISH if h.fit.over_noise < FAR else 1), list(chosen.values())
+    )
     found.given_up.update(found.hypotheses)
     found.hypotheses.clear()
-    for fitted in bench.side_by_side(lambda h: bench.refit(h, bench.fine, POLISH), list(chosen.values())):
+    for fitted in again:
         found.keep(fitted)
+    found.weighed_at = found.best.fit.over_noise
 
 
 def _words(count: int) -> str:
