@@ -5,6 +5,8 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
+from threadpoolctl import threadpool_limits
+
 from hydrolek_drake.diagnosis.attempt import attempt, balanced, unexcited
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import Conclusion
@@ -118,6 +120,20 @@ def diagnose(
         InputError: the recordings lack what the rig needs, or the rig has nothing to fit.
         KeyboardInterrupt: before the nominal model was fitted.
     """
+    # fits run side by side already: threads of the linear algebra under each of them only wait for each other
+    with threadpool_limits(limits=1, user_api="blas"):
+        return _diagnosed(rig, recordings, holdout, pool, say, between)
+
+
+def _diagnosed(
+    rig: Rig,
+    recordings: Sequence[Recording],
+    holdout: Sequence[Recording],
+    pool: Executor,
+    say: Callable[[str], None],
+    between: tuple[float, float] | None,
+) -> Diagnosis:
+    """See `diagnose`."""
     begun = clock.perf_counter()
     say("looking at the data")
     training, held_out, reasons = prepared(rig, recordings, holdout, between)

@@ -66,3 +66,23 @@ def test_a_command_that_never_changes_is_bad_data(bench, word: str) -> None:
     with ThreadPoolExecutor(1) as pool:
         done = diagnose(bench, [recording], [], pool)
     assert done.verdict == "bad_data" and word in done.reasons[0]
+
+
+def test_linear_algebra_has_one_thread_while_fits_run_side_by_side(bench) -> None:
+    from concurrent.futures import ThreadPoolExecutor
+
+    from threadpoolctl import threadpool_info, threadpool_limits
+
+    from hydrolek_drake.diagnosis.diagnosis import diagnose
+
+    def threads(_: str = "") -> None:
+        counts.append([pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"])
+
+    counts: list[list[int]] = []
+    flat = {"joint.command": np.full(TIME.size, 3.0), "joint.angle": _moving()}
+    with threadpool_limits(limits=2, user_api="blas"), ThreadPoolExecutor(1) as pool:
+        diagnose(bench, [Recording("flat", TIME, flat, Path("flat.csv"))], [], pool, threads)
+        threads()
+    during, after = counts[0], counts[-1]
+    assert during and set(during) == {1}
+    assert set(after) == {2}
