@@ -14,7 +14,7 @@ from hydrolek_drake.diagnosis.growing import HOPELESS, MOST_EFFECTS, gain_needed
 from hydrolek_drake.diagnosis.lessening import lessened
 from hydrolek_drake.diagnosis.ranges import at_the_end, replaced, widened
 from hydrolek_drake.diagnosis.score import Score, scores_of
-from hydrolek_drake.diagnosis.unsticking import different, fit_pulled, led_on, started_again
+from hydrolek_drake.diagnosis.unsticking import different, fit_pulled, led_on, of_another_joint, started_again
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
 MATERIAL_GAIN = 0.3
@@ -295,9 +295,22 @@ def _widen(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: 
 
 
 def _lead_on(bench: Workbench, found: Search) -> None:
-    """Fit the best hypothesis again where it is near the noise but not at it, see `unsticking.led_on`."""
+    """Fit the best hypothesis again where it is near the noise but not at it.
+
+    First from the rig's own values, since the nominal parameters may have gone astray before the effects were there;
+    then see `unsticking.led_on`.
+    """
     best = found.best
-    if found.smooth or not best.effects or not AT_NOISE < best.fit.over_noise < FAR:
+    if not best.effects or not AT_NOISE < best.fit.over_noise < FAR:
+        return
+    joints = bench.joints_of(best.effects)
+    kept = {k: v for k, v in best.values.items() if ".effects." in k or of_another_joint(k, joints)}
+    again = fit_pulled(bench, best.effects, [kept], bench.fine, bench.training)
+    for _ in range(2):
+        again = bench.refit(again, bench.fine, LOOK)
+    found.keep(again)
+    best = found.best
+    if found.smooth or best.fit.over_noise <= AT_NOISE:
         return
     led = led_on(bench, best.effects, [best.values, *started_again(best)])
     found.keep(led)
