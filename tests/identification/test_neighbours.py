@@ -99,3 +99,20 @@ def test_a_shared_pump_that_droops_is_felt_as_in_the_diagram(two_joints) -> None
             errors.append(np.degrees(np.sqrt(np.mean((reading - experiment.channels[0].measured) ** 2))))
         # what others do is taken from smoothed angles, so a share of it stays
         assert errors[0] < 0.2 * errors[1]
+
+
+def test_what_is_known_but_roughly_may_leave_its_share_of_the_squared_residuals(two_joints) -> None:
+    rng = np.random.default_rng(5)
+    volts = rng.uniform(-4.0, 4.0, (TIME.size, 2))
+    angle = np.radians(10.0) * np.cumsum(volts, axis=0) / TIME.size
+    signals = {f"{j}.command": volts[:, i] for i, j in enumerate(MOVING)}
+    signals |= {f"{j}.angle": angle[:, i] for i, j in enumerate(MOVING)}
+    experiment = experiments_of(two_joints, Recording("made", TIME, signals, Path("made.csv")))[0]
+    channel = experiment.channels[0]
+    rough = replace(channel, model_error=np.full(TIME.size, channel.noise))
+    together = replace(experiment, channels=(rough,))
+    assert experiment.unsure == 0.0
+    assert together.unsure == pytest.approx(0.5 * together.counted)  # half of the variance is the model's
+    assert (
+        replace(together, others=None).unsure == 0.0
+    )  # of one that moves alone only the step's error is left
