@@ -186,6 +186,14 @@ def _diagnosed(
     places = locate(bench, best, found.baseline, bench.training)
     if law is not None:
         places = (locate_law(bench, best, found.baseline, law), *places)
+    proposal: Proposal | None = None
+    visible: tuple[Visible, ...] = ()
+    try:
+        proposal = propose(bench, conclusion, [j.hypothesis for j in judged])
+        visible = visible_sizes(bench, best, found.left)
+    except KeyboardInterrupt:  # the verdict stands without them
+        bench.resume()
+        remarks = [*remarks, INTERRUPTED]
     return Diagnosis(
         rig=rig,
         verdict=conclusion.verdict,
@@ -202,8 +210,8 @@ def _diagnosed(
             **intervals_of_moments(bench, best),
         },
         law=law,
-        proposal=propose(bench, conclusion, [j.hypothesis for j in judged]),
-        visible=visible_sizes(bench, best, found.left),
+        proposal=proposal,
+        visible=visible,
         seconds=clock.perf_counter() - begun,
     )
 

@@ -34,7 +34,8 @@ class Score:
         moments: full path -> value, for an effect that begins at some moment: those at which searches begin, in the
             order of what the effect's best multiple would gain.
         left: squared residuals with the effect at its start, after the best change of the fitted parameters.
-        visible_from: size of the effect (SI) whose gain would be `VISIBLE`.
+        visible_from: size of the effect (SI) whose gain would be `VISIBLE`, in proportion to the sizes that were
+            tried; a first estimate, see `visible`.
         change: of the residuals across the fitted parameters' columns, at the size of that gain. # (values,)
         rest: what the model leaves, across these columns. # (values,)
     """

@@ -36,13 +36,14 @@ def motion(
         angle: [rad or m]; NaN where there is no value. # (n,)
         grid: uniform times at which they are wanted [s]. # (m,)
     """
+    # it takes more than a second to load, and joints mostly move alone
+    from scipy.signal import savgol_filter
+
     known = np.isfinite(angle)
     uniform = np.interp(grid, time[known], angle[known])
     spacing = float(grid[1] - grid[0])
     width = max(2 * round(0.5 * WINDOW_S / spacing) + 1, ORDER + 2)
     width = min(width, 2 * ((grid.size - 1) // 2) + 1)
-    from scipy.signal import savgol_filter  # only here: it takes as long to load as a healthy joint to judge
-
     position, velocity, acceleration = (
         savgol_filter(uniform, width, ORDER, deriv=order, delta=spacing, mode="interp") for order in range(3)
     )
