@@ -187,7 +187,11 @@ def _candidates(diagnosis: Diagnosis) -> str:
         if diagnosis.also_tried
         else ""
     )
-    return _table(("model", "probability", "fitted / noise", "held out / noise", ""), rows, (4,)) + told
+    among = (
+        "<p class='other'>'Odds': among these models. The probability told of an effect is lower: by how often such "
+        "names were right on concealed machines, where the truth is known.</p>"
+    )
+    return _table(("model", "odds", "fitted / noise", "held out / noise", ""), rows, (4,)) + among + told
 
 
 def _parameters(diagnosis: Diagnosis) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
+from hydrolek_drake.diagnosis.reliability import kind_of, reliability
 from hydrolek_drake.diagnosis.words import (
     effect_sentence,
     headline,
@@ -66,7 +67,7 @@ def effects_json(diagnosis: Diagnosis) -> list[dict[str, Any]]:
             {
                 "id": candidate.id,
                 "joint": candidate.joint,
-                "probability": round(diagnosis.conclusion.probability[candidate.size_path], 4),
+                "probability": round(_probability(diagnosis, candidate.size_path), 4),
                 "parameters": parameters,
                 "sentence": effect_sentence(candidate, diagnosis),
             }
@@ -84,14 +85,20 @@ def _law_json(diagnosis: Diagnosis, law: FoundLaw) -> dict[str, Any]:
     return {
         "id": f"unlisted.{known.stage}",
         "joint": diagnosis.locations[-1].joint,
-        "probability": round(_law_probability(diagnosis, law), 4),
+        "probability": round(_law_odds(diagnosis, law) * reliability("law"), 4),
         "parameters": parameters,
         "holdout_over_noise": law.held_out_over_noise,
         "sentence": law_sentence(law),
     }
 
 
-def _law_probability(diagnosis: Diagnosis, law: FoundLaw) -> float:
+def _probability(diagnosis: Diagnosis, path: str) -> float:
+    """That an effect of the best model is there: by the odds among what was tried, as far as they can be trusted."""
+    assert diagnosis.conclusion is not None
+    return diagnosis.conclusion.probability[path] * reliability(kind_of(diagnosis, path))
+
+
+def _law_odds(diagnosis: Diagnosis, law: FoundLaw) -> float:
     """Odds of the law against the best of the known effects, by held-out likelihood made as flat as its misfit."""
     best = diagnosis.best
     counted = best.held_out_counted

@@ -1,0 +1,47 @@
+"""How far the odds among models that were tried can be trusted: how often such names have been right.
+
+The odds of `evidence` weigh models that were fitted against each other. That the right one was not among them, or got
+stuck, is not in them, and with ten thousand samples they are nearly always 1 or 0. What is told is therefore the odds
+times the share of names of the same kind that were right in the concealed challenge, where the truth is known
+(reliability diagram, Murphy and Winkler, Applied Statistics 26, 1977), with Jeffreys' half a case on either side.
+"""
+
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import yaml
+
+from hydrolek_drake.diagnosis.diagnosis import Diagnosis
+from hydrolek_drake.diagnosis.evidence import NOISE_KNOWN
+
+
+@cache
+def reliability_data() -> dict[str, Any]:
+    """Content of `reliability.yaml`."""
+    return yaml.safe_load(files(__package__).joinpath("reliability.yaml").read_text(encoding="utf-8"))
+
+
+def reliability(kind: str) -> float:
+    """Share of names of a kind that were right: (right + 1/2) / (all + 1).
+
+    Args:
+        kind: a key of `reliability.yaml`.
+    """
+    counted = reliability_data()[kind]
+    return (float(counted["right"]) + 0.5) / (float(counted["of"]) + 1.0)
+
+
+def kind_of(diagnosis: Diagnosis, path: str) -> str:
+    """Which kind of name an effect of the best model is.
+
+    Args:
+        diagnosis: with a conclusion.
+        path: of the effect's size.
+    """
+    if diagnosis.verdict == "unlisted_physics":
+        return "beside_unknown"
+    best = diagnosis.best.hypothesis
+    without = [j.hypothesis.fit.over_noise for j in diagnosis.judged if path not in j.hypothesis.ids]
+    hardly = min(without, default=float("inf")) < (1.0 + NOISE_KNOWN) * best.fit.over_noise
+    return "hardly_needed" if hardly else "needed"
