@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from math import copysign
 
+from hydrolek_drake.control.feedforward_jog import begins, jog
 from hydrolek_drake.control.feedforward_learning import (
     UnderWay,
     grow_push,
     learn_landing,
-    learn_onset,
     learn_rates,
     saturated_rate,
 )
@@ -33,6 +33,8 @@ class FeedforwardLaw:
     - Feedforward: the rate map's inverse gives the voltage, dead-zone and all; lever and gravity are in the
       map's share over the angle.
     - Voltage: through the dead-zone and when opening it moves by bounded steps; closing is free.
+    - Jogs (`feedforward_jog.py`): the first large step in a direction begins with a short opening of the valve that
+      tells where the dead-zone ends, and the dead time.
     - Learning (`feedforward_learning.py`): how fast the joint saturates, where its dead-zone ends, its dead time. All
       per direction and bounded. This takes the integrator's place: nothing can wind up.
 
@@ -122,7 +124,15 @@ class FeedforwardLaw:
         else:
             memory.standing = 0.0
             wanted = self._wanted(memory, sent, distance, velocity)
-        voltage = self._slewed(memory, self._voltage(memory, wanted, ahead, hold))
+        jogged: float | None = None
+        if same and wanted and velocity == 0.0 and (memory.jog or begins(memory, sent, distance)):
+            jogged = jog(memory, self.map, measured_deg, distance, self.tuning.closed, hold, self.sample_s)
+        if jogged is None:
+            memory.jog = 0.0
+            voltage = self._voltage(memory, wanted, ahead, hold)
+        else:
+            wanted, voltage = self._rate(memory, jogged), jogged
+        voltage = self._slewed(memory, voltage)
         if memory.standing == 1.0 and self._braked(memory, sent):
             memory.rest_deg, memory.landing = ahead, rates[int(limit("steps"))]
         elif memory.standing == 0.0:
@@ -146,7 +156,6 @@ class FeedforwardLaw:
         memory.angle += taken
         moved = memory.angle - memory.estimates[-1]
         learn_rates(memory, self.map, self.tuning, sent, moved, self.sample_s)
-        learn_onset(memory, self.map, self.tuning, sent.acted, taken, off - taken)
 
     def _braked(self, memory: Memory, sent: UnderWay) -> bool:
         """Whether the joint has just been braked from saturation in as many steps as that takes."""

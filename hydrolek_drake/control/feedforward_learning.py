@@ -7,7 +7,7 @@ from math import copysign
 from hydrolek_drake.control.feedforward_memory import Memory
 from hydrolek_drake.control.feedforward_tuning import FeedforwardTuning, limit
 from hydrolek_drake.control.law import clipped
-from hydrolek_drake.control.rate_map import RateMap
+from hydrolek_drake.control.rate_map import Direction, RateMap
 
 
 @dataclass(frozen=True)
@@ -40,6 +40,11 @@ class UnderWay:
 def saturated_rate(memory: Memory, rates: RateMap, sign: float) -> float:
     """Rate from which a joint counts as saturated in a direction [deg/s]."""
     return limit("saturated") * rates.side(sign).fastest * memory.share(sign)
+
+
+def within(side: Direction, shift_V: float) -> float:
+    """Shift of a dead-zone's edge [V], within what may be learned."""
+    return clipped(shift_V, (-limit("edge_less") * side.edge_V, limit("edge_more") * side.edge_V))
 
 
 def learn_rates(
@@ -81,54 +86,15 @@ def learn_rates(
         memory.learn_share(sign, clipped(share, (1.0 / bound, bound)))
     elif fastest < saturated:
         slope = (side.rates[1] - side.rates[0]) / (side.voltages[1] - side.voltages[0])
-        edge = memory.edge(sign) + tuning.learn_edge * (expected - got) / slope
         newer = sent.whole + 1 + round(sent.rest)  # acted long enough ago for the joint to have followed
-        should_deg = sign * (sent.rates[newer] + sent.rates[newer + 1]) * sample_s
         coasting = max(map(abs, sent.rates[newer : newer + window + 1])) >= saturated
-        if (
-            not coasting
-            and should_deg >= limit("stalled")
-            and sign * moved_deg < limit("standing") * should_deg
-        ):
+        if coasting:  # how a joint is braked tells more of valve and load than of the edge
+            return
+        edge = memory.edge(sign) + tuning.learn_edge * (expected - got) / slope
+        should_deg = sign * (sent.rates[newer] + sent.rates[newer + 1]) * sample_s
+        if should_deg >= limit("stalled") and sign * moved_deg < limit("standing") * should_deg:
             edge = max(edge, min(abs(sent.voltages[newer]), abs(sent.voltages[newer + 1])) - side.edge_V)
-        bound = limit("edge") * side.edge_V
-        memory.learn_edge(sign, clipped(edge, (-bound, bound)))
-
-
-def learn_onset(
-    memory: Memory, rates: RateMap, tuning: FeedforwardTuning, acted: float, taken_deg: float, left_deg: float
-) -> None:
-    """A joint that starts from rest behind its prediction has a longer dead time: way behind over rate.
-
-    The start goes straight through the dead-zone's edge to saturation, so that a larger dead-zone hardly delays it.
-
-    Args:
-        memory: is changed.
-        rates: the joint's map.
-        tuning: how much of it is believed.
-        acted: rate that acted in the last sample [deg/s].
-        taken_deg: what the reading added to the estimate in this sample.
-        left_deg: how much further off the reading is.
-    """
-    before, memory.acted = memory.acted, acted
-    if before == 0.0 and acted != 0.0:
-        memory.onset, memory.onset_deg = 1.0, 0.0
-    memory.onset_deg += taken_deg
-    if memory.onset == 0.0:
-        return
-    sign, samples = copysign(1.0, acted), limit("onset")
-    if abs(acted) >= saturated_rate(memory, rates, sign):
-        memory.onset += 1.0
-    elif memory.onset > 1.0 or acted == 0.0:
-        memory.onset = 0.0
-        return
-    if memory.onset == samples:
-        memory.onset_late = memory.late(sign)
-    if memory.onset >= samples:
-        late = memory.onset_late - tuning.learn_onset * (memory.onset_deg + left_deg) / acted
-        memory.learn_late(sign, clipped(late, (0.0, limit("late"))))
-    if memory.onset > samples:
-        memory.onset = 0.0
+        memory.learn_edge(sign, within(side, edge))
 
 
 def learn_landing(memory: Memory, tuning: FeedforwardTuning, rested_deg: float) -> None:

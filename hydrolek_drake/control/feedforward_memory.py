@@ -21,12 +21,13 @@ class Memory:
         share_down, share_up: saturation rates over those of the map, per direction.
         edge_down, edge_up: how much further out the dead-zone's edges are than in the map [V].
         late_down, late_up: dead time beyond the map's [s].
-        acted: rate that acted a sample ago [deg/s].
-        onset: samples since a start from rest has acted at the saturation rate, counted from 1; 0 for no start.
-        onset_deg: what the readings have added to the estimate since that start.
-        onset_late: dead time beyond the map's before that start [s].
         rest_deg: where a braked joint was expected to stop.
         landing: the rate from which it was braked [deg/s]; 0 when that has been judged.
+        known_down, known_up: 1 where a jog has told the dead-zone's edge.
+        jog: samples since the present jog began, counted from 1; 0 for no jog.
+        jog_deg: angle before it.
+        jog_V: size of its voltage.
+        jog_edge_V: shift of the dead-zone's edge that was known before it.
         push: what is added to the wanted rate because the joint stands though it should move [deg/s].
         voltages: the last ones, newest first [V].
         estimates: the last ones of the angle, newest first [deg].
@@ -43,12 +44,15 @@ class Memory:
     edge_up: float
     late_down: float
     late_up: float
-    acted: float
-    onset: float
-    onset_deg: float
-    onset_late: float
     rest_deg: float
     landing: float
+    known_down: float
+    known_up: float
+    jog: float
+    jog_deg: float
+    jog_sum: float
+    jog_V: float
+    jog_edge_V: float
     push: float
     voltages: list[float]
     estimates: list[float]
@@ -85,6 +89,14 @@ class Memory:
     def late(self, sign: float) -> float:
         """Dead time beyond the map's in a direction [s]."""
         return self.late_up if sign > 0.0 else self.late_down
+
+    def known(self, sign: float) -> bool:
+        """Whether a jog has told the dead-zone's edge in a direction."""
+        return bool(self.known_up if sign > 0.0 else self.known_down)
+
+    def learn_known(self, sign: float) -> None:
+        """Keep that it has."""
+        setattr(self, "known_up" if sign > 0.0 else "known_down", 1.0)
 
     def learn_share(self, sign: float, value: float) -> None:
         """Keep a share."""

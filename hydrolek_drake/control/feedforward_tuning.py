@@ -21,7 +21,6 @@ class FeedforwardTuning:
         correction: share of the reading's deviation that the angle's estimate takes up in a sample.
         learn_rate: share of the saturation rate's deviation that is learned in a sample.
         learn_edge: share of the dead-zone's deviation that is learned in a sample.
-        learn_onset: share of a late start that is learned as dead time.
         learn_landing: share of a late stop that is learned as dead time.
         push: how fast the wanted rate grows while the joint stands although it should move; 1 covers the error in the
             time that it takes to see that it moves.
@@ -42,7 +41,6 @@ class FeedforwardTuning:
     correction: float
     learn_rate: float
     learn_edge: float
-    learn_onset: float
     learn_landing: float
     push: float
     slowest: float
