@@ -126,9 +126,12 @@ class FeedforwardLaw:
             wanted = self._wanted(memory, sent, distance, velocity)
         jogged: float | None = None
         if same and wanted and velocity == 0.0 and (memory.jog or begins(memory, sent, distance)):
-            jogged = jog(memory, self.map, measured_deg, distance, self.tuning.closed, hold, self.sample_s)
+            jogged = jog(
+                memory, self.map, measured_deg, distance, self.tuning.closed, sent.whole, self.sample_s
+            )
+        else:
+            memory.jog = memory.jog_again = 0.0
         if jogged is None:
-            memory.jog = 0.0
             voltage = self._voltage(memory, wanted, ahead, hold)
         else:
             wanted, voltage = self._rate(memory, jogged), jogged

@@ -16,6 +16,9 @@ from hydrolek_drake.control.feedforward_tuning import limit
 from hydrolek_drake.control.law import clipped
 from hydrolek_drake.control.rate_map import Direction, RateMap, rate_at, voltage_for
 
+AGAIN = -1.0
+"""Instead of a number of samples: the joint has not moved, and another jog follows."""
+
 
 def begins(memory: Memory, sent: UnderWay, distance_deg: float) -> bool:
     """Whether a joint at rest is to be jogged first: a large step in a direction whose edge no jog has told.
@@ -35,13 +38,14 @@ def jog(
     measured_deg: float,
     distance_deg: float,
     closed: float,
-    hold: int,
+    delay: int,
     sample_s: float,
 ) -> float | None:
-    """Voltage of a jog's next sample [V]; None when the edge is known.
+    """Voltage of a jog's next sample [V]; None when the step itself may begin.
 
-    The valve goes to just closed, opens for some samples, and is held just closed until the joint has been seen to
-    stop. What the joint has moved is then compared with the rate map.
+    The valve goes to just closed, opens for some samples, and is held just closed until the joint must have moved. If
+    it has, the step begins, and until that acts the readings tell how far the jog went and when. If it has not, the
+    next jog reaches further.
 
     Args:
         memory: is changed.
@@ -49,7 +53,7 @@ def jog(
         measured_deg: reading.
         distance_deg: of the set point.
         closed: share of the dead-zone at which the valve is held just closed.
-        hold: samples until what was sent has acted and been seen.
+        delay: dead time in whole samples.
         sample_s: of the law.
     """
     sign = copysign(1.0, distance_deg)
@@ -57,65 +61,98 @@ def jog(
     shut_V = closed * (side.edge_V + memory.edge(sign))
     opened = int(limit("jog_samples"))
     open_s = opened * sample_s * rates.share(sign, memory.angle) * memory.share(sign)
-    if memory.jog == 0.0:
-        memory.jog = 1.0
-    if memory.jog == 1.0:
+    if memory.jog <= 0.0:
         if sign * memory.voltages[0] < shut_V:  # not yet there
             return sign * shut_V
-        memory.jog_deg, memory.jog_sum, memory.jog_edge_V = _mean(memory), 0.0, memory.edge(sign)
-        memory.jog_V = _reach(memory, side, sign, distance_deg, open_s)
-    else:
-        memory.jog_sum += sign * (measured_deg - memory.jog_deg)
-    memory.jog += 1.0
-    if memory.jog <= 1 + opened:
+        from_deg = memory.jog_deg if memory.jog == AGAIN else _mean(memory)
+        _begin(memory, side, sign, from_deg, distance_deg, open_s)
         return sign * memory.jog_V
-    if memory.jog <= 1 + opened + hold + limit("jog_wait"):
+    memory.jog += 1.0
+    moved_deg = sign * (measured_deg - memory.jog_deg)
+    memory.jog_sum += moved_deg
+    since = int(memory.jog) - 1  # samples since the valve opened
+    if since < opened:
+        return sign * memory.jog_V
+    done = opened + delay + 1
+    if since < done:
         return sign * shut_V
+    memory.jog_tail += moved_deg
     expected_deg = open_s * rate_at(side, memory.jog_V - memory.jog_edge_V)
-    if not _learned(memory, rates, sign, expected_deg, open_s, sample_s):
-        memory.jog = 1.0
+    if since == done and moved_deg >= limit("standing") * expected_deg:
+        memory.learn_known(sign)
+    if since < done + (delay if memory.known(sign) else limit("jog_wait")):
+        return None if memory.known(sign) else sign * shut_V
+    _take(memory, rates, sign, memory.jog_tail / (since - done + 1), expected_deg, since, sample_s)
+    if not memory.known(sign):
         return sign * closed * (side.edge_V + memory.edge(sign))
-    memory.jog = 0.0
     return None
 
 
-def _mean(memory: Memory) -> float:
-    """Angle, averaged over the window: a period of a swinging load [deg]."""
-    return (memory.angle + sum(memory.estimates)) / (1 + len(memory.estimates))
+def _take(
+    memory: Memory,
+    rates: RateMap,
+    sign: float,
+    moved_deg: float,
+    expected_deg: float,
+    since: int,
+    sample_s: float,
+) -> None:
+    """Take edge and dead time from a jog that has ended, or have another one follow.
 
-
-def _reach(memory: Memory, side: Direction, sign: float, distance_deg: float, open_s: float) -> float:
-    """Size of a jog's voltage [V]: what moves the joint by a share of the step, but not far beyond the edge."""
-    way = clipped(limit("jog_share") * abs(distance_deg), (0.0, limit("jog_most")))
-    moving_V = voltage_for(side, way / open_s)
-    return memory.edge(sign) + min(moving_V, (1.0 + limit("jog_reach")) * side.edge_V)
-
-
-def _learned(
-    memory: Memory, rates: RateMap, sign: float, expected_deg: float, open_s: float, sample_s: float
-) -> bool:
-    """Take edge and dead time from a jog that has ended; whether the joint was seen to move.
-
-    A way near the expected one confirms the edge: load and posture change it too. Of another one, the rate map's
-    inverse tells how far beyond the edge the voltage was.
+    Args:
+        memory: is changed.
+        rates: the joint's map.
+        sign: direction.
+        moved_deg: how far the jog went.
+        expected_deg: how far it should have gone.
+        since: samples since the valve opened.
+        sample_s: of the law.
     """
     side = rates.side(sign)
-    moved_deg = sign * (_mean(memory) - memory.jog_deg)
-    confirmed = moved_deg >= limit("jog_less") * expected_deg
-    shift_V = memory.jog_edge_V
-    if not confirmed or moved_deg > limit("jog_more") * expected_deg:
-        shift_V = memory.jog_V - voltage_for(side, max(moved_deg, 0.0) / open_s)
-    memory.learn_edge(sign, within(side, shift_V))
-    if moved_deg < limit("standing") * expected_deg and memory.edge(sign) < within(side, math.inf):
-        return False
-    if confirmed:
+    open_s = limit("jog_samples") * sample_s * rates.share(sign, memory.angle) * memory.share(sign)
+    memory.learn_edge(sign, within(side, _shift_V(memory, side, moved_deg, expected_deg, open_s)))
+    stands = moved_deg < limit("standing") * expected_deg
+    if stands and not memory.known(sign) and memory.edge(sign) < within(side, math.inf):
+        memory.jog, memory.jog_again = AGAIN, 1.0
+        memory.jog_deg += sign * moved_deg
+        return
+    if moved_deg >= limit("jog_less") * expected_deg:
         # the mean time of the movement, by the trapezoidal rule, less that of the opening
-        mean_s = sample_s * (memory.jog - 1.5 - memory.jog_sum / moved_deg)
+        mean_s = sample_s * (since + 0.5 - memory.jog_sum / moved_deg)
         late = mean_s - 0.5 * limit("jog_samples") * sample_s - rates.dead_time_s
         memory.learn_late(sign, clipped(late, (0.0, limit("late"))))
+    memory.jog = memory.jog_again = 0.0
     memory.learn_known(sign)
     if not memory.known(-sign):
         other = rates.side(-sign)
         shared_V = limit("jog_shared") * memory.edge(sign) * other.edge_V / side.edge_V
         memory.learn_edge(-sign, within(other, shared_V))
-    return True
+
+
+def _begin(
+    memory: Memory, side: Direction, sign: float, from_deg: float, distance_deg: float, open_s: float
+) -> None:
+    """Open the valve by what moves the joint by a share of the step, but not far beyond the edge."""
+    way = clipped(limit("jog_share") * abs(distance_deg), (0.0, limit("jog_most")))
+    reach_V = min(voltage_for(side, way / open_s), (1.0 + limit("jog_reach")) * side.edge_V)
+    memory.jog, memory.jog_sum, memory.jog_tail = 1.0, 0.0, 0.0
+    memory.jog_deg, memory.jog_edge_V = from_deg, memory.edge(sign)
+    memory.jog_V = memory.edge(sign) + reach_V
+
+
+def _mean(memory: Memory) -> float:
+    """Angle, averaged over the window [deg]."""
+    return (memory.angle + sum(memory.estimates)) / (1 + len(memory.estimates))
+
+
+def _shift_V(memory: Memory, side: Direction, moved_deg: float, expected_deg: float, open_s: float) -> float:
+    """How far the edge is shifted [V].
+
+    A way near the expected one confirms what was known: load and posture change it too. Of another one, the rate map's
+    inverse tells how far beyond the edge the voltage was. After a jog that did not move the joint, no way is too long:
+    the edge is not nearer than that one reached.
+    """
+    longer = moved_deg > limit("jog_more") * expected_deg and not memory.jog_again
+    if not longer and moved_deg >= limit("jog_less") * expected_deg:
+        return memory.jog_edge_V
+    return memory.jog_V - voltage_for(side, max(moved_deg, limit("jog_unseen")) / open_s)

@@ -24,10 +24,14 @@ class Memory:
         rest_deg: where a braked joint was expected to stop.
         landing: the rate from which it was braked [deg/s]; 0 when that has been judged.
         known_down, known_up: 1 where a jog has told the dead-zone's edge.
-        jog: samples since the present jog began, counted from 1; 0 for no jog.
+        jog: samples since the present jog began, counted from 1; 0 for no jog, -1 before a
+            further one.
         jog_deg: angle before it.
+        jog_sum: ways since then, summed over the samples [deg].
+        jog_tail: the same of the samples by which it must have ended.
         jog_V: size of its voltage.
         jog_edge_V: shift of the dead-zone's edge that was known before it.
+        jog_again: 1 if one before it did not move the joint.
         push: what is added to the wanted rate because the joint stands though it should move [deg/s].
         voltages: the last ones, newest first [V].
         estimates: the last ones of the angle, newest first [deg].
@@ -51,8 +55,10 @@ class Memory:
     jog: float
     jog_deg: float
     jog_sum: float
+    jog_tail: float
     jog_V: float
     jog_edge_V: float
+    jog_again: float
     push: float
     voltages: list[float]
     estimates: list[float]

@@ -159,43 +159,46 @@ def test_the_difference_equation_written_out_plainly():
         s = float(np.sign(distance))
         large = not known[s] and abs(distance) >= limit("jog_from") and not any(rates)
         if not standing and same and velocity == 0.0 and (jog or large):
-            opens, shut = side[s].voltages[0], tune.closed * (side[s].voltages[0] + edge[s])
-            jog = max(jog, 1)
-            if jog == 1 and s * sent[0] < shut:
+            opens, main = side[s].voltages[0], v
+            shut = tune.closed * (opens + edge[s])
+            if jog <= 0 and s * sent[0] < shut:
                 v = s * shut
+            elif jog <= 0:
+                way = min(limit("jog_share") * abs(distance), limit("jog_most"))
+                volts = float(np.interp(way / (2 * t * share[s]), side[s].rates, side[s].voltages))
+                volts = edge[s] + min(volts, 1.3 * opens)
+                base = jogged["base"] if jog == -1 else mean
+                jogged = {"base": base, "ways": [], "V": volts, "edge": edge[s], "again": jog == -1}
+                jog, v = 1, s * volts
             else:
-                if jog == 1:
-                    way = min(limit("jog_share") * abs(distance), limit("jog_most"))
-                    volts = float(np.interp(way / (2 * t * share[s]), side[s].rates, side[s].voltages))
-                    volts = edge[s] + min(volts, 1.3 * opens)
-                    jogged = {"from": mean, "readings": [], "V": volts, "edge": edge[s]}
-                else:
-                    jogged["readings"].append(s * (measured - jogged["from"]))
                 jog += 1
-                v = s * (jogged["V"] if jog <= 3 else shut)
-                if jog > 3 + hold + limit("jog_wait"):
-                    got = s * (mean - jogged["from"])
-                    was = np.interp(jogged["V"] - jogged["edge"], side[s].voltages, side[s].rates)
-                    expected = 2 * t * share[s] * float(was)
+                jogged["ways"].append(s * (measured - jogged["base"]))
+                since, done = jog - 1, 2 + whole + 1
+                was = np.interp(jogged["V"] - jogged["edge"], side[s].voltages, side[s].rates)
+                expected = 2 * t * share[s] * float(was)
+                if since == done and jogged["ways"][-1] >= limit("standing") * expected:
+                    known[s] = True
+                v = main if known[s] else s * (jogged["V"] if since < 2 else shut)
+                if since >= done and since == done + (whole if known[s] else limit("jog_wait")):
+                    got = float(np.mean(jogged["ways"][done - 1 :]))
                     found = jogged["edge"]
-                    if not limit("jog_less") * expected <= got <= limit("jog_more") * expected:
-                        inner = float(
-                            np.interp(max(got, 0.0) / (2 * t * share[s]), side[s].rates, side[s].voltages)
-                        )
-                        found = jogged["V"] - inner
+                    longer = got > limit("jog_more") * expected and not jogged["again"]
+                    if longer or got < limit("jog_less") * expected:
+                        seen = max(got, limit("jog_unseen")) / (2 * t * share[s])
+                        found = jogged["V"] - float(np.interp(seen, side[s].rates, side[s].voltages))
                     edge[s] = float(np.clip(found, -0.5 * opens, opens))
-                    if got < limit("standing") * expected and edge[s] < opens:
-                        jog, v = 1, s * tune.closed * (opens + edge[s])
+                    if got < limit("standing") * expected and edge[s] < opens and not known[s]:
+                        jog, v = -1, s * tune.closed * (opens + edge[s])
+                        jogged["base"] += s * got
                     else:
                         if got >= limit("jog_less") * expected:
-                            after = sum(1.0 - r / got for r in jogged["readings"])
-                            found = t * (0.5 + after) - t - law.map.dead_time_s
-                            late[s] = float(np.clip(found, 0.0, limit("late")))
+                            after = 0.5 + sum(1.0 - way / got for way in jogged["ways"])
+                            late[s] = float(np.clip(t * after - t - law.map.dead_time_s, 0.0, limit("late")))
                         known[s], jog = True, 0
                         if not known[-s]:
                             edge[-s] = float(edge[s] / opens * side[-s].voltages[0])
-                        again = side[s].voltages[-1] + max(edge[s], tune.reserve * opens)
-                        v = s * min(again, 10.0)  # the step itself: far off, at saturation
+                        v = side[s].voltages[-1] + max(edge[s], tune.reserve * opens)
+                        v = s * min(v, 10.0)  # the step itself: far off, at saturation
         else:
             jog = 0
         if v * sent[0] < 0.0 or abs(v) < abs(sent[0]):

@@ -43,14 +43,15 @@ class _Recorded:
 
 
 def _jogged(joint, factor, sign):
-    """Signals and memories up to where the jogs of a first step end."""
+    """Signals and memories, where the step itself begins, and where its jogs have been judged."""
     law, model = _law(joint)
     recorded = _Recorded(law)
     start, end = span_deg(f"right_{joint}")[:: int(sign)]
     wanted = np.full(120, end)
     signals = loop_on_model(recorded, _with_dead_zone(model, factor), wanted, 0.05, initial_deg=start)
-    last = next(k for k, memory in enumerate(recorded.states) if memory.known(sign))
-    return law, signals, recorded.states, last
+    begun = next(k for k, memory in enumerate(recorded.states) if memory.known(sign))
+    told = next(k for k, memory in enumerate(recorded.states) if memory.known(sign) and not memory.jog)
+    return law, signals, recorded.states, begun, told
 
 
 @pytest.mark.parametrize("sign", (-1.0, 1.0))
@@ -59,35 +60,35 @@ def _jogged(joint, factor, sign):
 def test_jogs_tell_how_far_the_dead_zone_has_grown(joint, factor, sign):
     """Within what a way that a loaded arm may leave out stands for; the other side is taken to have grown alike."""
     unsure = (1.0 - limit("jog_less")) * limit("jog_reach")
-    law, _, states, end = _jogged(joint, factor, sign)
+    law, _, states, _, told = _jogged(joint, factor, sign)
     for side in (sign, -sign):
         edge = law.map.side(side).edge_V
-        assert states[end].edge(side) == pytest.approx((factor - 1.0) * edge, abs=unsure * edge)
+        assert states[told].edge(side) == pytest.approx((factor - 1.0) * edge, abs=unsure * edge)
 
 
 @pytest.mark.parametrize("sign", (-1.0, 1.0))
 @pytest.mark.parametrize("joint", JOINTS)
 def test_a_jog_of_the_joint_that_was_measured_confirms_its_map(joint, sign):
-    _, _, states, end = _jogged(joint, 1.0, sign)
-    assert states[end].edge(sign) == 0.0
-    assert states[end].edge(-sign) == 0.0
-    jogs = np.diff([memory.jog > 0.0 for memory in states[: end + 1]]).sum()
-    assert jogs <= 2  # one that begins and ends
+    _, _, states, _, told = _jogged(joint, 1.0, sign)
+    assert states[told].edge(sign) == 0.0
+    assert states[told].edge(-sign) == 0.0
+    assert sum(memory.jog == 1.0 for memory in states[: told + 1]) == 1
 
 
 @pytest.mark.parametrize("factor", (0.85, 1.0, 1.15, 1.3, 1.6))
 @pytest.mark.parametrize("joint", JOINTS)
 def test_jogs_move_the_joint_forward_by_less_than_a_tenth_of_the_step(joint, factor):
-    _, signals, _, end = _jogged(joint, factor, 1.0)
-    moved = signals.angle_deg[: 5 * end] - signals.angle_deg[0]
+    _, signals, _, begun, _ = _jogged(joint, factor, 1.0)
+    moved = signals.angle_deg[: 5 * begun] - signals.angle_deg[0]
     assert np.min(moved) == 0.0
     assert np.max(moved) < 0.1 * STEP_DEG
 
 
 @pytest.mark.parametrize("joint", JOINTS)
-def test_jogs_take_a_second_at_most_where_the_dead_zone_is_as_measured(joint):
-    _, signals, _, end = _jogged(joint, 1.0, 1.0)
-    assert signals.time_s[5 * end] < 1.0
+def test_the_step_begins_as_soon_as_a_jog_is_seen(joint):
+    """Two samples to just closed, two open, the dead time, and one until it is read."""
+    law, signals, _, begun, _ = _jogged(joint, 1.0, 1.0)
+    assert signals.time_s[5 * begun] <= (2 + limit("jog_samples") + 1) * 0.05 + law.map.dead_time_s + 1e-9
 
 
 @pytest.mark.parametrize("joint", JOINTS)
