@@ -39,9 +39,9 @@ def kind_of(diagnosis: Diagnosis, path: str) -> str:
         diagnosis: with a conclusion.
         path: of the effect's size.
     """
-    if diagnosis.verdict == "unlisted_physics":
-        return "beside_unknown"
     best = diagnosis.best.hypothesis
     without = [j.hypothesis.fit.over_noise for j in diagnosis.judged if path not in j.hypothesis.ids]
     hardly = min(without, default=float("inf")) < (1.0 + NOISE_KNOWN) * best.fit.over_noise
-    return "hardly_needed" if hardly else "needed"
+    if hardly:
+        return "hardly_needed"
+    return "beside_unknown" if diagnosis.verdict == "unlisted_physics" else "needed"

@@ -47,3 +47,5 @@ def test_beside_unknown_physics_names_are_trusted_least():
     found = _diagnosis("unlisted_physics", _judged((LEAK,), 2.0), _judged((), 40.0))
     assert kind_of(found, LEAK) == "beside_unknown"
     assert reliability("beside_unknown") < reliability("law") < reliability("needed")
+    hardly = _diagnosis("unlisted_physics", _judged((LEAK,), 2.0), _judged((), 2.0))
+    assert kind_of(hardly, LEAK) == "hardly_needed"
