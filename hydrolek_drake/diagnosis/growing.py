@@ -5,6 +5,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import (
     AT_NOISE,
@@ -23,6 +25,7 @@ from hydrolek_drake.diagnosis.score import Score, gain_of_pair, scores_of
 from hydrolek_drake.diagnosis.unsticking import different, of_another_joint, unstuck
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
 from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.problem import DIVERGED
 
 UNDECIDED = 2.0
 """First fits whose squared residuals are within this factor of the best one's are not told apart by so short a part."""
@@ -200,7 +203,20 @@ def _glance(
         bench.fit(effects, start, step, GLANCE, tolerance=1e-3, experiments=part, alone=True)
         for start in (near, *others[:1])
     ]
-    return min(fits, key=lambda h: h.fit.objective)
+    best = min(fits, key=lambda h: h.fit.objective)
+    if not diverged(best):
+        return best
+    # a start that promises most may be one that no rollout survives, such as a base that rocks faster than the step
+    elsewhere = [{**near, **start} for start in effects[-1].starts]
+    return min(
+        [best, *(bench.fit(effects, start, step, GLANCE, 1e-3, part, alone=True) for start in elsewhere)],
+        key=lambda h: h.fit.objective,
+    )
+
+
+def diverged(hypothesis: Hypothesis) -> bool:
+    """Whether a rollout broke down."""
+    return bool(np.max(np.abs(hypothesis.fit.residuals), initial=0.0) >= DIVERGED)
 
 
 def redundant(effects: Sequence[Candidate], candidate: Candidate) -> bool:
