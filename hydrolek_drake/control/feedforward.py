@@ -104,7 +104,6 @@ class FeedforwardLaw:
         sent = UnderWay(memory.voltages, rates, *self._samples(memory.late(moving)))
         hold = sent.whole + 1 + self._window  # samples until what was sent has acted and been seen
         self._estimate(memory, sent, measured_deg)
-        mean = (memory.angle + sum(memory.estimates)) / (1 + self._window)
         moved = memory.angle - memory.estimates[-1]
         grow_push(
             memory, self.tuning, sent, moved, set_point_deg - memory.angle,
@@ -118,14 +117,15 @@ class FeedforwardLaw:
         distance = set_point_deg + velocity * (sent.whole + sent.rest) * self.sample_s - ahead
         same = set_point_deg == memory.set_point
         if velocity == 0.0 and self._arrived(
-            memory, sent, distance, set_point_deg - mean, moving, same, hold
+            memory, sent, distance, set_point_deg - memory.mean, moving, same, hold
         ):
             wanted = 0.0
         else:
             memory.standing = 0.0
             wanted = self._wanted(memory, sent, distance, velocity)
         jogged: float | None = None
-        if same and wanted and velocity == 0.0 and (memory.jog or begins(memory, sent, distance)):
+        jogging = memory.jog or memory.jog_again or begins(memory, sent, distance)
+        if jogging and same and wanted and velocity == 0.0:
             jogged = jog(
                 memory, self.map, measured_deg, distance, self.tuning.closed, sent.whole, self.sample_s
             )
@@ -141,7 +141,7 @@ class FeedforwardLaw:
         elif memory.standing == 0.0:
             memory.landing = 0.0
         elif memory.standing >= hold and memory.landing != 0.0:
-            learn_landing(memory, self.tuning, mean)
+            learn_landing(memory, self.tuning, memory.mean)
         memory.running, memory.set_point, memory.slope = 1.0, set_point_deg, slope
         memory.voltages = [voltage, *memory.voltages[:-1]]
         memory.estimates = [memory.angle, *memory.estimates[:-1]]

@@ -7,17 +7,13 @@ moved tells the dead time. If it does not move, the dead-zone reaches at least t
 further. Nothing moves but in the direction that was asked for.
 """
 
-import math
-from math import copysign
+from math import copysign, inf
 
 from hydrolek_drake.control.feedforward_learning import UnderWay, within
 from hydrolek_drake.control.feedforward_memory import Memory
 from hydrolek_drake.control.feedforward_tuning import limit
 from hydrolek_drake.control.law import clipped
 from hydrolek_drake.control.rate_map import Direction, RateMap, rate_at, voltage_for
-
-AGAIN = -1.0
-"""Instead of a number of samples: the joint has not moved, and another jog follows."""
 
 
 def begins(memory: Memory, sent: UnderWay, distance_deg: float) -> bool:
@@ -61,15 +57,14 @@ def jog(
     shut_V = closed * (side.edge_V + memory.edge(sign))
     opened = int(limit("jog_samples"))
     open_s = opened * sample_s * rates.share(sign, memory.angle) * memory.share(sign)
-    if memory.jog <= 0.0:
+    if memory.jog == 0.0:
         if sign * memory.voltages[0] < shut_V:  # not yet there
             return sign * shut_V
-        from_deg = memory.jog_deg if memory.jog == AGAIN else _mean(memory)
-        _begin(memory, side, sign, from_deg, distance_deg, open_s)
+        _begin(memory, side, sign, distance_deg, open_s)
         return sign * memory.jog_V
     memory.jog += 1.0
     moved_deg = sign * (measured_deg - memory.jog_deg)
-    memory.jog_sum += moved_deg
+    memory.jog_sum += sample_s * moved_deg
     since = int(memory.jog) - 1  # samples since the valve opened
     if since < opened:
         return sign * memory.jog_V
@@ -82,10 +77,9 @@ def jog(
         memory.learn_known(sign)
     if since < done + (delay if memory.known(sign) else limit("jog_wait")):
         return None if memory.known(sign) else sign * shut_V
-    _take(memory, rates, sign, memory.jog_tail / (since - done + 1), expected_deg, since, sample_s)
-    if not memory.known(sign):
-        return sign * closed * (side.edge_V + memory.edge(sign))
-    return None
+    since_s = sample_s * (since + 0.5 - 0.5 * opened)
+    _take(memory, rates, sign, memory.jog_tail / (since - done + 1), expected_deg, open_s, since_s)
+    return None if memory.known(sign) else sign * closed * (side.edge_V + memory.edge(sign))
 
 
 def _take(
@@ -94,8 +88,8 @@ def _take(
     sign: float,
     moved_deg: float,
     expected_deg: float,
-    since: int,
-    sample_s: float,
+    open_s: float,
+    since_s: float,
 ) -> None:
     """Take edge and dead time from a jog that has ended, or have another one follow.
 
@@ -105,44 +99,40 @@ def _take(
         sign: direction.
         moved_deg: how far the jog went.
         expected_deg: how far it should have gone.
-        since: samples since the valve opened.
-        sample_s: of the law.
+        open_s: for how long the valve was open, times how much faster than in mid-range the joint moves.
+        since_s: since the middle of the opening, and half a sample for the trapezoidal rule.
     """
     side = rates.side(sign)
-    open_s = limit("jog_samples") * sample_s * rates.share(sign, memory.angle) * memory.share(sign)
     memory.learn_edge(sign, within(side, _shift_V(memory, side, moved_deg, expected_deg, open_s)))
     stands = moved_deg < limit("standing") * expected_deg
-    if stands and not memory.known(sign) and memory.edge(sign) < within(side, math.inf):
-        memory.jog, memory.jog_again = AGAIN, 1.0
+    if stands and not memory.known(sign) and memory.edge(sign) < within(side, inf):
+        memory.jog, memory.jog_again = 0.0, 1.0
         memory.jog_deg += sign * moved_deg
         return
     if moved_deg >= limit("jog_less") * expected_deg:
-        # the mean time of the movement, by the trapezoidal rule, less that of the opening
-        mean_s = sample_s * (since + 0.5 - memory.jog_sum / moved_deg)
-        late = mean_s - 0.5 * limit("jog_samples") * sample_s - rates.dead_time_s
+        # from the mean time of the opening to that of the movement
+        late = since_s - memory.jog_sum / moved_deg - rates.dead_time_s
         memory.learn_late(sign, clipped(late, (0.0, limit("late"))))
     memory.jog = memory.jog_again = 0.0
     memory.learn_known(sign)
-    if not memory.known(-sign):
+    if not memory.known(
+        -sign
+    ):  # a spring, an amplifier or a supply that has changed acts on both sides alike
         other = rates.side(-sign)
-        shared_V = limit("jog_shared") * memory.edge(sign) * other.edge_V / side.edge_V
-        memory.learn_edge(-sign, within(other, shared_V))
+        memory.learn_edge(-sign, within(other, memory.edge(sign) * other.edge_V / side.edge_V))
 
 
-def _begin(
-    memory: Memory, side: Direction, sign: float, from_deg: float, distance_deg: float, open_s: float
-) -> None:
+def _begin(memory: Memory, side: Direction, sign: float, distance_deg: float, open_s: float) -> None:
     """Open the valve by what moves the joint by a share of the step, but not far beyond the edge."""
     way = clipped(limit("jog_share") * abs(distance_deg), (0.0, limit("jog_most")))
     reach_V = min(voltage_for(side, way / open_s), (1.0 + limit("jog_reach")) * side.edge_V)
+    if (
+        not memory.jog_again
+    ):  # after a jog that was not answered the estimate has not come back to the readings yet
+        memory.jog_deg = memory.mean
     memory.jog, memory.jog_sum, memory.jog_tail = 1.0, 0.0, 0.0
-    memory.jog_deg, memory.jog_edge_V = from_deg, memory.edge(sign)
+    memory.jog_edge_V = memory.edge(sign)
     memory.jog_V = memory.edge(sign) + reach_V
-
-
-def _mean(memory: Memory) -> float:
-    """Angle, averaged over the window [deg]."""
-    return (memory.angle + sum(memory.estimates)) / (1 + len(memory.estimates))
 
 
 def _shift_V(memory: Memory, side: Direction, moved_deg: float, expected_deg: float, open_s: float) -> float:

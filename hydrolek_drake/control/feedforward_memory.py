@@ -24,14 +24,13 @@ class Memory:
         rest_deg: where a braked joint was expected to stop.
         landing: the rate from which it was braked [deg/s]; 0 when that has been judged.
         known_down, known_up: 1 where a jog has told the dead-zone's edge.
-        jog: samples since the present jog began, counted from 1; 0 for no jog, -1 before a
-            further one.
+        jog: samples since the present jog began, counted from 1; 0 for no jog.
         jog_deg: angle before it.
-        jog_sum: ways since then, summed over the samples [deg].
-        jog_tail: the same of the samples by which it must have ended.
+        jog_sum: ways since then, summed over time [deg s].
+        jog_tail: ways of the samples by which it must have ended, summed [deg].
         jog_V: size of its voltage.
         jog_edge_V: shift of the dead-zone's edge that was known before it.
-        jog_again: 1 if one before it did not move the joint.
+        jog_again: 1 if a jog before it did not move the joint.
         push: what is added to the wanted rate because the joint stands though it should move [deg/s].
         voltages: the last ones, newest first [V].
         estimates: the last ones of the angle, newest first [deg].
@@ -83,6 +82,11 @@ class Memory:
     def pack(self) -> Array:
         """As a flat state."""
         return np.array([*(getattr(self, name) for name in _NAMES), *self.voltages, *self.estimates])
+
+    @property
+    def mean(self) -> float:
+        """The angle's estimate, averaged over the window [deg]."""
+        return (self.angle + sum(self.estimates)) / (1 + len(self.estimates))
 
     def share(self, sign: float) -> float:
         """Saturation rate over that of the map, in a direction."""

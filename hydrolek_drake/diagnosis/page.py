@@ -188,10 +188,10 @@ def _candidates(diagnosis: Diagnosis) -> str:
         else ""
     )
     among = (
-        "<p class='other'>'Odds': among these models. The probability told of an effect is lower: by how often such "
-        "names were right on concealed machines, where the truth is known.</p>"
+        "<p class='other'>'Posterior': probability among these models. What is told of an effect is lower, by how "
+        "often such names were right on concealed machines, where the truth is known.</p>"
     )
-    return _table(("model", "odds", "fitted / noise", "held out / noise", ""), rows, (4,)) + among + told
+    return _table(("model", "posterior", "fitted / noise", "held out / noise", ""), rows, (4,)) + among + told
 
 
 def _parameters(diagnosis: Diagnosis) -> str:

@@ -85,7 +85,7 @@ def _law_json(diagnosis: Diagnosis, law: FoundLaw) -> dict[str, Any]:
     return {
         "id": f"unlisted.{known.stage}",
         "joint": diagnosis.locations[-1].joint,
-        "probability": round(_law_odds(diagnosis, law) * reliability("law"), 4),
+        "probability": round(_law_posterior(diagnosis, law) * reliability("law"), 4),
         "parameters": parameters,
         "holdout_over_noise": law.held_out_over_noise,
         "sentence": law_sentence(law),
@@ -93,13 +93,13 @@ def _law_json(diagnosis: Diagnosis, law: FoundLaw) -> dict[str, Any]:
 
 
 def _probability(diagnosis: Diagnosis, path: str) -> float:
-    """That an effect of the best model is there: by the odds among what was tried, as far as they can be trusted."""
+    """That an effect of the best model is there: posterior among what was tried, as far as that can be trusted."""
     assert diagnosis.conclusion is not None
     return diagnosis.conclusion.probability[path] * reliability(kind_of(diagnosis, path))
 
 
-def _law_odds(diagnosis: Diagnosis, law: FoundLaw) -> float:
-    """Odds of the law against the best of the known effects, by held-out likelihood made as flat as its misfit."""
+def _law_posterior(diagnosis: Diagnosis, law: FoundLaw) -> float:
+    """Probability of the law beside the best known effects, by held-out likelihood made as flat as its misfit."""
     best = diagnosis.best
     counted = best.held_out_counted
     excess = max(1.0, law.held_out_over_noise**2 * counted - counted)

@@ -32,7 +32,7 @@ def summary(diagnosis: Diagnosis) -> Iterator[str | Table]:
         )
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
     table.add_column("model")
-    for title in ("odds", "fitted / noise", "held out / noise"):
+    for title in ("posterior", "fitted / noise", "held out / noise"):
         table.add_column(title, justify="right", no_wrap=True)
     for judged in diagnosis.judged[:SHOWN]:
         name = " + ".join(c.id for c in judged.hypothesis.effects) or "nominal model"

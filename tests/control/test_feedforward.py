@@ -1,14 +1,10 @@
-"""Feedforward rate control: its parts, its difference equation, and what it learns, on SDP models."""
-
-from dataclasses import replace
+"""Feedforward rate control: its parts and its difference equation, on SDP models."""
 
 import numpy as np
 import pytest
 
 from hydrolek_drake.control.closed_loop import loop_on_model
-from hydrolek_drake.control.conditions import span_deg
-from hydrolek_drake.control.feedforward import FeedforwardLaw
-from hydrolek_drake.control.feedforward_tuning import limit, tuning
+from hydrolek_drake.control.feedforward_tuning import limit
 from hydrolek_drake.control.metrics import step_measures
 from hydrolek_drake.control.rate_map import map_from_model, rate_at, voltage_for
 from hydrolek_drake.control.sdp_model import thesis_model
@@ -27,14 +23,9 @@ def test_the_rate_map_inverts_the_law_it_comes_from(joint, sign):
         assert abs(float(model.rate(sign * voltage))) == pytest.approx(rate, rel=0.02, abs=0.1)
 
 
-def _law(joint):
-    model = thesis_model(joint)
-    return FeedforwardLaw(map_from_model(model), 0.05, 10.0, tuning()), model
-
-
 @pytest.mark.parametrize("joint", JOINTS)
-def test_on_the_model_it_was_made_for_it_lands_on_the_set_point(joint):
-    law, model = _law(joint)
+def test_on_the_model_it_was_made_for_it_lands_on_the_set_point(modelled, joint):
+    law, model = modelled(joint)
     for target in (20.0, -8.0):
         signals = loop_on_model(law, model, np.full(100, target), 0.05)
         measures = step_measures(signals.time_s, signals.angle_deg, 0.0, target, last_s=2.0, still_deg=0.01)
@@ -43,17 +34,17 @@ def test_on_the_model_it_was_made_for_it_lands_on_the_set_point(joint):
         assert np.all(signals.voltage_V[-200:] == 0.0)
 
 
-def test_a_steadily_moving_set_point_is_followed_without_lag():
-    law, model = _law("j2")
+def test_a_steadily_moving_set_point_is_followed_without_lag(modelled):
+    law, model = modelled("j2")
     wanted = 8.0 * np.arange(80) * 0.05
     signals = loop_on_model(law, model, wanted, 0.05)
     between = 8.0 * signals.time_s[300:]  # the set point also between its samples
     assert np.max(np.abs(signals.angle_deg[300:] - between)) < 0.01
 
 
-def test_the_difference_equation_written_out_plainly():
+def test_the_difference_equation_written_out_plainly(modelled):
     """One sample at a time, with the map as straight lines: the same voltages."""
-    law, model = _law("j2")
+    law, model = modelled("j2")
     t, tune = 0.05, law.tuning
     side = {s: law.map.side(s) for s in (-1.0, 1.0)}
     share, edge, late = {-1.0: 1.0, 1.0: 1.0}, {-1.0: 0.0, 1.0: 0.0}, {-1.0: 0.0, 1.0: 0.0}
@@ -231,59 +222,9 @@ def test_the_difference_equation_written_out_plainly():
             plant = model.step(plant, sent[back] if back < 12 else 0.0)
 
 
-def _changed(model, *, extra_delay=0, wider=1.0):
-    """The same joint with more samples of delay, and a dead-zone wider by a factor, its curve shifted outwards."""
-    a = list(model.alpha)
-    a[2], a[5] = a[2] * wider, a[5] * wider
-    return replace(model, alpha=tuple(a), delay_samples=model.delay_samples + extra_delay)
-
-
-def _there_and_back(law, model, joint):
-    """Two steps there and two back, 6 s each, without noise; signals and what is remembered at the end."""
-    low, high = span_deg(f"right_{joint}")
-    watched = _Watched(law)
-    wanted = np.tile(np.repeat([high, low], 120), 2)
-    signals = loop_on_model(watched, model, wanted, 0.05, initial_deg=low)
-    return signals, law.memory(watched.last)
-
-
 @pytest.mark.parametrize("joint", JOINTS)
-@pytest.mark.parametrize("extra", (2, 4))
-def test_a_longer_dead_time_is_learned_from_jogs_and_stops(joint, extra):
-    """Found within a sample of the model; an SDP model's delay of n samples is a dead time of n - 1 (6.1)."""
-    law, model = _law(joint)
-    _, memory = _there_and_back(law, _changed(model, extra_delay=extra), joint)
-    for late in (memory.late_down, memory.late_up):
-        assert late == pytest.approx((extra - 1) * model.sample_s, abs=model.sample_s)
-
-
-@pytest.mark.parametrize("joint", JOINTS)
-def test_a_wider_dead_zone_is_learned(joint):
-    """30 % wider: objective met on the first step, aim (0.1 deg) on the next two; most of the shift is found."""
-    law, model = _law(joint)
-    signals, memory = _there_and_back(law, _changed(model, wider=1.3), joint)
-    off = np.abs(signals.angle_deg - signals.set_point_deg).reshape(4, 600)[:, 400:]
-    assert np.all(off.max(axis=1) < 0.5)
-    assert np.all(off[2:].max(axis=1) < 0.1)
-    for sign, found in ((-1.0, memory.edge_down), (1.0, memory.edge_up)):
-        true = 0.3 * law.map.side(sign).edge_V
-        assert 0.5 * true < found < 1.2 * true
-
-
-def test_a_blocked_joint_teaches_within_bounds():
-    """Whatever a joint that cannot move suggests: an edge within twice the dead-zone, a voltage within the limit."""
-    law, _ = _law("j3")
-    state = law.initial(0.0)
-    for _ in range(400):
-        state, _, voltage = law.step(state, 10.0, 0.0)
-        assert abs(voltage) <= law.limit_V
-        assert abs(law.memory(state).edge_up) <= law.map.positive.edge_V
-    assert law.memory(state).late_up <= limit("late")
-
-
-@pytest.mark.parametrize("joint", JOINTS)
-def test_the_voltage_opens_by_bounded_steps_and_closes_at_once(joint):
-    law, model = _law(joint)
+def test_the_voltage_opens_by_bounded_steps_and_closes_at_once(modelled, joint):
+    law, model = modelled(joint)
     signals = loop_on_model(law, model, np.repeat([20.0, -10.0, 10.0], 100), 0.05)
     voltage = np.concatenate([[0.0], signals.voltage_V[::5]])
     tune = law.tuning
@@ -294,18 +235,3 @@ def test_the_voltage_opens_by_bounded_steps_and_closes_at_once(joint):
     for k in np.flatnonzero(signals.output[::5] == 0.0):  # wanted: to stand
         sign = np.sign(voltage[k + 1])
         assert abs(voltage[k + 1]) < law.map.side(sign).edge_V
-
-
-class _Watched:
-    """A law whose last state is kept."""
-
-    def __init__(self, law):
-        self.law, self.size, self.last = law, law.size, None
-
-    def initial(self, measured_deg):
-        return self.law.initial(measured_deg)
-
-    def step(self, state, set_point_deg, measured_deg):
-        found = self.law.step(state, set_point_deg, measured_deg)
-        self.last = found[0]
-        return found

@@ -1,4 +1,4 @@
-"""What is told is the odds among the models tried, as far as such names have been right."""
+"""What is told is the posterior among the models tried, as far as such names have been right."""
 
 from types import SimpleNamespace
 
