@@ -195,7 +195,7 @@ class _Socket(tornado.websocket.WebSocketHandler):
 
     def on_close(self) -> None:
         if self.console.clients[:1] == [self]:
-            self.console.session.let_go()  # nobody holds the joystick any more
+            self.console.session.lose_operator()
         if self in self.console.clients:
             self.console.clients.remove(self)
 

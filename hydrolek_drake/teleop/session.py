@@ -240,6 +240,14 @@ class OperatorSession:
         """Joystick and sliders are let go."""
         self._machine.let_go()
 
+    def lose_operator(self) -> None:
+        """The browser in control is gone: nothing is held any more, and a task stops; who takes over may resume."""
+        self._machine.let_go()
+        with self._lock:
+            under_way = self._stage in (Stage.PLANNING, Stage.MOVING)
+        if under_way:
+            self.order(Order.STOP)
+
     def state(self) -> dict[str, Any]:
         """All that the console shows, as plain values."""
         machine = self._machine.state()

@@ -67,3 +67,24 @@ def test_bad_clicks_are_told_in_the_browser_and_a_second_one_watches(browser, se
     second.close()
     assert {state.mode for state in served.states} == {Mode.IDLE}
     assert not any(state.valves_open for state in served.states)
+
+
+def test_before_the_console_answers_only_stop_can_be_pressed_and_it_is_not_forgotten(browser, served):
+    page = browser.new_page()
+    heard = []
+
+    def hear(socket):  # and never answer
+        socket.on_message(lambda message: heard.append(message))
+
+    page.route_web_socket("**/socket", hear)
+    page.goto(served.address)
+    page.wait_for_function("() => socket.readyState === 1")
+    enabled = [
+        button.get_attribute("id") for button in page.query_selector_all("header button, .row button:enabled")
+    ]
+    assert enabled == ["stop"]
+    page.evaluate("socket.close()")
+    page.wait_for_selector("#note.bad:has-text('Connection lost')")
+    page.click("#stop")
+    while not any('"stop"' in message for message in heard):
+        page.wait_for_timeout(50)

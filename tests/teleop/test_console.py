@@ -68,6 +68,12 @@ async def _state(socket):
             return found
 
 
+async def _click_the_pipe(socket):
+    assert await _ask(socket, {"do": "snapshot"}) == ""
+    for v in (150, 180, 110):
+        assert await _ask(socket, {"do": "click", "u": 319.5, "v": v}) == ""
+
+
 async def _stands_still(socket):
     state = (await _state(socket))["state"]
     assert state["mode"] == "idle" and not state["valves_open"]
@@ -85,9 +91,7 @@ def test_the_page_and_the_whole_task():
         page = await loop.run_in_executor(None, lambda: urllib.request.urlopen(address).read().decode())
         assert 'id="stop"' in page and "/socket" in page
         socket = await _open(console)
-        assert await _ask(socket, {"do": "snapshot"}) == ""
-        for v in (150, 180, 110):
-            assert await _ask(socket, {"do": "click", "u": 319.5, "v": v}) == ""
+        await _click_the_pipe(socket)
         picture = await loop.run_in_executor(
             None, lambda: urllib.request.urlopen(address + "edges.jpg").read()
         )
@@ -214,6 +218,38 @@ def test_a_joystick_over_the_socket_stops_with_the_browser_that_holds_it():
         assert not state["valves_open"]
         await asyncio.sleep(0.2)
         np.testing.assert_array_equal((await _state(second))["state"]["angles_deg"], state["angles_deg"])
+
+    _served(work)
+
+
+def test_a_task_stops_with_the_browser_in_control_and_the_next_one_resumes_it():
+    async def work(console):
+        first, second = await _open(console), await _open(console)
+        await _click_the_pipe(first)
+        assert await _ask(first, {"do": "confirm"}) == ""
+        while (await _state(second))["state"]["mode"] != "running":
+            pass
+        first.close()
+        while (await _state(second))["state"]["mode"] != "stopped":
+            pass
+        state = await _state(second)
+        assert state["in_control"] and not state["state"]["valves_open"]
+        assert await _ask(second, {"do": "resume"}) == ""
+        while (await _state(second))["state"]["mode"] != "done":
+            pass
+
+    _served(work, rate=8.0)
+
+
+def test_a_task_that_is_planned_for_a_lost_browser_does_not_begin():
+    async def work(console):
+        first, second = await _open(console), await _open(console)
+        await _click_the_pipe(first)
+        assert await _ask(first, {"do": "confirm"}) == ""
+        first.close()
+        while (await _state(second))["state"]["stage"] != "confirm":
+            pass
+        assert (await _state(second))["state"]["mode"] == "idle"
 
     _served(work)
 
