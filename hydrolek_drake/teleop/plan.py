@@ -69,6 +69,11 @@ class TaskPlan:
     cut: ToolPath | None
     holds: bool = True
 
+    @property
+    def step_names(self) -> tuple[str, ...]:
+        """Names of the steps in order."""
+        return tuple(step.name for step in self.steps)
+
     def duration(self) -> float:
         """Planned time of all steps in s."""
         return float(sum(step.trajectory.end_time() for step in self.steps))

@@ -1,9 +1,7 @@
 """What the operator does, without any browser: four clicks, confirmation, stop (thesis 5.2, stages 2 to 6)."""
 
 import threading
-import time
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from typing import Any
 
@@ -21,6 +19,7 @@ from hydrolek_drake.teleop.release import plan_letting_go
 from hydrolek_drake.teleop.sequencer import Mode, Order
 from hydrolek_drake.teleop.signals import shown
 from hydrolek_drake.teleop.stages import STAGE_FOR, STEPS_OF, Stage
+from hydrolek_drake.teleop.undertaking import Undertaking
 from hydrolek_drake.vision.edges import EdgeSettings, default_settings
 from hydrolek_drake.vision.frames import FrameSource
 from hydrolek_drake.vision.selection import Fill
@@ -57,7 +56,6 @@ class OperatorSession:
                 stand(frames, machine.state())
 
         self._camera = CameraThread(source, arms_as_they_stand)
-        self._planner = ThreadPoolExecutor(1, thread_name_prefix="planner")
         self._generator = np.random.default_rng(seed)
         self._lock = threading.RLock()
         self._stage, self._task = Stage.LIVE, Task.CUT
@@ -65,20 +63,13 @@ class OperatorSession:
         self._settings, self._fill = default_settings(), Fill.SURFACES
         self._message, self._error = "", ""
         self._pictures = Pictures()
-        self._planning: Future[None] | None = None
-        self._asked: object = None  # the planning whose plan is still wanted
-        self._under_way: TaskPlan | None = None
-        self._done: tuple[TaskPlan, str] | None = (
-            None  # plan and the step it was aborted in; what the arms are to be released from
-        )
+        self._undertaking = Undertaking(machine, self._lock)
         self._steps: tuple[str, ...] = STEPS
-        self._began: float | None = None
-        self._took: float | None = None
 
     def close(self) -> None:
         """End the threads; the machine is closed by its owner."""
         self._camera.close()
-        self._planner.shutdown(wait=True, cancel_futures=True)
+        self._undertaking.close()
 
     def refresh(self) -> None:
         """Read a live frame for the colour picture. A lost camera is shown, not raised."""
@@ -189,11 +180,9 @@ class OperatorSession:
             if self._stage is not Stage.CONFIRM:
                 last = "cut" if self._task is Task.CUT else "place"
                 raise InputError(f"object, grasp and {last} must be clicked before you confirm")
-            self._stage, self._error, self._began, self._took = Stage.PLANNING, "", time.monotonic(), None
-            self._asked = object()
-            assert self._clicks is not None  # the stage says so
-            self._planning = self._planner.submit(self._plan_and_go, self._clicks, self._asked)
-            self._planning.add_done_callback(self._after_planning)
+            clicks = self._clicks
+            assert clicks is not None  # the stage says so
+            self._begin(lambda: self._plan(clicks), Stage.CONFIRM)
 
     def release(self) -> None:
         """After a task: open the gripper, back off, both arms to the posture that a task starts from.
@@ -203,19 +192,18 @@ class OperatorSession:
         """
         self._not_while_moving()
         with self._lock:
-            if self._done is None:
+            held = self._undertaking.held
+            if held is None:
                 raise InputError("nothing is held; a task must have been started before")
             self._clicks = None
-            self._stage, self._error, self._began, self._took = Stage.PLANNING, "", time.monotonic(), None
-            self._asked = object()
-            self._planning = self._planner.submit(self._release_and_go, self._done, self._asked)
-            self._planning.add_done_callback(self._after_planning)
+            self._begin(lambda: plan_letting_go(*held, self._posture(), self._generator), Stage.LIVE)
             self._draw()
 
     def order(self, order: Order) -> None:
         """Stop, resume or abort; a stop while a task is planned keeps it from starting."""
         with self._lock:
             if self._stage is Stage.PLANNING and order is not Order.RESUME:
+                self._undertaking.withdraw()
                 self._stage = Stage.LIVE if self._clicks is None else Stage.CONFIRM
                 self._message = "Stopped before the arms moved."
         self._machine.order(order)
@@ -267,7 +255,7 @@ class OperatorSession:
                 "version": self._pictures.version,
                 "mode": machine.mode.name.lower(),
                 "steps": list(self._steps),
-                "can_release": self._done is not None
+                "can_release": self._undertaking.held is not None
                 and self._stage not in (Stage.PLANNING, Stage.MOVING)
                 and machine.mode in (Mode.DONE, Mode.ABORTED),
                 "step": machine.step,
@@ -276,7 +264,7 @@ class OperatorSession:
                 "valves_open": machine.valves_open,
                 "angles_deg": np.degrees(machine.position).round(2).tolist(),
                 "desired_deg": np.degrees(machine.desired).round(2).tolist(),
-                "seconds": self._seconds(),
+                "seconds": self._undertaking.seconds(),
                 "manual": machine.manual,
                 "limits_deg": _SLIDERS_DEG,
                 "signals": None if machine.signals is None else shown(machine.signals),
@@ -297,69 +285,48 @@ class OperatorSession:
         for name, picture in self._clicks.pictures().items():
             self._pictures.show(name, picture)
 
-    def _plan_and_go(self, clicks: Clicks, asked: object) -> None:
+    def _begin(self, make: Callable[[], TaskPlan], otherwise: Stage) -> None:
+        """Undertake what is planned so; the stage if there is no plan."""
+
+        def started(plan: TaskPlan) -> None:
+            self._steps = plan.step_names
+            self._stage, self._message = Stage.MOVING, f"Planned for {plan.duration():.1f} s."
+            self._pictures.changed()
+
+        def failed(reason: Exception) -> None:
+            if isinstance(reason, InputError):
+                self._stage, self._error, self._message = otherwise, str(reason), ""
+            else:
+                self._stage, self._clicks = Stage.LIVE, None
+                self._error = f"the motion could not be planned: {reason}"
+
+        self._stage, self._error = Stage.PLANNING, ""
+        self._undertaking.begin(make, started=started, failed=failed)
+
+    def _plan(self, clicks: Clicks) -> TaskPlan:
         def told(name: str) -> None:
             with self._lock:
                 self._message = f"Planning: {name}."
 
         assert clicks.targets is not None
-        targets, camera, place = clicks.targets, clicks.frame.camera, clicks.place
-        posture = within_limits(self._machine.state().position)
+        targets, camera, posture = clicks.targets, clicks.frame.camera, self._posture()
+        if clicks.place is None:
+            return plan_task(targets, camera, posture, self._generator, on_step=told)
+        return plan_place_by_either(targets, clicks.place, camera, posture, self._generator, on_step=told)
 
-        def make() -> TaskPlan:
-            if place is None:
-                return plan_task(targets, camera, posture, self._generator, on_step=told)
-            return plan_place_by_either(targets, place, camera, posture, self._generator, on_step=told)
-
-        self._go(asked, make, Stage.CONFIRM)
-
-    def _release_and_go(self, done: tuple[TaskPlan, str], asked: object) -> None:
-        posture = within_limits(self._machine.state().position)
-        self._go(asked, lambda: plan_letting_go(*done, posture, self._generator), Stage.LIVE)
-
-    def _go(self, asked: object, make: Callable[[], TaskPlan], otherwise: Stage) -> None:
-        try:
-            plan = make()
-            with self._lock:
-                if self._stage is not Stage.PLANNING or self._asked is not asked:
-                    return  # stopped meanwhile
-                self._machine.start(plan)
-                self._under_way, self._steps = plan, tuple(step.name for step in plan.steps)
-                self._stage, self._message = Stage.MOVING, f"Planned for {plan.duration():.1f} s."
-                self._pictures.changed()
-        except InputError as error:
-            with self._lock:
-                self._stage, self._error, self._message = otherwise, str(error), ""
-
-    def _after_planning(self, planning: "Future[None]") -> None:
-        """Show what nobody foresaw, too, and wait for the operator again."""
-        unforeseen = None if planning.cancelled() else planning.exception()
-        if unforeseen is not None:
-            with self._lock:
-                self._stage, self._clicks = Stage.LIVE, None
-                self._error = f"the motion could not be planned: {unforeseen}"
+    def _posture(self) -> np.ndarray:
+        return within_limits(self._machine.state().position)
 
     def _after_moving(self, machine: MachineState) -> None:
-        if self._stage is not Stage.MOVING or machine.mode not in (Mode.DONE, Mode.ABORTED):
+        if self._stage is not Stage.MOVING:
             return
-        machine = self._machine.state()
-        if machine.mode not in (Mode.DONE, Mode.ABORTED):
-            return  # the state that was given is from before this task began
-        self._took = self._seconds()
-        self._began = None
-        done = machine.mode is Mode.DONE
-        plan = self._under_way
-        assert plan is not None  # it moved
-        if done:
-            self._done = (plan, "") if plan.holds else None
-        elif self._steps in STEPS_OF.values():  # an aborted release is begun again from the task before it
-            self._done = (plan, machine.step)
-        self._message = f"{'Done' if done else 'Aborted'} after {self._took:.1f} s."
+        ended = self._undertaking.ended(machine)
+        if ended is None:
+            return
+        word = "Done" if ended.mode is Mode.DONE else "Aborted"
+        self._message = f"{word} after {self._undertaking.seconds():.1f} s."
         self._clicks, self._stage = None, Stage.LIVE
         self._draw()
-
-    def _seconds(self) -> float | None:
-        return self._took if self._began is None else round(time.monotonic() - self._began, 1)
 
     def _not_while_moving(self) -> None:
         with self._lock:
