@@ -10,8 +10,10 @@ from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.evidence import FINER
 from hydrolek_drake.diagnosis.panels import columns
 from hydrolek_drake.diagnosis.report_json import MOST_LISTED, detectable, effects_json, fit_json
-from hydrolek_drake.diagnosis.words import headline, number, off_zero_sentences, quantity, three_digits
+from hydrolek_drake.diagnosis.told_numbers import quantity, with_interval
+from hydrolek_drake.diagnosis.words import headline, off_zero_sentences
 from hydrolek_drake.identification.thinning import STEPS
+from hydrolek_drake.replay.display import three_digits
 from hydrolek_drake.replay.page import STYLE
 from hydrolek_drake.replay.panels import Panel
 from hydrolek_drake.replay.plots_html import plots_html
@@ -200,14 +202,8 @@ def _parameters(diagnosis: Diagnosis) -> str:
         unit = declaration(diagnosis.rig, path).unit
         nominal = diagnosis.rig.value(path)
         short = path.removeprefix(f"joints.{diagnosis.rig.joints[0]}.")
-        rows.append(
-            (
-                html.escape(short),
-                quantity(nominal, unit),
-                quantity(known.value, unit),
-                f"{number(known.low, unit)} to {quantity(known.high, unit)}",
-            )
-        )
+        value, low, high = with_interval(known, unit)
+        rows.append((html.escape(short), quantity(nominal, unit), value, f"{low} to {high}"))
     return _table(("parameter", "in the rig", "fitted", "95 % interval"), rows)
 
 
@@ -222,7 +218,7 @@ def _visible(diagnosis: Diagnosis) -> str:
     rows = [(html.escape(name), html.escape(size)) for name, size in detectable(diagnosis).items()]
     return (
         "<p class='other'>The smallest size at which each effect that was not named would have shown "
-        "(four standard deviations):</p>" + _table(("effect", "size"), rows)
+        "(four standard deviations):</p>" + _table(("effect", "size"), rows, (1,))
     )
 
 

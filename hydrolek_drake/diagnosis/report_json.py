@@ -8,13 +8,14 @@ import numpy as np
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.reliability import kind_of, reliability
+from hydrolek_drake.diagnosis.told_numbers import quantity
 from hydrolek_drake.diagnosis.words import (
     effect_sentence,
     headline,
     law_sentence,
     off_zero_sentences,
     path_of,
-    quantity,
+    unit_at,
 )
 from hydrolek_drake.identification.channel import Channel
 from hydrolek_drake.identification.experiment import Experiment
@@ -112,9 +113,10 @@ def detectable(diagnosis: Diagnosis) -> dict[str, str]:
     found = {}
     for visible in diagnosis.visible:
         effect = visible.candidate.effect
-        unit = next(p.unit for p in effect.parameters if p.name == effect.size)
+        size = next(p for p in effect.parameters if p.name == effect.size)
+        unit = unit_at(diagnosis.rig, visible.candidate.joint, size.unit)
         bound = "at most" if effect.weakens else "at least"
-        found[effect.id] = f"{effect.size} {bound} {quantity(visible.size, unit)}"
+        found[effect.id] = f"{size.meaning}: {bound} {quantity(visible.size, unit)}"
     return found
 
 

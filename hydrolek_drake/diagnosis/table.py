@@ -7,7 +7,8 @@ from rich.table import Table
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.report_json import effects_json, fit_json
-from hydrolek_drake.diagnosis.words import headline, off_zero_sentences, three_digits
+from hydrolek_drake.diagnosis.words import headline, off_zero_sentences
+from hydrolek_drake.replay.display import three_digits
 
 SHOWN = 5
 """So many models are shown."""

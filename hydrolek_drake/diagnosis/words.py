@@ -5,26 +5,11 @@ from collections.abc import Sequence
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
+from hydrolek_drake.diagnosis.told_numbers import with_interval
 from hydrolek_drake.physics.parameters import Parameter
-from hydrolek_drake.replay.display import shown
+from hydrolek_drake.replay.display import three_digits
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.rig import declaration
-
-
-def three_digits(value: float) -> str:
-    """A number to three digits, in full up to a million: 1260, not 1.26e+03."""
-    return f"{float(f'{value:.3g}'):g}"
-
-
-def quantity(value: float, unit: str) -> str:
-    """A value in SI with the unit that people use."""
-    main = unit.split("|")[0]
-    return f"{value:.3g}" if main == "1" else shown(value, main)
-
-
-def number(value: float, unit: str) -> str:
-    """The same without the unit."""
-    return quantity(value, unit).partition(" ")[0]
 
 
 def unit_at(rig: Rig, joint: str, unit: str) -> str:
@@ -41,10 +26,8 @@ def sizes(candidate: Candidate, diagnosis: Diagnosis) -> str:
         if known is None:
             continue
         unit = unit_at(diagnosis.rig, candidate.joint, parameter.unit)
-        told.append(
-            f"{parameter.meaning} {quantity(known.value, unit)} "
-            f"(95 %: {number(known.low, unit)} to {number(known.high, unit)})"
-        )
+        value, low, high = with_interval(known, unit)
+        told.append(f"{parameter.meaning} {value} (95 %: {low} to {high.partition(' ')[0]})")
     return ", ".join(told)
 
 
@@ -73,10 +56,10 @@ def off_zero_sentences(diagnosis: Diagnosis) -> list[str]:
         if ".effects." in path or diagnosis.rig.value(path) != 0.0 or known.low <= 0.0 <= known.high:
             continue
         declared = declaration(diagnosis.rig, path)
+        value, low, high = with_interval(known, declared.unit)
         told.append(
-            f"{path.removeprefix('joints.')} is zero in the rig and {quantity(known.value, declared.unit)} by the "
-            f"recordings (95 %: {number(known.low, declared.unit)} to {quantity(known.high, declared.unit)}): "
-            f"{declared.meaning}."
+            f"{path.removeprefix('joints.')} is zero in the rig and {value} by the recordings "
+            f"(95 %: {low} to {high}): {declared.meaning}."
         )
     return told
 
@@ -95,8 +78,9 @@ def headline(diagnosis: Diagnosis) -> str:
     names = _listed([c.effect.title for c in best.hypothesis.effects])
     stages = ", ".join(dict.fromkeys(c.effect.stage for c in best.hypothesis.effects))
     if diagnosis.verdict == "missing_physics":
+        it = "it" if len(best.hypothesis.effects) == 1 else "them"
         return (
-            f"Missing from the model: {names} ({stages}). With it the error on held-out data falls from "
+            f"Missing from the model: {names} ({stages}). With {it} the error on held-out data falls from "
             f"{before} to {after} the noise."
         )
     if diagnosis.verdict == "ambiguous":

@@ -15,6 +15,12 @@ def display_factor(unit: str) -> float:
     return si_factor(unit, display_unit(unit))
 
 
+def three_digits(value: float) -> str:
+    """A number to three digits, in full up to a million: 1260, not 1.26e+03."""
+    return f"{float(f'{value:.3g}'):g}"
+
+
 def shown(value: float, unit: str) -> str:
-    """A value given in SI, with three digits and the unit that people use."""
-    return f"{value * display_factor(unit):.3g} {display_unit(unit)}"
+    """A value given in SI, with three digits and the unit that people use; a mere number without one."""
+    number = three_digits(value * display_factor(unit))
+    return number if unit == "1" else f"{number} {display_unit(unit)}"
