@@ -22,7 +22,7 @@ from hydrolek_drake.diagnosis.effort import (
 )
 from hydrolek_drake.diagnosis.moments import begun, timed
 from hydrolek_drake.diagnosis.score import Score, gain_of_pair, scores_of
-from hydrolek_drake.diagnosis.unsticking import different, of_another_joint, unstuck
+from hydrolek_drake.diagnosis.unsticking import LED_STEP, different, of_another_joint, unstuck
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
 from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.problem import DIVERGED
@@ -98,6 +98,7 @@ def grow(
     step = bench.coarsest(beam[0], over, COARSE if far else 2.0 if over > NEAR else 1.0)
     work: dict[frozenset[str], _Start] = {}
     scored_by: dict[frozenset[str], Sequence[Score]] = {}
+    promised: dict[frozenset[str], float] = {}
     for parent in beam:
         scored = (
             of_nominal
@@ -106,32 +107,26 @@ def grow(
         )
         scored_by[parent.ids] = scored
         for score in scored:
-            if redundant(parent.effects, score.candidate) or (
-                not far and score.gain < 0.5 * gain_needed(parent.fit)
-            ):
+            if redundant(parent.effects, score.candidate):
+                continue
+            if not (far or score.candidate.effect.sudden) and score.gain < 0.5 * gain_needed(parent.fit):
                 continue
             effects = (*parent.effects, score.candidate)
-            starts = work.setdefault(key_of(effects), (effects, []))[1]
+            key = key_of(effects)
+            starts = work.setdefault(key, (effects, []))[1]
+            promised[key] = max(score.gain, promised.get(key, 0.0))
             start = {**parent.values, **score.start}
             starts.append((score.left, start))
             starts += [(math.inf, {**start, **moment}) for moment in score.moments[:LIKELY]]
             if (
                 far and not parent.effects
             ):  # the parent's values may have gone far astray to make up for what is missing
-                joints = bench.joints_of(effects)
-                kept = {k: v for k, v in parent.values.items() if of_another_joint(k, joints)}
-                starts.append((math.inf, {**kept, **score.start}))
+                starts.append((math.inf, _own(bench, effects, start)))
     if not work:
         return Grown([], {})
-    if (
-        over < NEAR
-    ):  # the parent is right but for something small: Gauss-Newton steps from it go straight there
-        items = sorted(work.values(), key=lambda item: min(left for left, _ in item[1]))[:FOLLOWED]
-        if over > AT_NOISE:
-            items += [pair for parent in beam for pair in _pairs(parent, scored_by[parent.ids])]
-        fits = bench.side_by_side(lambda i: bench.fit(i[0], min(i[1], key=_first)[1], step, POLISH), items)
-        fits.sort(key=lambda h: h.fit.objective)
-        return Grown(sorted([timed(bench, fits[0], step), *fits[1:]], key=lambda h: h.fit.objective), {})
+    if over < NEAR:
+        pairs = [pair for parent in beam for pair in _pairs(parent, scored_by[parent.ids])]
+        return Grown(_near(bench, work, promised, pairs if over > AT_NOISE else None, step), {})
     glances = bench.side_by_side(
         lambda item: _glance(bench, item[0], [start for _, start in item[1]], step), list(work.values())
     )
@@ -141,19 +136,19 @@ def grow(
     ]
     if len(undecided) > FOLLOWED:
         whole = bench.side_by_side(
-            lambda h: bench.refit(h, step, GLANCE, tolerance=1e-3, alone=True), undecided
+            lambda h: bench.refit(h, h.step, GLANCE, tolerance=1e-3, alone=True), undecided
         )
         glances = [*sorted(whole, key=lambda h: h.fit.objective), *glances[len(undecided) :]]
     behind = {h.ids: h for h in glances}
     bound = HOPELESS * glances[0].fit.objective
     followed = [h for h in glances if h.fit.objective < bound][:FOLLOWED]
-    looks = bench.side_by_side(lambda h: bench.refit(h, step, LOOK, tolerance=1e-4, alone=True), followed)
+    looks = bench.side_by_side(lambda h: bench.refit(h, h.step, LOOK, tolerance=1e-4, alone=True), followed)
     looks.sort(key=lambda h: h.fit.objective)
     alike = UNDECIDED * looks[0].fit.objective
-    looks = [timed(bench, h, step) if h.fit.objective < alike else h for h in looks]
+    looks = [timed(bench, h, h.step) if h.fit.objective < alike else h for h in looks]
     looks.sort(key=lambda h: h.fit.objective)
     if looks[0].fit.over_noise > NEARLY:
-        looks = unstuck(bench, glances, looks, step)
+        looks = unstuck(bench, glances, looks)
     behind |= {h.ids: h for h in looks}
     nearest = looks[0].fit.over_noise
     near = [h for h in looks if h.fit.over_noise < max(1.5 * nearest, AT_NOISE)][:BEAM]
@@ -161,6 +156,36 @@ def grow(
     polished = [timed(bench, h, bench.fine) if h.fit.over_noise > AT_NOISE else h for h in polished]
     polished.sort(key=lambda h: h.fit.objective)
     return Grown([*polished, *looks[len(near) :]][: max(len(polished), 3)], behind)
+
+
+def _near(
+    bench: Workbench,
+    work: dict[frozenset[str], _Start],
+    promised: dict[frozenset[str], float],
+    pairs: Sequence[_Start] | None,
+    step: float,
+) -> list[Hypothesis]:
+    """Fits beside a model that is right but for something small: Gauss-Newton steps from it go straight there.
+
+    Where they do not reach the noise, it has bent its parameters, and the same is fitted anew from the rig's own.
+
+    Args:
+        bench: data and fits.
+        work: effects, and where their fits may begin.
+        promised: gain of each.
+        pairs: the same of two effects more; None where the model is at the noise.
+        step: integration step [s].
+    """
+    by_left = sorted(work, key=lambda key: min(left for left, _ in work[key][1]))[:FOLLOWED]
+    by_gain = sorted(work, key=lambda key: -promised[key])[:FOLLOWED]  # sizes tried may all be too large
+    items = [*(work[key] for key in dict.fromkeys([*by_left, *by_gain])), *(pairs or ())]
+    fits = bench.side_by_side(lambda i: bench.fit(i[0], min(i[1], key=_first)[1], step, POLISH), items)
+    if pairs is not None and min(h.fit.over_noise for h in fits) > AT_NOISE:
+        again = {key_of(item[0]): item for item in items}
+        again |= {key: item for key, item in work.items() if item[0][-1].effect.sudden}
+        fits += bench.side_by_side(lambda i: _anew(bench, i, step), list(again.values()))
+    fits.sort(key=lambda h: h.fit.objective)
+    return sorted([timed(bench, fits[0], step), *fits[1:]], key=lambda h: h.fit.objective)
 
 
 def _pairs(parent: Hypothesis, scored: Sequence[Score]) -> list[_Start]:
@@ -195,6 +220,8 @@ def _glance(
     bench: Workbench, effects: Sequence[Candidate], starts: Sequence[dict[str, float]], step: float
 ) -> Hypothesis:
     """A few steps from each start."""
+    if effects[-1].effect.sudden:
+        return _sudden(bench, effects, starts[0], step)
     part = [experiment.until(GLANCE_S) for experiment in bench.training]
     near = begun(bench, effects, starts, step)
     moments = {free.path: near[free.path] for free in effects[-1].moments}
@@ -212,6 +239,38 @@ def _glance(
         [best, *(bench.fit(effects, start, step, GLANCE, 1e-3, part, alone=True) for start in elsewhere)],
         key=lambda h: h.fit.objective,
     )
+
+
+def _anew(bench: Workbench, item: _Start, step: float) -> Hypothesis:
+    """Effects fitted from the rig's own values of the joint, see `_own`."""
+    effects, starts = item
+    if effects[-1].effect.sudden:
+        return bench.refit(_sudden(bench, effects, starts[0][1], step), step, LOOK)
+    return bench.fit(effects, _own(bench, effects, min(starts, key=_first)[1]), step, LOOK)
+
+
+def _sudden(
+    bench: Workbench, effects: Sequence[Candidate], begin: dict[str, float], step: float
+) -> Hypothesis:
+    """First fits with a sudden effect: from where the model without it was fitted, and anew with each of its sizes.
+
+    What it does is no small change of what the model does without it, so that there is no way downhill from there.
+    """
+    part = [experiment.until(GLANCE_S) for experiment in bench.training]
+    own = _own(bench, effects, begin)
+    starts = [begin, *({**own, **start} for start in effects[-1].starts)]
+    finer = min(step, LED_STEP * bench.fine)  # a contact that opens is stiff
+    fits = [bench.fit(effects, start, finer, LOOK, 1e-3, part, alone=True) for start in starts]
+    return min(fits, key=lambda h: h.fit.objective)
+
+
+def _own(bench: Workbench, effects: Sequence[Candidate], begin: dict[str, float]) -> dict[str, float]:
+    """Where a fit begins anew: effects as given, the joint's own parameters as the rig has them.
+
+    A model that lacks an effect has bent its parameters to make up for it.
+    """
+    joints = bench.joints_of(effects)
+    return {k: v for k, v in begin.items() if ".effects." in k or of_another_joint(k, joints)}
 
 
 def diverged(hypothesis: Hypothesis) -> bool:

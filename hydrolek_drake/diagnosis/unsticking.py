@@ -36,9 +36,7 @@ LED_TO_THE_END = 2
 """At least so many of them."""
 
 
-def unstuck(
-    bench: Workbench, glances: Sequence[Hypothesis], looks: Sequence[Hypothesis], step: float
-) -> list[Hypothesis]:
+def unstuck(bench: Workbench, glances: Sequence[Hypothesis], looks: Sequence[Hypothesis]) -> list[Hypothesis]:
     """Fits that got stuck, begun again where rollouts that are pulled to the measurements fit best.
 
     The residuals of a free rollout pile up what went wrong before: a joint that sticks at the wrong moment is
@@ -52,15 +50,15 @@ def unstuck(
         joints = bench.joints_of(glance.effects)
         others = {k: v for k, v in glance.values.items() if of_another_joint(k, joints)}
         starts = [{**others, **start, **_timing(glance)} for start in ({}, *starts_of(glance.effects))]
-        return fit_pulled(bench, glance.effects, different(starts), step, part)
+        return fit_pulled(bench, glance.effects, different(starts), glance.step, part)
 
     ahead = sorted(bench.side_by_side(pulled, glances[:TRIED_PULLED]), key=lambda h: h.fit.objective)
 
     def followed(glance: Hypothesis) -> Hypothesis:
         near = bench.fit(
-            glance.effects, glance.values, step, LOOK, tolerance=1e-4, pull_time=PULL_S, alone=True
+            glance.effects, glance.values, glance.step, LOOK, tolerance=1e-4, pull_time=PULL_S, alone=True
         )
-        return bench.refit(near, step, LOOK, tolerance=1e-4, alone=True)
+        return bench.refit(near, near.step, LOOK, tolerance=1e-4, alone=True)
 
     again = bench.side_by_side(followed, ahead[:BEAM])
     best = {h.ids: h for h in sorted([*looks, *again], key=lambda h: -h.fit.objective)}

@@ -70,6 +70,8 @@ class Effect:
         searched_on: the variants on which a diagnosis looks for it, as `needs`; fewer than those it can act
             on where another effect says the same of a hydraulic joint.
         weakens: whether it fades as its size grows, like a spring that becomes stiffer.
+        sudden: whether the joint moves otherwise as soon as it is there, however small it is, as when a contact opens;
+            then a fitted model without it does not tell what it would gain.
         contains: ids of effects that are special cases of it, so that both together say nothing new.
         shifts: what it adds to a joint's own parameters: their path under the joint -> parameter and sign. Where these
             are free to take it over, the joint is only another one of its kind, and nothing is missing.
@@ -86,6 +88,7 @@ class Effect:
     search: dict[str, Search] = field(default_factory=dict)
     searched_on: dict[str, tuple[str, ...]] = field(default_factory=dict)
     weakens: bool = False
+    sudden: bool = False
     contains: tuple[str, ...] = ()
     shifts: dict[str, tuple[str, float]] = field(default_factory=dict)
     hooks: dict[str, Callable[..., Any]] = field(default_factory=dict)

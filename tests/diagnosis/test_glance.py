@@ -32,7 +32,11 @@ class _Bench:
         return _hypothesis(values, left)
 
 
-EFFECTS = (SimpleNamespace(moments=(), starts=(STIFF, SOFT)),)
+def _candidate(*starts):
+    return SimpleNamespace(moments=(), starts=starts, effect=SimpleNamespace(sudden=False))
+
+
+EFFECTS = (_candidate(STIFF, SOFT),)
 
 
 def test_where_the_most_promising_start_breaks_down_the_others_are_tried():
@@ -51,5 +55,4 @@ def test_a_start_that_is_survived_costs_no_further_fits():
 
 def test_an_effect_that_breaks_down_everywhere_is_told_as_such():
     bench = _Bench()
-    only_stiff = (SimpleNamespace(moments=(), starts=(STIFF,)),)
-    assert diverged(_glance(bench, only_stiff, [STIFF], 1e-3))
+    assert diverged(_glance(bench, (_candidate(STIFF),), [STIFF], 1e-3))
