@@ -5,7 +5,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from experiments import recorded
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.growing import _near, _sudden
@@ -18,8 +17,8 @@ FADED = 1e-3
 """Of a size, at which nothing must be left of an effect that fades with it, but for a tenth."""
 
 
-@pytest.fixture(scope="module")
-def fading(bench):
+@pytest.fixture
+def fading(bench, recorded):
     """Effect -> change of the residuals at a thousandth of where its search begins, over that where it begins."""
     experiments = recorded(bench, bench, largest_V=4.0)
     with ThreadPoolExecutor(1) as pool:
@@ -27,7 +26,15 @@ def fading(bench):
 
         def changed(candidate, factor):
             start = dict(candidate.starts[0])
-            start[candidate.size_path] *= factor
+            moments = {free.path for free in candidate.moments}
+            sizes = [
+                p.name
+                for p in candidate.effect.parameters
+                if p.neutral == 0.0 and f"{candidate.path}.{p.name}" not in moments
+            ] or [candidate.effect.size]
+            start |= {
+                f"{candidate.path}.{name}": factor * start[f"{candidate.path}.{name}"] for name in sizes
+            }
             problem = workbench.problem((candidate,), 0.5 * workbench.fine)
             return problem.residuals(problem.parameters.unit(start))
 
@@ -37,7 +44,8 @@ def fading(bench):
         for candidate in candidates_of(bench, "joint", natural_scales(bench, "joint", experiments)):
             weak = 1.0 / FADED if candidate.effect.weakens else FADED
             small, large = (np.linalg.norm(changed(candidate, f) - nominal) for f in (weak, 1.0))
-            found[candidate.id] = small / large
+            if large > 0.0:  # a cushion is not reached
+                found[candidate.id] = small / large
     return found
 
 
