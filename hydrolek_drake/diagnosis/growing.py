@@ -167,7 +167,8 @@ def _near(
 ) -> list[Hypothesis]:
     """Fits beside a model that is right but for something small: Gauss-Newton steps from it go straight there.
 
-    Where they do not reach the noise, it has bent its parameters, and the same is fitted anew from the rig's own.
+    Where they do not reach the noise, it has bent its parameters, and what promises most is fitted anew from the rig's
+    own.
 
     Args:
         bench: data and fits.
@@ -181,9 +182,8 @@ def _near(
     items = [*(work[key] for key in dict.fromkeys([*by_left, *by_gain])), *(pairs or ())]
     fits = bench.side_by_side(lambda i: bench.fit(i[0], min(i[1], key=_first)[1], step, POLISH), items)
     if pairs is not None and min(h.fit.over_noise for h in fits) > AT_NOISE:
-        again = {key_of(item[0]): item for item in items}
-        again |= {key: item for key, item in work.items() if item[0][-1].effect.sudden}
-        fits += bench.side_by_side(lambda i: _anew(bench, i, step), list(again.values()))
+        again = [key for key in work if key in by_gain or work[key][0][-1].effect.sudden]
+        fits += bench.side_by_side(lambda key: _anew(bench, work[key], step), again)
     fits.sort(key=lambda h: h.fit.objective)
     return sorted([timed(bench, fits[0], step), *fits[1:]], key=lambda h: h.fit.objective)
 
