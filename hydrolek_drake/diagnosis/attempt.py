@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from hydrolek_drake.diagnosis.balance import told, weighed, weights_by
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, Conclusion, conclude
-from hydrolek_drake.diagnosis.effort import FAR
+from hydrolek_drake.diagnosis.effort import FAR, LOOK
 from hydrolek_drake.diagnosis.evidence import Judged, even, judge
-from hydrolek_drake.diagnosis.search import Search, search
+from hydrolek_drake.diagnosis.search import NEARER, Search, search, search_on
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import Free
@@ -51,10 +51,21 @@ def attempt(
     Raises:
         KeyboardInterrupt: before the nominal model was fitted; later ones end the search.
     """
-    interrupted = False
     found = Search()
+    return _attempted(bench, found, lambda: search(bench, candidates, found, say), held_out, say)
+
+
+def _attempted(
+    bench: Workbench,
+    found: Search,
+    searching: Callable[[], None],
+    held_out: Sequence[Experiment],
+    say: Callable[[str], None],
+) -> Known:
+    """See `attempt`; the search fills what is found."""
+    interrupted = False
     try:
-        search(bench, candidates, found, say)
+        searching()
     except KeyboardInterrupt:
         if not found.hypotheses:
             raise
@@ -97,6 +108,40 @@ def balanced(
         return attempt(again, candidates, weighed(known.held_out, weights), say), told(weights)
     except KeyboardInterrupt:
         return None
+
+
+def by_their_noise(
+    known: Known, alike: Known, candidates: Sequence[Candidate], say: Callable[[str], None]
+) -> Known | None:
+    """The first search gone on with, from what the one with signals that count alike found.
+
+    A pressure that rings may have kept the first one from an effect that explains all signals to their noise. None
+    where the model does not come near it.
+
+    Args:
+        known: by the noise of each signal.
+        alike: with signals that count alike, see `balanced`.
+        candidates: every effect that may be added.
+        say: told what is being done.
+    """
+    best, bench = alike.found.best, known.bench
+    if not best.effects or alike.interrupted:
+        return None
+    try:
+        own = bench.fit(best.effects, best.values, bench.fine, LOOK)
+    except KeyboardInterrupt:
+        bench.resume()
+        return None
+    if own.fit.over_noise > min(FAR, NEARER * known.found.best.fit.over_noise):
+        return None
+    say("this comes near the noise of every signal: going on from there")
+    return _attempted(
+        bench,
+        known.found,
+        lambda: search_on(bench, candidates, known.found, own, say),
+        known.held_out,
+        say,
+    )
 
 
 def unexcited(conclusion: Conclusion) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from threadpoolctl import threadpool_limits
 
-from hydrolek_drake.diagnosis.attempt import attempt, balanced, unexcited
+from hydrolek_drake.diagnosis.attempt import attempt, balanced, by_their_noise, unexcited
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.effort import FAR
@@ -177,10 +177,15 @@ def _diagnosed(
     if conclusion.verdict == "unlisted_physics" and far and INTERRUPTED not in remarks:
         again = balanced(known, rig, nominal, candidates, say)
         if again is not None:
-            known, remark = again
+            alike, remark = again
             law = None
-            conclusion = material(known.conclusion, known.judged, known.held_out)
-            remarks = [*remarks, INTERRUPTED if known.interrupted else remark]
+            own = by_their_noise(known, alike, candidates, say)
+            if own is not None and not own.interrupted and own.conclusion.verdict != "unlisted_physics":
+                known, conclusion = own, own.conclusion
+            else:
+                known = alike
+                conclusion = material(known.conclusion, known.judged, known.held_out)
+                remarks = [*remarks, INTERRUPTED if known.interrupted else remark]
     bench, held_out, found, judged = known.bench, known.held_out, known.found, known.judged
     best = conclusion.best.hypothesis
     places = locate(bench, best, found.baseline, bench.training)

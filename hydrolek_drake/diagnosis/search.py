@@ -118,7 +118,41 @@ def search(
     say("trying what could explain the rest")
     found.scores = scores_of(bench, baseline, candidates, bench.fine)
     found.left = found.scores
-    beam = [baseline]
+    _go_on(bench, candidates, found, [baseline], say)
+
+
+def search_on(
+    bench: Workbench,
+    candidates: Sequence[Candidate],
+    found: Search,
+    elsewhere: Hypothesis,
+    say: Callable[[str], None],
+) -> None:
+    """Go on with a search that ended, from a model that was found elsewhere.
+
+    Args:
+        bench: data, rig and fits.
+        candidates: every effect that may be added.
+        found: what was tried; goes on being filled.
+        elsewhere: the model, fitted to these data.
+        say: told what is being done.
+    """
+    found.keep(elsewhere)
+    _weigh_anew(bench, found)
+    _prune(bench, found, candidates)
+    found.left = scores_of(bench, found.best, candidates, bench.fine)
+    found.rounds = 1
+    _go_on(bench, candidates, found, [found.best], say)
+
+
+def _go_on(
+    bench: Workbench,
+    candidates: Sequence[Candidate],
+    found: Search,
+    beam: list[Hypothesis],
+    say: Callable[[str], None],
+) -> None:
+    """Add effects to the models of the beam as long as that pays."""
     while beam:
         while found.rounds < MOST_GROWN and _worth_going_on(found, MATERIAL_GAIN / bench.alike):
             candidates, beam = _grown(bench, found, beam, candidates, say)
