@@ -95,6 +95,13 @@ class Judged:
         return math.sqrt(float(self.held_out @ self.held_out) / max(self.held_out_counted, 1))
 
     @property
+    def ahead(self) -> float:
+        """The same; where it is far off, what the model leaves of both data fitted together, see `SMALL`."""
+        if self.over_noise <= SMALL:
+            return self.over_noise
+        return math.sqrt(2.0 * self.half_chi_squared / max(self.held_out_counted, 1))
+
+    @property
     def support(self) -> float:
         """Log-likelihood of held-out and training data, less the cost of its effects and parameters in each."""
         effect = max(EFFECT_COST, 0.5 * FIDELITY * self.held_out_counted)
@@ -225,7 +232,7 @@ def predicts(judged: Judged, others: Sequence[Judged]) -> bool:
     What lowers the error of the training data alone stands for something else there, such as an error of the step.
     """
     return all(
-        other.over_noise > judged.over_noise
+        other.ahead > judged.ahead
         for other in others
         if _to_pay(judged.hypothesis, other.hypothesis) > -math.inf
     )

@@ -1,5 +1,7 @@
 """Verdicts and probabilities from judged hypotheses."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -75,6 +77,19 @@ def test_what_does_not_predict_better_is_not_named(effect) -> None:
     judged = [nominal, better, worse, both]
     assert [predicts(j, judged) for j in judged] == [True, True, False, False]
     assert predicts(both, [nominal, worse, both])  # of what it contains
+
+
+def test_what_strayed_far_off_ahead_predicts_by_what_it_leaves_of_both(effect) -> None:
+    """A joint stuck where a hair decides: fitted to both data the model leaves the noise, see `evidence.SMALL`."""
+    nominal = _judged((), 2.9, ahead=3.7)
+    strayed = _judged((effect["sensor.hysteresis"],), 0.9, ahead=5.5)
+    assert not predicts(strayed, [nominal, strayed])
+    fitted_to_both = replace(strayed, chi_squared=0.9**2 * COUNTED)
+    assert predicts(fitted_to_both, [nominal, fitted_to_both])
+    near = replace(_judged((effect["sensor.hysteresis"],), 0.9, ahead=1.06), chi_squared=0.9**2 * COUNTED)
+    assert not predicts(
+        near, [_judged((), 1.0, ahead=1.05), near]
+    )  # nothing strayed: what it predicts counts
 
 
 def test_what_is_named_beside_unlisted_physics_may_have_rivals(effect) -> None:
