@@ -2,7 +2,7 @@
 
 from typing import Any
 
-HEIGHT = 480
+WIDTH, HEIGHT = 640, 480
 """Of the pictures [pixels]."""
 
 
@@ -13,6 +13,13 @@ def says(page: Any, text: str, **named: Any) -> None:
     )
 
 
+def click_picture(page: Any, picture: str, u: float, v: float) -> None:
+    """Click a pixel, once a click is wanted, wherever the page has been scrolled to."""
+    box = page.wait_for_selector(f"#{picture}.wants").bounding_box()
+    at = {"x": (u + 0.5) / WIDTH * box["width"], "y": (v + 0.5) / HEIGHT * box["height"]}
+    page.click(f"#{picture}", position=at)
+
+
 def click_the_pipe(page: Any) -> None:
     """A snapshot; then the pipe, in the edges, the grasp and the cut, in the colours: each in the middle of a row."""
     page.click("#snapshot")
@@ -21,7 +28,5 @@ def click_the_pipe(page: Any) -> None:
         ("colour", 180, "cut it"),
         ("colour", 110, "confirm"),
     ):
-        page.wait_for_selector(f"#{picture}.wants")
-        box = page.locator(f"#{picture}").bounding_box()
-        page.mouse.click(box["x"] + box["width"] / 2, box["y"] + v / HEIGHT * box["height"])
+        click_picture(page, picture, WIDTH / 2, v)
         says(page, then)

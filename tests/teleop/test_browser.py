@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from four_clicks import click_the_pipe
+from four_clicks import click_picture, click_the_pipe
 
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.sequencer import Mode
@@ -48,9 +48,7 @@ def test_bad_clicks_are_told_in_the_browser_and_a_second_one_watches(browser, se
     page = browser.new_page()
     page.goto(served.address)
     page.click("#snapshot")
-    page.wait_for_selector("#colour.wants")
-    box = page.locator("#colour").bounding_box()
-    page.mouse.click(box["x"] + 500 / 640 * box["width"], box["y"] + 50 / 480 * box["height"])
+    click_picture(page, "colour", 500, 50)
     page.wait_for_selector("#note.bad:has-text('nothing within reach')")
     page.evaluate("send({do: 'click', u: -10, v: 10})")  # the page itself sends no such click
     page.wait_for_selector("#note.bad:has-text('outside the picture')")

@@ -144,9 +144,7 @@ def test_joystick_sliders_and_a_saved_trial_in_the_browser(served, page):
     page.click("#timer_start")
     start = served.states[-1].position
     up = page.locator("#hand button[aria-label='right 2 up']")
-    up.scroll_into_view_if_needed()
-    box = up.bounding_box()
-    page.mouse.move(box["x"] + 5, box["y"] + 5)
+    up.hover()
     page.mouse.down()
     _until(lambda: _moved(served, 1, start) > 3.0)
     assert page.inner_text("#by_hand") == "joystick"

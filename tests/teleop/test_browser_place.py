@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from four_clicks import says
+from four_clicks import click_picture, says
 from loose_pipe_scene import GRASP, PIPE, PLACE, RAISED, TABLE, pixel
 
 from hydrolek_drake.teleop.machine import Machine
@@ -29,11 +29,7 @@ def test_pick_and_place_in_a_browser(browser, served):
     page.goto(served.address)
 
     def click(point):
-        page.wait_for_selector("#colour.wants")
-        box, (u, v) = page.locator("#colour").bounding_box(), pixel(np.array(point))
-        page.mouse.click(
-            box["x"] + (u + 0.5) / 640 * box["width"], box["y"] + (v + 0.5) / 480 * box["height"]
-        )
+        click_picture(page, "colour", *pixel(np.array(point)))
 
     page.click("[name=task][value=place]")
     page.wait_for_function(
