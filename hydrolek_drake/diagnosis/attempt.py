@@ -8,7 +8,9 @@ from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, Conclusion, conclude
 from hydrolek_drake.diagnosis.effort import FAR, LOOK
 from hydrolek_drake.diagnosis.evidence import Judged, even, judge
+from hydrolek_drake.diagnosis.hollows import deepest, strayed
 from hydrolek_drake.diagnosis.search import NEARER, Search, search, search_on
+from hydrolek_drake.diagnosis.splitting import mixed
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import Free
@@ -142,6 +144,43 @@ def by_their_noise(
         known.held_out,
         say,
     )
+
+
+def by_both(
+    known: Known,
+    rig: Rig,
+    nominal: Sequence[Free],
+    candidates: Sequence[Candidate],
+    say: Callable[[str], None],
+) -> Known | None:
+    """The search again in parts of both data, from other fits of the models that explain the training data.
+
+    None where the best model does not fail on the held-out data, see `hollows`, and where nothing is found that does
+    better there.
+    """
+    if not strayed(known.conclusion.best):
+        return None
+    say(
+        "the model that explains the training data fails on the held-out data: looking for what explains both"
+    )
+    bench = known.bench
+    both, kept = mixed(bench.training, known.held_out)
+    again = Workbench(rig, nominal, both, bench.pool)
+    found = Search(scores=known.found.scores)
+    try:
+        elsewhere = deepest(bench, known.judged, candidates, known.held_out)
+        for fitted in again.side_by_side(
+            lambda h: again.refit(h, again.fine, LOOK), [known.found.baseline, *elsewhere]
+        ):
+            found.keep(fitted)
+    except KeyboardInterrupt:
+        bench.resume()
+        return None
+    found.weighed_at = found.baseline.fit.over_noise
+    second = _attempted(again, found, lambda: search_on(again, candidates, found, found.best, say), kept, say)
+    if second.interrupted or second.conclusion.verdict == "unlisted_physics":
+        return None
+    return second if second.conclusion.best.unaccounted < known.conclusion.best.unaccounted else None
 
 
 def unexcited(conclusion: Conclusion) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from threadpoolctl import threadpool_limits
 
-from hydrolek_drake.diagnosis.attempt import attempt, balanced, by_their_noise, unexcited
+from hydrolek_drake.diagnosis.attempt import attempt, balanced, by_both, by_their_noise, unexcited
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.effort import FAR
@@ -33,6 +33,11 @@ INTERRUPTED = "interrupted: this is what was known by then; run it again for the
 MIXED = (
     "a model that explains the training data fails on the held-out recording, which shows something that the "
     "training data do not: two thirds of that recording were fitted too, and the rest was held out"
+)
+
+BY_BOTH = (
+    "the model that explains the training data best fails on the held-out data, and another fit explains both: two "
+    "thirds of the held-out data were fitted too, and the rest was held out"
 )
 
 
@@ -160,6 +165,11 @@ def _diagnosed(
         else:
             known = second
             remarks = [MIXED]
+    elif not known.interrupted:
+        other = by_both(known, rig, nominal, candidates, say)
+        if other is not None:
+            known = other
+            remarks = [BY_BOTH]
     conclusion = known.conclusion
     law: FoundLaw | None = None
     # not every known effect has been tried

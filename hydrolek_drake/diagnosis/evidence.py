@@ -99,6 +99,11 @@ class Judged:
         """The same; where it is far off, what the model leaves of both data fitted together, see `SMALL`."""
         if self.over_noise <= SMALL:
             return self.over_noise
+        return self.unaccounted
+
+    @property
+    def unaccounted(self) -> float:
+        """Held-out root mean square over the noise that the parameters' uncertainty does not account for."""
         return math.sqrt(2.0 * self.half_chi_squared / max(self.held_out_counted, 1))
 
     @property

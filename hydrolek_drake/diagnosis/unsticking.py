@@ -100,6 +100,22 @@ def started_again(hypothesis: Hypothesis) -> list[dict[str, float]]:
     return different([{**hypothesis.values, **start, **_timing(hypothesis)} for start in starts])
 
 
+def begun_anew(
+    bench: Workbench, effects: Sequence[Candidate], values: dict[str, float]
+) -> list[dict[str, float]]:
+    """Effects where their searches begin, and the joint's own parameters as the rig has them.
+
+    Args:
+        bench: knows the rig.
+        effects: of the fits that are to begin.
+        values: full path -> value of a model; of these, what other joints are and when something happens is kept.
+    """
+    joints = bench.joints_of(effects)
+    moments = {free.path for free in moments_of(effects)}
+    kept = {k: v for k, v in values.items() if k in moments or of_another_joint(k, joints)}
+    return different([{**start, **kept} for start in starts_of(effects)])
+
+
 def _timing(hypothesis: Hypothesis) -> dict[str, float]:
     """When something happens, which rollouts that forget do not tell."""
     return {free.path: hypothesis.values[free.path] for free in moments_of(hypothesis.effects)}

@@ -1,0 +1,96 @@
+"""A model that explains the training data and fails ahead is asked for other fits, and for what the rest may be."""
+
+from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
+
+import pytest
+
+from hydrolek_drake.diagnosis.attempt import Known, by_both
+from hydrolek_drake.diagnosis.baseline import fit_baseline
+from hydrolek_drake.diagnosis.candidates import candidates_of
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED, conclude
+from hydrolek_drake.diagnosis.effort import LOOK
+from hydrolek_drake.diagnosis.evidence import judge
+from hydrolek_drake.diagnosis.hollows import MOST_STARTS, _evenly, deepest, strayed
+from hydrolek_drake.diagnosis.search import Search, scores_of
+from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.parameter_set import free_parameters
+
+COULOMB, STRIBECK = "cylinder.coulomb_friction", "cylinder.stribeck_friction"
+STICKS = {"coulomb_N": 1200.0, "stribeck_N": 2400.0, "stribeck_velocity_m_per_s": 0.005}
+SMALL_N = 60.0
+NOISY = {"largest_V": 5.0, "noise_deg": 0.25}
+STANDS_STILL = {"largest_V": 2.5}  # most of the time: within the dead-zone
+
+
+@pytest.fixture
+def known_so_far(bench, recorded):
+    """(effect, its parameters, models tried, how training data are recorded) -> what is known, candidates, nominal."""
+    pool = ThreadPoolExecutor(2)
+
+    def make(effect, parameters, tried, **how):
+        machine = bench.with_values({f"effects.{effect}.{name}": v for name, v in parameters.items()})
+        training = recorded(machine, bench, **how)
+        held_out = recorded(machine, bench, seed=7)
+        candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", training))
+        nominal = free_parameters(bench)
+        workbench = Workbench(bench, nominal, training, pool)
+        baseline, found = fit_baseline(workbench), Search()
+        found.keep(baseline)
+        found.scores = scores_of(workbench, baseline, candidates, workbench.fine)
+        for candidate in (c for c in candidates if c.id in tried):
+            for start in candidate.starts:
+                found.keep(workbench.fit((candidate,), {**baseline.values, **start}, workbench.fine, LOOK))
+        judged = judge(workbench, found, held_out)
+        known = Known(workbench, found, tuple(held_out), tuple(judged), conclude(judged), False)
+        return known, candidates, nominal
+
+    yield make
+    pool.shutdown()
+
+
+def _again(bench, known, candidates, nominal):
+    return by_both(known, bench, nominal, candidates, lambda text: None)
+
+
+def test_what_contains_the_named_effect_is_found_by_both_data(bench, known_so_far) -> None:
+    known, candidates, nominal = known_so_far(STRIBECK, STICKS, {COULOMB}, **NOISY)
+    named = known.conclusion.best
+    assert [c.id for c in named.hypothesis.effects] == [COULOMB] and strayed(named)
+
+    fits = deepest(known.bench, known.judged, candidates, known.held_out)
+    assert [c.id for c in fits[0].effects] == [STRIBECK]
+    assert {h.ids for h in fits} >= {named.hypothesis.ids}
+
+    second = _again(bench, known, candidates, nominal)
+    best = second.conclusion.best
+    assert second.conclusion.verdict == "missing_physics" and not strayed(best)
+    assert [c.id for c in best.hypothesis.effects] == [STRIBECK]
+    for name in ("coulomb_N", "stribeck_N"):  # the speed between them is known but roughly
+        found = best.hypothesis.values[f"joints.joint.effects.{STRIBECK}.{name}"]
+        assert found == pytest.approx(STICKS[name], rel=0.1)
+
+
+def test_what_only_the_held_out_data_show_is_found(bench, known_so_far) -> None:
+    known, candidates, nominal = known_so_far(COULOMB, {"coulomb_N": SMALL_N}, (), **STANDS_STILL)
+    named = known.conclusion.best
+    assert not named.hypothesis.effects and strayed(named)
+    second = _again(bench, known, candidates, nominal)
+    best = second.conclusion.best
+    assert [c.id for c in best.hypothesis.effects] == [COULOMB] and best.over_noise < EXPLAINED
+    assert best.hypothesis.values[best.hypothesis.effects[0].size_path] == pytest.approx(SMALL_N, rel=0.2)
+
+
+def test_a_model_that_predicts_is_left_as_it_is(bench, known_so_far) -> None:
+    known, candidates, nominal = known_so_far(COULOMB, {"coulomb_N": 1200.0}, {COULOMB}, **NOISY)
+    assert not strayed(known.conclusion.best)
+    assert _again(bench, known, candidates, nominal) is None
+
+
+@pytest.mark.parametrize("count", [1, 9, 10, 27])
+def test_starts_are_thinned_evenly(count: int) -> None:
+    starts = [{"at": float(place)} for place in range(count)]
+    chosen = _evenly(starts)
+    assert min(count, 5) <= len(chosen) <= MOST_STARTS
+    assert len({b["at"] - a["at"] for a, b in pairwise(chosen)}) <= 1
