@@ -7,9 +7,11 @@ from hydrolek_drake.diagnosis.balance import told, weighed, weights_by
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, Conclusion, conclude
 from hydrolek_drake.diagnosis.effort import FAR, LOOK
-from hydrolek_drake.diagnosis.evidence import Judged, even, judge
+from hydrolek_drake.diagnosis.evidence import even, judge
+from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.hollows import deepest, strayed
-from hydrolek_drake.diagnosis.search import NEARER, Search, search, search_on
+from hydrolek_drake.diagnosis.judged import Judged
+from hydrolek_drake.diagnosis.search import NEARER, search, search_on
 from hydrolek_drake.diagnosis.splitting import mixed
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hydrolek_drake.effects import EFFECTS, Effect
@@ -127,3 +128,13 @@ def _candidate(effect: Effect, rig: Rig, joint: str, scales: Scales) -> Candidat
         inside = sorted({min(max(value, lower), upper) for value in begin})
         starts.append([(path, value) for value in inside])
     return Candidate(effect, joint, tuple(free), tuple(dict(c) for c in itertools.product(*starts)), utmost)
+
+
+def redundant(effects: Sequence[Candidate], candidate: Candidate) -> bool:
+    """Whether an effect says nothing new beside others, because one of them contains it or is contained in it."""
+    return any(one_contains_the_other(c, candidate) for c in effects)
+
+
+def one_contains_the_other(first: Candidate, second: Candidate) -> bool:
+    """Whether one of two effects at the same joint contains the other."""
+    return first.is_special_case_of(second) or second.is_special_case_of(first)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from hydrolek_drake.diagnosis.evidence import Judged, probability_of
+from hydrolek_drake.diagnosis.judged import Judged, probability_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis
 
 SURE = 0.7

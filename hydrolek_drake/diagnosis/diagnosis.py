@@ -11,14 +11,15 @@ from hydrolek_drake.diagnosis.attempt import attempt, balanced, by_both, by_thei
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.effort import FAR
-from hydrolek_drake.diagnosis.evidence import FINER, Judged, judge_given_up
+from hydrolek_drake.diagnosis.evidence import FINER, judge_given_up
+from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
+from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_choice import material, with_law
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
 from hydrolek_drake.diagnosis.moments import intervals_of_moments
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
-from hydrolek_drake.diagnosis.search import Search
 from hydrolek_drake.diagnosis.splitting import mixed, prepared
 from hydrolek_drake.diagnosis.visible import Visible, visible_sizes
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench

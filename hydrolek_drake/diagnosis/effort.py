@@ -21,3 +21,9 @@ GLANCE, LOOK, POLISH = 4, 15, 8
 
 BEAM = 3
 """So many hypotheses are extended by a further effect, and only the best once it is near the noise."""
+
+MOST_EFFECTS = 3
+"""At most so many effects are searched together."""
+
+HOPELESS = 4.0
+"""First fits whose squared residuals are so many times the best one's are not followed up."""

@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.effort import LOOK
-from hydrolek_drake.diagnosis.evidence import Judged
-from hydrolek_drake.diagnosis.search import cost_of
+from hydrolek_drake.diagnosis.gains import cost_of
+from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.unsticking import begun_anew
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
 from hydrolek_drake.identification.experiment import Experiment

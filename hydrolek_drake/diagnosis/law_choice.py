@@ -6,7 +6,7 @@ from dataclasses import replace
 from hydrolek_drake.diagnosis.balance import squares_of
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, EXPLAINED_AHEAD, MATERIAL, SURE, Conclusion
 from hydrolek_drake.diagnosis.effort import AT_NOISE
-from hydrolek_drake.diagnosis.evidence import Judged
+from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.unlisted import find_law, left_in_all, without_effects
 from hydrolek_drake.diagnosis.workbench import Workbench

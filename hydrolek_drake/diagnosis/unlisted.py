@@ -14,8 +14,8 @@ from dataclasses import replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.effort import COARSE
-from hydrolek_drake.diagnosis.evidence import Judged
-from hydrolek_drake.diagnosis.growing import GAIN_NEEDED
+from hydrolek_drake.diagnosis.gains import GAIN_NEEDED
+from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
 from hydrolek_drake.diagnosis.law_search import promising

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.diagnosis.growing import gain_needed
+from hydrolek_drake.diagnosis.gains import gain_needed
 from hydrolek_drake.diagnosis.score import VISIBLE, Across, Score
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects import EFFECTS

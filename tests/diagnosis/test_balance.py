@@ -11,7 +11,7 @@ from hydrolek_drake.diagnosis.balance import squares_of, told, weighed, weights_
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.effort import FAR
-from hydrolek_drake.diagnosis.evidence import Judged
+from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_choice import material
 from hydrolek_drake.diagnosis.search import MATERIAL_GAIN
 from hydrolek_drake.diagnosis.workbench import Workbench

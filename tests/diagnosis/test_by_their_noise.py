@@ -8,7 +8,7 @@ from hydrolek_drake.diagnosis.attempt import Known, by_their_noise
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.effort import LOOK
-from hydrolek_drake.diagnosis.search import Search
+from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters

@@ -7,14 +7,8 @@ import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import conclude
-from hydrolek_drake.diagnosis.evidence import (
-    Judged,
-    dispersion,
-    pays,
-    predicts,
-    probability_of,
-    with_probabilities,
-)
+from hydrolek_drake.diagnosis.evidence import pays, predicts
+from hydrolek_drake.diagnosis.judged import Judged, dispersion, probability_of, with_probabilities
 from hydrolek_drake.diagnosis.workbench import Hypothesis
 from hydrolek_drake.identification.least_squares import Fit
 

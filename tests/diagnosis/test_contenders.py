@@ -7,8 +7,10 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.effort import FAR, POLISH
-from hydrolek_drake.diagnosis.evidence import OUT_OF_REACH, Judged, _contenders
-from hydrolek_drake.diagnosis.search import Search, _weigh_anew
+from hydrolek_drake.diagnosis.evidence import OUT_OF_REACH, _contenders
+from hydrolek_drake.diagnosis.found import Search
+from hydrolek_drake.diagnosis.judged import Judged
+from hydrolek_drake.diagnosis.search import _weigh_anew
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.natural_scales import natural_scales

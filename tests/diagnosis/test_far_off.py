@@ -5,7 +5,8 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from hydrolek_drake.diagnosis.effort import AT_NOISE, POLISH
-from hydrolek_drake.diagnosis.evidence import SMALL, _predicted
+from hydrolek_drake.diagnosis.evidence import _predicted
+from hydrolek_drake.diagnosis.judged import SMALL
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.parameter_set import free_parameters
 

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.growing import _glance, diverged
+from hydrolek_drake.diagnosis.first_fits import Trial, diverged, glance
 from hydrolek_drake.identification.problem import DIVERGED
 
 SIZE = "joints.j.effects.base.stiffness"
@@ -41,18 +41,18 @@ EFFECTS = (_candidate(STIFF, SOFT),)
 
 def test_where_the_most_promising_start_breaks_down_the_others_are_tried():
     bench = _Bench()
-    best = _glance(bench, EFFECTS, [{**STIFF, "other": 7.0}], 1e-3)
+    best = glance(bench, Trial(EFFECTS, 0.0, [{**STIFF, "other": 7.0}]), 1e-3)
     assert not diverged(best)
     assert best.values == {**SOFT, "other": 7.0}
 
 
 def test_a_start_that_is_survived_costs_no_further_fits():
     bench = _Bench()
-    best = _glance(bench, EFFECTS, [SOFT], 1e-3)
+    best = glance(bench, Trial(EFFECTS, 0.0, [SOFT]), 1e-3)
     assert bench.tried == [SOFT[SIZE]]
     assert best.values == SOFT
 
 
 def test_an_effect_that_breaks_down_everywhere_is_told_as_such():
     bench = _Bench()
-    assert diverged(_glance(bench, (_candidate(STIFF),), [STIFF], 1e-3))
+    assert diverged(glance(bench, Trial((_candidate(STIFF),), 0.0, [STIFF]), 1e-3))

@@ -8,7 +8,7 @@ import pytest
 from hydrolek_drake.diagnosis import law_choice
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, EXPLAINED_AHEAD, SURE, Conclusion
 from hydrolek_drake.diagnosis.effort import AT_NOISE
-from hydrolek_drake.diagnosis.evidence import Judged
+from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_choice import MANY, SIMPLER, with_law
 
 VALUES = 1000

@@ -7,7 +7,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.effort import POLISH
-from hydrolek_drake.diagnosis.evidence import Judged
+from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_search import _along, _gain, promising
 from hydrolek_drake.diagnosis.laws import Term, inputs_of, law_record, span_of
 from hydrolek_drake.diagnosis.unlisted import find_law

@@ -9,7 +9,7 @@ import pytest
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.effort import GLANCE
-from hydrolek_drake.diagnosis.evidence import Judged
+from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.next_experiment import propose
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import experiments_of

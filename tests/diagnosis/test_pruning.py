@@ -9,10 +9,11 @@ import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.effort import NEARLY, POLISH
-from hydrolek_drake.diagnosis.growing import gain_needed
+from hydrolek_drake.diagnosis.found import Search
+from hydrolek_drake.diagnosis.gains import gain_needed
+from hydrolek_drake.diagnosis.improving import exchanged, prune, widen
 from hydrolek_drake.diagnosis.lessening import SLIGHT, lessened, passed_on, slightly_worse, start_of_lesser
 from hydrolek_drake.diagnosis.score import scores_of
-from hydrolek_drake.diagnosis.search import Search, _exchanged, _prune, _widen
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import Free, free_parameters
@@ -36,7 +37,7 @@ def test_coulomb_friction_is_tried_where_stribeck_friction_was_found(bench, reco
         found = Search()
         found.keep(work.fit((stribeck,), stribeck.starts[0], work.fine, POLISH))
         general = found.best
-        _prune(work, found, candidates)
+        prune(work, found, candidates)
     special = found.hypotheses[frozenset({coulomb.size_path})]
     assert special.values[coulomb.size_path] == pytest.approx(COULOMB, rel=0.02)
     # two parameters more gain no more than chance
@@ -54,7 +55,7 @@ def test_stribeck_friction_is_tried_from_where_coulomb_friction_was_found(bench,
         found = Search()
         found.keep(work.fit((coulomb,), coulomb.starts[0], work.fine, POLISH))
         special = found.best
-        _widen(work, found, special, candidates)
+        widen(work, found, special, candidates)
     wider = found.hypotheses[frozenset({stribeck.size_path})]
     assert found.best.ids == wider.ids
     assert special.fit.objective - wider.fit.objective > gain_needed(special.fit)
@@ -155,7 +156,7 @@ def test_where_no_effect_may_be_added_one_that_does_little_gives_way(bench, reco
         before = found.best
         assert before.fit.over_noise > NEARLY
         found.left = scores_of(work, before, candidates, work.fine)
-        _exchanged(work, found, candidates)
+        exchanged(work, found, candidates)
     assert found.best.ids == frozenset(c.size_path for c in (coulomb, leak, droop))
     assert found.best.fit.over_noise < 1.1
     assert found.best.values[droop.size_path] == pytest.approx(6e10, rel=0.05)

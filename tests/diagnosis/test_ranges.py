@@ -6,8 +6,9 @@ from dataclasses import replace
 import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
+from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.ranges import WIDER, widened
-from hydrolek_drake.diagnosis.search import Search, search
+from hydrolek_drake.diagnosis.search import search
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters

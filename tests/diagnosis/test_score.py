@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
-from hydrolek_drake.diagnosis.growing import GAIN_NEEDED
+from hydrolek_drake.diagnosis.gains import GAIN_NEEDED
 from hydrolek_drake.diagnosis.score import VISIBLE, Score, gain_of_pair, scores_of
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales

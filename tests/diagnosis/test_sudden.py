@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
-from hydrolek_drake.diagnosis.growing import _near, _sudden
-from hydrolek_drake.diagnosis.workbench import Workbench, key_of
+from hydrolek_drake.diagnosis.first_fits import Trial, sudden
+from hydrolek_drake.diagnosis.growing import _near
+from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -95,7 +96,7 @@ class _Bench:
 
 def test_a_sudden_effect_is_searched_from_the_rig_s_own_values_with_each_size():
     play = _candidate(SIZE, 5e-4, 5e-3, sudden=True)
-    best = _sudden(_Bench(), (play,), {OWN: 2.0, SIZE: 5e-3}, 4.0)
+    best = sudden(_Bench(), (play,), {OWN: 2.0, SIZE: 5e-3}, 4.0)
     assert best.values == {SIZE: 5e-4}
 
 
@@ -103,18 +104,15 @@ def test_a_sudden_effect_is_searched_from_the_rig_s_own_values_with_each_size():
 def test_what_does_not_reach_the_noise_from_a_bent_model_is_fitted_anew(sudden, monkeypatch):
     monkeypatch.setattr("hydrolek_drake.diagnosis.growing.timed", lambda bench, hypothesis, step: hypothesis)
     effects = (_candidate(SIZE, 5e-4, sudden=sudden),)
-    work = {key_of(effects): (effects, [(9.0, {OWN: 2.0, SIZE: 5e-4})])}
-    promised = {key_of(effects): 0.0}
-    assert _near(_Bench(), work, promised, [], 1.0)[0].fit.over_noise == 1.0
-    assert (
-        _near(_Bench(), work, promised, None, 1.0)[0].fit.over_noise == 5.0
-    )  # a model at the noise is not bent
+    trials = [Trial(effects, 0.0, [{OWN: 2.0, SIZE: 5e-4}], [9.0])]
+    assert _near(_Bench(), trials, [], 1.0)[0].fit.over_noise == 1.0
+    at_noise = _near(_Bench(), trials, None, 1.0)[0]
+    assert at_noise.fit.over_noise == 5.0  # a model at the noise is not bent
 
 
 def test_effects_whose_tried_sizes_were_too_large_are_followed_by_what_they_promise(monkeypatch):
     monkeypatch.setattr("hydrolek_drake.diagnosis.growing.timed", lambda bench, hypothesis, step: hypothesis)
     each = [(_candidate(f"joints.j.effects.e{i}.size", 1e-4),) for i in range(12)]
-    work = {key_of(e): (e, [(float(i), {e[0].size_path: 1e-4})]) for i, e in enumerate(each)}
-    promised = {key_of(e): float(i) for i, e in enumerate(each)}
-    tried = {h.effects[0].size_path for h in _near(_Bench(), work, promised, None, 1.0)}
+    trials = [Trial(e, float(i), [{e[0].size_path: 1e-4}], [float(i)]) for i, e in enumerate(each)]
+    tried = {h.effects[0].size_path for h in _near(_Bench(), trials, None, 1.0)}
     assert {each[0][0].size_path, each[-1][0].size_path} <= tried and len(tried) < 12

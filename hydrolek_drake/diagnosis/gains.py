@@ -1,0 +1,25 @@
+"""What a further effect must bring before it is believed, and what a model costs."""
+
+from hydrolek_drake.diagnosis.workbench import Hypothesis
+from hydrolek_drake.identification.least_squares import Fit
+
+GAIN_NEEDED = 12.0
+"""Smallest gain (fall of the squared residuals) that is followed up: 3.5 standard deviations of one size."""
+
+FIDELITY = 0.004
+"""Fall of the squared residuals, as a share of the values, below which an effect is not told from what every
+model leaves out: 0.2 % of the noise's rms."""
+
+
+def gain_needed(fit: Fit) -> float:
+    """Fall of the squared residuals that one more effect must bring.
+
+    It is more than chance would bring, and more than what is known but roughly may leave.
+    """
+    return max(GAIN_NEEDED, FIDELITY * fit.counted, fit.unsure)
+
+
+def cost_of(hypothesis: Hypothesis) -> float:
+    """Squared residuals plus what chance alone would gain by so many parameters, chosen among many."""
+    gain = gain_needed(hypothesis.fit)
+    return hypothesis.fit.objective + gain * len(hypothesis.effects) + 2.0 * hypothesis.extra
