@@ -34,7 +34,7 @@ def plant():
     assert not plant.running()
 
 
-def _until(condition, seconds):
+def _until(condition, seconds=PATIENCE):
     limit = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < limit, f"did not happen within {seconds} s"
@@ -57,21 +57,32 @@ def _watch(port):
     return client
 
 
+def _pass(clock, seconds):
+    """Wait until so much of the plant's own time has passed, which a busy computer holds up."""
+    end = clock() + seconds
+    _until(lambda: clock() >= end)
+
+
+def _clock(client):
+    return lambda: client.signals().time
+
+
 def _stands_still(port):
-    time.sleep(DEAD_TIME)
     client = _watch(port)
+    _pass(_clock(client), DEAD_TIME)
     np.testing.assert_array_equal(client.signals().voltage, 0.0)
     before = client.stop()
-    time.sleep(0.5)
+    _pass(_clock(client), 0.5)
     np.testing.assert_allclose(client.stop(), before, atol=STILL)
     np.testing.assert_array_equal(client.signals().voltage, 0.0)
     client.close()
 
 
-def _move(send, seconds=1.0):
-    """Keep sending; returns how far the joints came."""
+def _move(client, send, seconds=1.0):
+    """Keep sending for so much of the plant's time; returns how far the joints came."""
     first = last = send()
-    for _ in range(round(seconds / 0.05)):
+    end = client.signals().time + seconds
+    while client.signals().time < end:
         time.sleep(0.05)
         last = send()
     return np.degrees(np.abs(last - first).max())
@@ -84,7 +95,7 @@ def _move(send, seconds=1.0):
 def test_a_bad_message_or_a_stop_closes_the_valves_of_a_moving_machine(plant, message):
     client = _watch(plant.port)
     away = home_posture() + np.radians(4.0) * np.sign(home_posture()[0] - client.stop()[0] + 1e-9)
-    assert _move(lambda: client.send(away)) > 1.0
+    assert _move(client, lambda: client.send(away)) > 1.0
     client._socket.sendall(message)
     time.sleep(0.1)
     client.close()
@@ -96,7 +107,7 @@ def test_a_client_that_leaves_or_falls_silent_closes_the_valves_of_a_moving_mach
     for sign, leaves in ((30.0, True), (-30.0, False)):
         deflection[[0, 8]] = sign
         client = _watch(plant.port)
-        assert _move(lambda client=client: client.rate(deflection)) > 2.0
+        assert _move(client, lambda client=client: client.rate(deflection)) > 2.0
         if leaves:
             client.close()
         else:
@@ -110,11 +121,8 @@ def test_asking_for_signals_is_no_sign_of_life(plant):
     deflection = np.zeros(14)
     deflection[0] = -20.0
     client.rate(deflection)
-    limit = time.monotonic() + teleop_entries("link")["silence"] + 0.5
-    while time.monotonic() < limit:
-        client.signals()
-        time.sleep(0.05)
-    np.testing.assert_array_equal(client.signals().voltage, 0.0)
+    _until(lambda: client.signals().voltage.any())
+    _until(lambda: not client.signals().voltage.any())
     client.close()
 
 
@@ -147,24 +155,28 @@ def test_rates_as_text():
 
 def test_the_task_with_a_stop_and_a_resume_the_release_of_a_held_pipe_and_a_plant_that_dies(plant, plan):
     client = _watch(plant.port)
-    _move(lambda: client.send(home_posture()), 2.0)  # where the plan begins
+    _move(client, lambda: client.send(home_posture()), 2.0)  # where the plan begins
     client.close()
     time.sleep(0.3)  # until the plant has noticed
     machine = Machine(home_posture(), plant=plant)
+
+    def clock():
+        return machine.state().signals.time
+
     try:
         machine.start(plan)
-        time.sleep(1.5)
+        _pass(clock, 1.5)
         with pytest.raises(InputError, match="abort it before"):
             machine.move_by_hand(deflection=np.full(14, 20.0))
         machine.order(Order.STOP)
-        time.sleep(DEAD_TIME)
+        _pass(clock, DEAD_TIME)
         state = machine.state()
         assert state.mode is Mode.STOPPED and not state.valves_open
         np.testing.assert_array_equal(state.signals.voltage, 0.0)
-        time.sleep(0.5)
+        _pass(clock, 0.5)
         np.testing.assert_allclose(machine.state().position, state.position, atol=STILL)
         machine.order(Order.RESUME)
-        _until(lambda: machine.state().mode is not Mode.RUNNING, PATIENCE)
+        _until(lambda: machine.state().mode is not Mode.RUNNING)
         state = machine.state()
         assert state.mode is Mode.DONE
         end = plan.steps[-1].trajectory
@@ -172,7 +184,7 @@ def test_the_task_with_a_stop_and_a_resume_the_release_of_a_held_pipe_and_a_plan
         assert off.max() < np.radians(teleop_entries("task")["tolerance_deg"])
         assert state.signals.grip[0] > 1e3 and np.degrees(state.position[6]) > 10.0
         machine.start(plan_release(plan, within_limits(state.position), np.random.default_rng(1)))
-        _until(lambda: machine.state().mode is not Mode.RUNNING, PATIENCE)
+        _until(lambda: machine.state().mode is not Mode.RUNNING)
         state = machine.state()
         assert state.mode is Mode.DONE
         np.testing.assert_allclose(state.position, home_posture(), atol=np.radians(1.3))  # and noise
