@@ -29,11 +29,12 @@ from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.hand import within_limits
 from hydrolek_drake.teleop.hydraulic_arms import JOINTS, HydraulicArms, joint_settings
-from hydrolek_drake.teleop.joystick_operator import Goal, JoystickOperator, stick_rates
-from hydrolek_drake.teleop.link import decode, encode
+from hydrolek_drake.teleop.joystick_operator import Goal, JoystickOperator
+from hydrolek_drake.teleop.messages import decode, encode
 from hydrolek_drake.teleop.operator_model import clicking, make_operator, operator_entries
 from hydrolek_drake.teleop.plan import STEPS, plan_task
 from hydrolek_drake.teleop.sequencer import Mode, TaskSequencer
+from hydrolek_drake.teleop.stick_rates import stick_rates
 from hydrolek_drake.vision.camera import camera_pose
 from hydrolek_drake.vision.edges import default_settings
 from hydrolek_drake.vision.selection import select_object

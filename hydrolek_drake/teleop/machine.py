@@ -2,7 +2,6 @@
 
 import threading
 import time
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from hydrolek_drake.teleop.arms_end import ArmsEnd
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.hand import JOYSTICK, SLIDERS, Hand
 from hydrolek_drake.teleop.link import SetpointClient, silence
+from hydrolek_drake.teleop.machine_state import MachineState
 from hydrolek_drake.teleop.plan import OPENING, TaskPlan
 from hydrolek_drake.teleop.plant_process import PlantProcess
 from hydrolek_drake.teleop.sequencer import Mode, Order, TaskSequencer
@@ -30,39 +30,6 @@ samples of the controllers, and twice that where the plant falls behind."""
 _SIGN_OF_LIFE = 0.5
 """A plant that is slow hears its set points again after this share of the silence by which it would count the link as
 lost."""
-
-
-@dataclass(frozen=True)
-class MachineState:
-    """What the console shows.
-
-    Attributes:
-        mode: Of the sequencer.
-        step: Name of the current step, empty where there is none.
-        step_number: Its place, from 0.
-        time_in_step: In s.
-        planned: Planned time of the step in s.
-        position: Measured joints in rad, shape (14,).
-        desired: Set points in rad, shape (14,).
-        valves_open: Whether the arms may move.
-        reason: Why the link is lost, or empty.
-        manual: `joystick` or `sliders` while the operator moves joints by hand, else empty.
-        signals: Voltages and pressures, of a machine that has them.
-        pipe: Where a loose simulated pipe is, world frame; None without one.
-    """
-
-    mode: Mode
-    step: str
-    step_number: int
-    time_in_step: float
-    planned: float
-    position: Array
-    desired: Array
-    valves_open: bool
-    reason: str
-    manual: str = ""
-    signals: Signals | None = None
-    pipe: Pipe | None = None
 
 
 class Machine:

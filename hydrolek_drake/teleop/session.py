@@ -11,7 +11,8 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.camera_thread import CameraThread
 from hydrolek_drake.teleop.clicks import Clicks, Task
 from hydrolek_drake.teleop.hand import travel, within_limits
-from hydrolek_drake.teleop.machine import Machine, MachineState
+from hydrolek_drake.teleop.machine import Machine
+from hydrolek_drake.teleop.machine_state import MachineState
 from hydrolek_drake.teleop.pictures import Pictures
 from hydrolek_drake.teleop.place_plan import plan_place_by_either
 from hydrolek_drake.teleop.plan import STEPS, TaskPlan, plan_task

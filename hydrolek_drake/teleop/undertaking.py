@@ -6,7 +6,8 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from threading import RLock
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.teleop.machine import Machine, MachineState
+from hydrolek_drake.teleop.machine import Machine
+from hydrolek_drake.teleop.machine_state import MachineState
 from hydrolek_drake.teleop.plan import TaskPlan
 from hydrolek_drake.teleop.sequencer import Mode
 from hydrolek_drake.teleop.stages import STEPS_OF

@@ -8,8 +8,9 @@ import pytest
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.hand import within_limits
-from hydrolek_drake.teleop.link import SetpointClient, encode, encode_rate
+from hydrolek_drake.teleop.link import SetpointClient
 from hydrolek_drake.teleop.machine import Machine
+from hydrolek_drake.teleop.messages import encode, encode_rate
 from hydrolek_drake.teleop.plan import plan_release
 from hydrolek_drake.teleop.plant_process import PlantProcess
 from hydrolek_drake.teleop.sequencer import Mode, Order

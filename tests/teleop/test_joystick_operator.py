@@ -7,8 +7,9 @@ import pytest
 
 from hydrolek_drake.control.catalogue import joystick_law, thesis_setting
 from hydrolek_drake.control.thesis_gains import sample_s
-from hydrolek_drake.teleop.joystick_operator import Goal, JoystickOperator, stick_rates
+from hydrolek_drake.teleop.joystick_operator import Goal, JoystickOperator
 from hydrolek_drake.teleop.operator_model import make_operator, preparation, reaction_time
+from hydrolek_drake.teleop.stick_rates import stick_rates
 
 SETTINGS = [thesis_setting(f"j{number}") for number in range(1, 5)]
 RATES = stick_rates(SETTINGS)

@@ -8,7 +8,8 @@ import pytest
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.configuration import teleop_entries
-from hydrolek_drake.teleop.link import SetpointClient, SetpointServer, decode, encode, silence
+from hydrolek_drake.teleop.link import SetpointClient, SetpointServer, silence
+from hydrolek_drake.teleop.messages import decode, encode
 from hydrolek_drake.teleop.signals import Signals, signals_from_line
 from hydrolek_drake.workcell.scene import home_posture
 
