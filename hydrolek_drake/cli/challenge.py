@@ -43,7 +43,8 @@ def challenge(
     from hydrolek_drake.challenge.scoring import markdown, score, summaries, summaries_markdown
     from hydrolek_drake.challenge.visibility import visibility_markdown
     from hydrolek_drake.cli.output import console
-    from hydrolek_drake.diagnosis.diagnosis import INTERRUPTED, diagnose
+    from hydrolek_drake.diagnosis.diagnosis import diagnose
+    from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
     from hydrolek_drake.diagnosis.report_json import as_json
     from hydrolek_drake.files import write_whole
     from hydrolek_drake.recordings import read_recording

@@ -41,8 +41,8 @@ def diagnose(
     from rich.console import Console
 
     from hydrolek_drake.cli.output import console
-    from hydrolek_drake.diagnosis.diagnosis import INTERRUPTED
     from hydrolek_drake.diagnosis.diagnosis import diagnose as run_diagnosis
+    from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
     from hydrolek_drake.diagnosis.report import write_report
     from hydrolek_drake.diagnosis.table import summary
     from hydrolek_drake.recordings import read_recording

@@ -15,8 +15,6 @@ from hydrolek_drake.diagnosis.search import NEARER, search, search_on
 from hydrolek_drake.diagnosis.splitting import mixed
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.parameter_set import Free
-from hydrolek_drake.rigs import Rig
 
 FAR_AHEAD = 2.0
 """A model that leaves this many times more on held-out data than on training data was not told by these what matters
@@ -89,16 +87,14 @@ def _attempted(
 
 
 def balanced(
-    known: Known,
-    rig: Rig,
-    nominal: Sequence[Free],
-    candidates: Sequence[Candidate],
-    say: Callable[[str], None],
+    known: Known, candidates: Sequence[Candidate], say: Callable[[str], None]
 ) -> tuple[Known, str] | None:
     """The search again with signals that count alike, and a remark.
 
-    None where the best model is near the noise or follows them alike, and after an interrupt before the nominal model
-    was fitted.
+    None where the best model is near the noise or follows them alike.
+
+    Raises:
+        KeyboardInterrupt: before the nominal model was fitted.
     """
     best, bench = known.found.best, known.bench
     if best.fit.over_noise < FAR:
@@ -107,11 +103,8 @@ def balanced(
     if not weights:
         return None
     say("no model comes near the noise: searching again with signals that count alike")
-    again = Workbench(rig, nominal, weighed(bench.training, weights), bench.pool)
-    try:
-        return attempt(again, candidates, weighed(known.held_out, weights), say), told(weights)
-    except KeyboardInterrupt:
-        return None
+    again = bench.with_training(weighed(bench.training, weights))
+    return attempt(again, candidates, weighed(known.held_out, weights), say), told(weights)
 
 
 def by_their_noise(
@@ -148,44 +141,63 @@ def by_their_noise(
     )
 
 
-def by_both(
-    known: Known,
-    rig: Rig,
-    nominal: Sequence[Free],
-    candidates: Sequence[Candidate],
-    say: Callable[[str], None],
-) -> Known | None:
+def by_more_data(known: Known, candidates: Sequence[Candidate], say: Callable[[str], None]) -> Known | None:
+    """The search again in parts of both data. None where the held-out data do not show more than the training data.
+
+    Raises:
+        KeyboardInterrupt: it was interrupted.
+    """
+    if not _unexcited(known.conclusion):
+        return None
+    say("the held-out recording shows more than the training data: fitting parts of both")
+    both, kept = mixed(known.bench.training, known.held_out)
+    return _whole(attempt(known.bench.with_training(both), candidates, kept, say))
+
+
+def by_both(known: Known, candidates: Sequence[Candidate], say: Callable[[str], None]) -> Known | None:
     """The search again in parts of both data, from other fits of the models that explain the training data.
 
     None where the best model does not fail on the held-out data, see `hollows`, and where nothing is found that does
     better there.
+
+    Raises:
+        KeyboardInterrupt: it was interrupted.
     """
-    if not strayed(known.conclusion.best):
+    best = known.conclusion.best
+    if not strayed(best):
         return None
     say(
         "the model that explains the training data fails on the held-out data: looking for what explains both"
     )
-    bench = known.bench
-    both, kept = mixed(bench.training, known.held_out)
-    again = Workbench(rig, nominal, both, bench.pool)
+    both, kept = mixed(known.bench.training, known.held_out)
+    again = known.bench.with_training(both)
     found = Search(scores=known.found.scores)
-    try:
-        elsewhere = deepest(bench, known.judged, candidates, known.held_out)
-        for fitted in again.side_by_side(
-            lambda h: again.refit(h, again.fine, LOOK), [known.found.baseline, *elsewhere]
-        ):
-            found.keep(fitted)
-    except KeyboardInterrupt:
-        bench.resume()
-        return None
+    elsewhere = deepest(known.bench, known.judged, candidates, known.held_out)
+    for fitted in again.side_by_side(
+        lambda h: again.refit(h, again.fine, LOOK), [known.found.baseline, *elsewhere]
+    ):
+        found.keep(fitted)
     found.weighed_at = found.baseline.fit.over_noise
-    second = _attempted(again, found, lambda: search_on(again, candidates, found, found.best, say), kept, say)
-    if second.interrupted or second.conclusion.verdict == "unlisted_physics":
+    second = _whole(
+        _attempted(again, found, lambda: search_on(again, candidates, found, found.best, say), kept, say)
+    )
+    if second.conclusion.verdict == "unlisted_physics":
         return None
-    return second if second.conclusion.best.unaccounted < known.conclusion.best.unaccounted else None
+    return second if second.conclusion.best.unaccounted < best.unaccounted else None
 
 
-def unexcited(conclusion: Conclusion) -> bool:
+def _whole(known: Known) -> Known:
+    """The same, if it was not interrupted.
+
+    Raises:
+        KeyboardInterrupt: it was.
+    """
+    if known.interrupted:
+        raise KeyboardInterrupt
+    return known
+
+
+def _unexcited(conclusion: Conclusion) -> bool:
     """Whether the held-out data show what the training data do not.
 
     A model explains the training data or, where no model reaches the noise, does far better on them.

@@ -7,20 +7,18 @@ from dataclasses import dataclass, replace
 
 from threadpoolctl import threadpool_limits
 
-from hydrolek_drake.diagnosis.attempt import attempt, balanced, by_both, by_their_noise, unexcited
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import Conclusion
-from hydrolek_drake.diagnosis.effort import FAR
 from hydrolek_drake.diagnosis.evidence import FINER, judge_given_up
 from hydrolek_drake.diagnosis.found import Search
+from hydrolek_drake.diagnosis.inquiry import INTERRUPTED, Inquiry
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
 from hydrolek_drake.diagnosis.judged import Judged
-from hydrolek_drake.diagnosis.law_choice import material, with_law
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
 from hydrolek_drake.diagnosis.moments import intervals_of_moments
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
-from hydrolek_drake.diagnosis.splitting import mixed, prepared
+from hydrolek_drake.diagnosis.splitting import prepared
 from hydrolek_drake.diagnosis.visible import Visible, visible_sizes
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -28,18 +26,6 @@ from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import Free, free_parameters
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
-
-INTERRUPTED = "interrupted: this is what was known by then; run it again for the whole answer"
-
-MIXED = (
-    "a model that explains the training data fails on the held-out recording, which shows something that the "
-    "training data do not: two thirds of that recording were fitted too, and the rest was held out"
-)
-
-BY_BOTH = (
-    "the model that explains the training data best fails on the held-out data, and another fit explains both: two "
-    "thirds of the held-out data were fitted too, and the rest was held out"
-)
 
 
 @dataclass(frozen=True)
@@ -152,51 +138,14 @@ def _diagnosed(
     candidates = list(
         {c.size_path: c for joint in joints for c in candidates_of(rig, joint, scales[joint])}.values()
     )
-    known = attempt(bench, candidates, held_out, say)
-    remarks = [INTERRUPTED] if known.interrupted else []
-    ahead = (
-        bool(holdout) or between is not None
-    )  # the held-out data are of another kind, not blocks among the rest
-    if ahead and not known.interrupted and unexcited(known.conclusion):
-        say("the held-out recording shows more than the training data: fitting parts of both")
-        both, kept = mixed(bench.training, known.held_out)
-        second = attempt(Workbench(rig, nominal, both, pool), candidates, kept, say)
-        if second.interrupted:
-            remarks = [INTERRUPTED]
-        else:
-            known = second
-            remarks = [MIXED]
-    elif not known.interrupted:
-        other = by_both(known, rig, nominal, candidates, say)
-        if other is not None:
-            known = other
-            remarks = [BY_BOTH]
-    conclusion = known.conclusion
-    law: FoundLaw | None = None
-    # not every known effect has been tried
-    if known.interrupted and conclusion.verdict == "unlisted_physics":
-        conclusion = replace(conclusion, verdict="ambiguous")
-    if len(joints) == 1 and not known.interrupted:
-        try:
-            conclusion, law = with_law(
-                known.bench, conclusion, known.judged, known.held_out, scales[joints[0]], say
-            )
-        except KeyboardInterrupt:
-            known.bench.resume()
-            remarks = [INTERRUPTED]
-    far = law is None or law.held_out_over_noise > FAR
-    if conclusion.verdict == "unlisted_physics" and far and INTERRUPTED not in remarks:
-        again = balanced(known, rig, nominal, candidates, say)
-        if again is not None:
-            alike, remark = again
-            law = None
-            own = by_their_noise(known, alike, candidates, say)
-            if own is not None and not own.interrupted and own.conclusion.verdict != "unlisted_physics":
-                known, conclusion = own, own.conclusion
-            else:
-                known = alike
-                conclusion = material(known.conclusion, known.judged, known.held_out)
-                remarks = [*remarks, INTERRUPTED if known.interrupted else remark]
+    inquiry = Inquiry(
+        candidates,
+        scales[joints[0]] if len(joints) == 1 else None,
+        apart=bool(holdout) or between is not None,
+        say=say,
+    )
+    answer = inquiry.answer(bench, held_out)
+    known, conclusion, law, remarks = answer.known, answer.conclusion, answer.law, answer.remarks
     bench, held_out, found, judged = known.bench, known.held_out, known.found, known.judged
     best = conclusion.best.hypothesis
     places = locate(bench, best, found.baseline, bench.training)
@@ -209,11 +158,11 @@ def _diagnosed(
         visible = visible_sizes(bench, best, found.left)
     except KeyboardInterrupt:  # the verdict stands without them
         bench.resume()
-        remarks = [*remarks, INTERRUPTED]
+        remarks = (*remarks, INTERRUPTED)
     return Diagnosis(
         rig=rig,
         verdict=conclusion.verdict,
-        reasons=tuple(remarks),
+        reasons=remarks,
         conclusion=conclusion,
         search=found,
         judged=judged,

@@ -101,6 +101,10 @@ class Workbench:
         self.evaluations = 0
         self._sets: dict[frozenset[Free], ParameterSet] = {}
 
+    def with_training(self, training: Sequence[Experiment]) -> "Workbench":
+        """Another one for other recordings of the same machine."""
+        return Workbench(self.rig, self.nominal, training, self.pool)
+
     def interrupted(self) -> bool:
         """Whether the user has interrupted."""
         return self._stopped.is_set()

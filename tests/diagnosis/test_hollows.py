@@ -27,7 +27,7 @@ STANDS_STILL = {"largest_V": 2.5}  # most of the time: within the dead-zone
 
 @pytest.fixture
 def known_so_far(bench, recorded):
-    """(effect, its parameters, models tried, how training data are recorded) -> what is known, candidates, nominal."""
+    """(effect, its parameters, models tried, how training data are recorded) -> what is known, and candidates."""
     pool = ThreadPoolExecutor(2)
 
     def make(effect, parameters, tried, **how):
@@ -35,8 +35,7 @@ def known_so_far(bench, recorded):
         training = recorded(machine, bench, **how)
         held_out = recorded(machine, bench, seed=7)
         candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", training))
-        nominal = free_parameters(bench)
-        workbench = Workbench(bench, nominal, training, pool)
+        workbench = Workbench(bench, free_parameters(bench), training, pool)
         baseline, found = fit_baseline(workbench), Search()
         found.keep(baseline)
         found.scores = scores_of(workbench, baseline, candidates, workbench.fine)
@@ -45,18 +44,18 @@ def known_so_far(bench, recorded):
                 found.keep(workbench.fit((candidate,), {**baseline.values, **start}, workbench.fine, LOOK))
         judged = judge(workbench, found, held_out)
         known = Known(workbench, found, tuple(held_out), tuple(judged), conclude(judged), False)
-        return known, candidates, nominal
+        return known, candidates
 
     yield make
     pool.shutdown()
 
 
-def _again(bench, known, candidates, nominal):
-    return by_both(known, bench, nominal, candidates, lambda text: None)
+def _again(known, candidates):
+    return by_both(known, candidates, lambda text: None)
 
 
-def test_what_contains_the_named_effect_is_found_by_both_data(bench, known_so_far) -> None:
-    known, candidates, nominal = known_so_far(STRIBECK, STICKS, {COULOMB}, **NOISY)
+def test_what_contains_the_named_effect_is_found_by_both_data(known_so_far) -> None:
+    known, candidates = known_so_far(STRIBECK, STICKS, {COULOMB}, **NOISY)
     named = known.conclusion.best
     assert [c.id for c in named.hypothesis.effects] == [COULOMB] and strayed(named)
 
@@ -64,7 +63,7 @@ def test_what_contains_the_named_effect_is_found_by_both_data(bench, known_so_fa
     assert [c.id for c in fits[0].effects] == [STRIBECK]
     assert {h.ids for h in fits} >= {named.hypothesis.ids}
 
-    second = _again(bench, known, candidates, nominal)
+    second = _again(known, candidates)
     best = second.conclusion.best
     assert second.conclusion.verdict == "missing_physics" and not strayed(best)
     assert [c.id for c in best.hypothesis.effects] == [STRIBECK]
@@ -73,20 +72,20 @@ def test_what_contains_the_named_effect_is_found_by_both_data(bench, known_so_fa
         assert found == pytest.approx(STICKS[name], rel=0.1)
 
 
-def test_what_only_the_held_out_data_show_is_found(bench, known_so_far) -> None:
-    known, candidates, nominal = known_so_far(COULOMB, {"coulomb_N": SMALL_N}, (), **STANDS_STILL)
+def test_what_only_the_held_out_data_show_is_found(known_so_far) -> None:
+    known, candidates = known_so_far(COULOMB, {"coulomb_N": SMALL_N}, (), **STANDS_STILL)
     named = known.conclusion.best
     assert not named.hypothesis.effects and strayed(named)
-    second = _again(bench, known, candidates, nominal)
+    second = _again(known, candidates)
     best = second.conclusion.best
     assert [c.id for c in best.hypothesis.effects] == [COULOMB] and best.over_noise < EXPLAINED
     assert best.hypothesis.values[best.hypothesis.effects[0].size_path] == pytest.approx(SMALL_N, rel=0.2)
 
 
-def test_a_model_that_predicts_is_left_as_it_is(bench, known_so_far) -> None:
-    known, candidates, nominal = known_so_far(COULOMB, {"coulomb_N": 1200.0}, {COULOMB}, **NOISY)
+def test_a_model_that_predicts_is_left_as_it_is(known_so_far) -> None:
+    known, candidates = known_so_far(COULOMB, {"coulomb_N": 1200.0}, {COULOMB}, **NOISY)
     assert not strayed(known.conclusion.best)
-    assert _again(bench, known, candidates, nominal) is None
+    assert _again(known, candidates) is None
 
 
 @pytest.mark.parametrize("count", [1, 9, 10, 27])

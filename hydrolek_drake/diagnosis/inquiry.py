@@ -1,0 +1,129 @@
+"""What is asked one after the other until the data are explained: known effects, more data, a law, other weights."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from hydrolek_drake.diagnosis.attempt import (
+    Known,
+    attempt,
+    balanced,
+    by_both,
+    by_more_data,
+    by_their_noise,
+)
+from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.diagnosis.conclusion import Conclusion
+from hydrolek_drake.diagnosis.effort import FAR
+from hydrolek_drake.diagnosis.law_choice import material, with_law
+from hydrolek_drake.diagnosis.law_problem import FoundLaw
+from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.natural_scales import Scales
+
+INTERRUPTED = "interrupted: this is what was known by then; run it again for the whole answer"
+
+MIXED = (
+    "a model that explains the training data fails on the held-out recording, which shows something that the "
+    "training data do not: two thirds of that recording were fitted too, and the rest was held out"
+)
+
+BY_BOTH = (
+    "the model that explains the training data best fails on the held-out data, and another fit explains both: two "
+    "thirds of the held-out data were fitted too, and the rest was held out"
+)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What is known so far.
+
+    Attributes:
+        known: the search that counts, and its judgement.
+        conclusion: what the data say.
+        law: for physics in no list, the law found for it, if one was.
+        remarks: how it came about, for the report.
+    """
+
+    known: Known
+    conclusion: Conclusion
+    law: FoundLaw | None = None
+    remarks: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Inquiry:
+    """What is asked of one set of recordings.
+
+    Attributes:
+        candidates: every effect that may be missing.
+        scales: natural scales of the joint, for laws; None where several joints were driven.
+        apart: whether the held-out data are of another kind, not blocks among the rest.
+        say: told what is being done.
+    """
+
+    candidates: Sequence[Candidate]
+    scales: Scales | None
+    apart: bool
+    say: Callable[[str], None]
+
+    def answer(self, bench: Workbench, held_out: Sequence[Experiment]) -> Answer:
+        """Ask one after the other; an interrupt ends it with what is known by then.
+
+        Args:
+            bench: data and fits.
+            held_out: data that nothing is fitted to.
+
+        Raises:
+            KeyboardInterrupt: before the nominal model was fitted.
+        """
+        known = attempt(bench, self.candidates, held_out, self.say)
+        if known.interrupted:
+            conclusion = known.conclusion
+            if conclusion.verdict == "unlisted_physics":  # not every known effect has been tried
+                conclusion = replace(conclusion, verdict="ambiguous")
+            return Answer(known, conclusion, None, (INTERRUPTED,))
+        answer = Answer(known, known.conclusion)
+        for question in (self._by_more_data, self._by_a_law, self._by_other_weights):
+            try:
+                answer = question(answer)
+            except KeyboardInterrupt:
+                answer.known.bench.resume()
+                return replace(answer, remarks=(*answer.remarks, INTERRUPTED))
+        return answer
+
+    def _by_more_data(self, answer: Answer) -> Answer:
+        """What only the held-out data show, or decide."""
+        known = answer.known
+        second = by_more_data(known, self.candidates, self.say) if self.apart else None
+        if second is not None:
+            return Answer(second, second.conclusion, None, (MIXED,))
+        other = by_both(known, self.candidates, self.say)
+        return answer if other is None else Answer(other, other.conclusion, None, (BY_BOTH,))
+
+    def _by_a_law(self, answer: Answer) -> Answer:
+        """A law for what is in no list."""
+        if self.scales is None:
+            return answer
+        known = answer.known
+        conclusion, law = with_law(
+            known.bench, answer.conclusion, known.judged, known.held_out, self.scales, self.say
+        )
+        return replace(answer, conclusion=conclusion, law=law)
+
+    def _by_other_weights(self, answer: Answer) -> Answer:
+        """Signals that count alike, where nothing comes near the noise."""
+        known = answer.known
+        far = answer.law is None or answer.law.held_out_over_noise > FAR
+        if answer.conclusion.verdict != "unlisted_physics" or not far:
+            return answer
+        again = balanced(known, self.candidates, self.say)
+        if again is None:
+            return answer
+        alike, remark = again
+        own = by_their_noise(known, alike, self.candidates, self.say)
+        if own is not None and not own.interrupted and own.conclusion.verdict != "unlisted_physics":
+            return Answer(own, own.conclusion, None, answer.remarks)
+        conclusion = material(alike.conclusion, alike.judged, alike.held_out)
+        return Answer(
+            alike, conclusion, None, (*answer.remarks, INTERRUPTED if alike.interrupted else remark)
+        )

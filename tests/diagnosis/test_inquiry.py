@@ -1,0 +1,88 @@
+"""What is asked one after the other, and what an interrupt leaves."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+from hydrolek_drake.diagnosis import inquiry
+from hydrolek_drake.diagnosis.inquiry import BY_BOTH, INTERRUPTED, MIXED, Inquiry
+
+
+class _Bench:
+    resumed = False
+
+    def resume(self):
+        self.resumed = True
+
+
+def _known(verdict, interrupted=False):
+    conclusion = inquiry.Conclusion(verdict, None, {}, ())
+    return inquiry.Known(_Bench(), None, (), (), conclusion, interrupted)
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """(answers of the questions, of which one may be an interrupt, whether held-out data are apart) -> answer."""
+
+    def ask(apart=True, **answers):
+        def answering(name):
+            def answer(*_):
+                if answers.get(name) is KeyboardInterrupt:
+                    raise KeyboardInterrupt
+                return answers.get(name)
+
+            return answer
+
+        for name in ("attempt", "by_more_data", "by_both", "balanced", "by_their_noise"):
+            monkeypatch.setattr(inquiry, name, answering(name))
+        monkeypatch.setattr(
+            inquiry, "with_law", lambda bench, conclusion, *_: answering("with_law")() or (conclusion, None)
+        )
+        monkeypatch.setattr(inquiry, "material", lambda conclusion, *_: replace(conclusion, groups=(("m",),)))
+        return Inquiry((), SimpleNamespace(), apart, lambda text: None).answer(_Bench(), ())
+
+    return ask
+
+
+def test_what_explains_the_data_ends_it(asked):
+    known = _known("missing_physics")
+    answer = asked(attempt=known)
+    assert answer.known is known and answer.remarks == () and answer.law is None
+
+
+def test_an_interrupted_search_does_not_tell_physics_in_no_list(asked):
+    answer = asked(attempt=_known("unlisted_physics", interrupted=True), by_both=KeyboardInterrupt)
+    assert answer.conclusion.verdict == "ambiguous" and answer.remarks == (INTERRUPTED,)
+
+
+def test_parts_of_the_held_out_data_are_fitted_only_where_these_are_a_recording_of_their_own(asked):
+    first, second = _known("unlisted_physics"), _known("missing_physics")
+    assert asked(attempt=first, by_more_data=second).remarks == (MIXED,)
+    assert asked(attempt=first, by_more_data=second, apart=False).known is first
+    assert asked(attempt=first, by_both=second, apart=False).remarks == (BY_BOTH,)
+
+
+@pytest.mark.parametrize("question", ["by_more_data", "by_both", "with_law", "balanced"])
+def test_an_interrupt_keeps_what_is_known_and_asks_nothing_more(asked, question):
+    first = _known("unlisted_physics")
+    answer = asked(attempt=first, **{question: KeyboardInterrupt})
+    assert answer.known is first and answer.remarks == (INTERRUPTED,)
+    assert first.bench.resumed
+
+
+def test_other_weights_count_unless_what_they_lead_to_explains_every_signal(asked):
+    first, alike, own = _known("unlisted_physics"), _known("unlisted_physics"), _known("missing_physics")
+    answer = asked(attempt=first, balanced=(alike, "weighed"))
+    assert answer.known is alike and answer.conclusion.groups == (("m",),) and answer.remarks == ("weighed",)
+    answer = asked(attempt=first, balanced=(alike, "weighed"), by_their_noise=own)
+    assert answer.known is own and answer.conclusion is own.conclusion and answer.remarks == ()
+    answer = asked(attempt=first, balanced=(_known("none", interrupted=True), "weighed"))
+    assert answer.remarks == (INTERRUPTED,)
+
+
+def test_a_law_that_comes_near_the_noise_needs_no_other_weights(asked):
+    first = _known("unlisted_physics")
+    law = SimpleNamespace(held_out_over_noise=1.1)
+    answer = asked(attempt=first, with_law=(first.conclusion, law), balanced=KeyboardInterrupt)
+    assert answer.law is law and answer.remarks == ()
