@@ -18,7 +18,7 @@ EFFECT = Effect(
     size="damping_N_s_per_m",
     search={
         "damping_N_s_per_m": Search("damping", 4, (0.1, 0.5)),
-        "length_m": Search("stroke", 0.5, (0.1, 0.3), lowest=0.01),
+        "length_m": Search("stroke", 0.5, (0.1, 0.3), lowest=0.01, beyond="nearest"),
     },
     source="cushioning spears of differential cylinders (Merritt 1967, ch. 6)",
     confused_with={

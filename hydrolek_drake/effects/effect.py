@@ -43,6 +43,8 @@ class Search:
         lowest: lower end of the range.
         log: whether the range is searched on a logarithmic scale.
         moment: whether it is when something happens, which is not found by going downhill.
+        beyond: attribute of `scales.Scales` from which the upper end and the starts are counted: what is nearer never
+            acted in the recording. Nothing if not given.
     """
 
     of: str
@@ -51,6 +53,7 @@ class Search:
     lowest: float = 0.0
     log: bool = False
     moment: bool = False
+    beyond: str = ""
 
 
 @dataclass(frozen=True)

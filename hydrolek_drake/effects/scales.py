@@ -30,6 +30,7 @@ class Scales:
         air_fraction: at which air doubles the oil's compressibility at a quarter of the supply pressure.
         travel: of the joint in the recording [rad or m].
         stroke: the same at the actuator [m or rad].
+        nearest: to its retracted end that the actuator came in the recording [m or rad].
         travel_time: for this travel at full speed [s].
         duration: of the recording [s].
         inertia: of the load [kg m^2 or kg].
@@ -49,6 +50,7 @@ class Scales:
     air_fraction: float
     travel: float
     stroke: float
+    nearest: float
     travel_time: float
     duration: float
     inertia: float
@@ -79,7 +81,9 @@ class Scales:
     def range_of(self, search: Search) -> tuple[float, float, tuple[float, ...]]:
         """Lower and upper end and the starts of a search (SI)."""
         scale = float(getattr(self, search.of))
-        return search.lowest * scale, search.largest * scale, tuple(s * scale for s in search.starts)
+        first = float(getattr(self, search.beyond)) if search.beyond else 0.0
+        starts = tuple(first + s * scale for s in search.starts)
+        return search.lowest * scale, first + search.largest * scale, starts
 
 
 def motor_scales(force: float, speed: float, inertia: float, travel: float, duration: float) -> Scales:
@@ -97,6 +101,7 @@ def motor_scales(force: float, speed: float, inertia: float, travel: float, dura
         air_fraction=nothing,
         travel=travel,
         stroke=travel,
+        nearest=nothing,
         travel_time=travel / speed,
         duration=duration,
         inertia=inertia,
@@ -105,7 +110,9 @@ def motor_scales(force: float, speed: float, inertia: float, travel: float, dura
     )
 
 
-def hydraulic_scales(joint: Any, full_flow: float, lever: float, travel: float, duration: float) -> Scales:
+def hydraulic_scales(
+    joint: Any, full_flow: float, lever: float, travel: float, duration: float, nearest: float
+) -> Scales:
     """Scales of a hydraulic joint.
 
     Args:
@@ -114,6 +121,7 @@ def hydraulic_scales(joint: Any, full_flow: float, lever: float, travel: float, 
         lever: rod travel over joint travel in the middle of what was recorded [m/rad or 1].
         travel: of the joint in the recording [rad or m].
         duration: of the recording [s].
+        nearest: to its retracted end that the actuator came [m or rad].
     """
     pressure = float(joint["supply"]["pressure"] - joint["supply"]["tank_pressure"])
     area = float(joint["cylinder"]["area_a"])
@@ -138,6 +146,7 @@ def hydraulic_scales(joint: Any, full_flow: float, lever: float, travel: float, 
         / (float(joint["fluid"]["bulk_modulus"]) * float(joint["fluid"]["atmospheric_pressure"])),
         travel=travel,
         stroke=travel * lever,
+        nearest=max(nearest, 0.0),
         travel_time=travel * lever / speed,
         duration=duration,
         inertia=float(joint["load"]["inertia"]),

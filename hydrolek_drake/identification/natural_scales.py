@@ -13,6 +13,9 @@ from hydrolek_drake.rollout.one_point import inlet_conductance, stroke_and_lever
 HALF = 0.5
 """Half of the supply pressure falls over the inlet edge of a valve that moves its largest load."""
 
+PLACES = 33
+"""At so many places of what was recorded the actuator's stroke is looked at."""
+
 
 def natural_scales(rig: Rig, joint: str, experiments: Sequence[Experiment]) -> Scales:
     """Scales of one joint; see `effects.scales.Scales`.
@@ -36,7 +39,9 @@ def natural_scales(rig: Rig, joint: str, experiments: Sequence[Experiment]) -> S
     pressure = float(record["supply"]["pressure"])
     inlet = inlet_conductance(pressure, HALF * pressure, HALF * pressure, record)
     _, lever = stroke_and_lever(0.5 * (low + high), record)
-    return hydraulic_scales(record, inlet * HALF * pressure, abs(lever), travel, duration)
+    # a linkage may turn round within what was recorded
+    nearest = min(stroke_and_lever(at, record)[0] for at in np.linspace(low, high, PLACES).tolist())
+    return hydraulic_scales(record, inlet * HALF * pressure, abs(lever), travel, duration, nearest)
 
 
 def _fastest(experiment: Experiment) -> float:

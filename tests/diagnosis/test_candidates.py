@@ -10,6 +10,7 @@ from hydrolek_drake.effects.scales import SLOWED, Scales, hydraulic_scales
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.rollout.one_point import stroke_and_lever
 
 ON_THE_BENCH = {
     "command.delay", "amplifier.gain_fade", "valve.asymmetric_overlap", "valve.spool_stiction", "valve.null_leakage",
@@ -59,7 +60,7 @@ def test_a_payload_is_searched_up_to_what_an_arm_could_carry(joint) -> None:
     rig = load_rig(f"hydrolek_{joint}")
     record = rig.records()[0]
     load = record["load"]
-    scales = hydraulic_scales(record, full_flow=5e-5, lever=0.12, travel=1.0, duration=30.0)
+    scales = hydraulic_scales(record, full_flow=5e-5, lever=0.12, travel=1.0, duration=30.0, nearest=0.0)
     weight = abs(load["payload_gravity_cos"]) + abs(load["payload_gravity_sin"])
     assert scales.payload * load["payload_inertia"] <= SLOWED**2 * load["inertia"] * (1.0 + 1e-12)
     assert scales.payload * weight <= scales.load_force * (1.0 + 1e-12)
@@ -72,7 +73,7 @@ def test_every_effect_says_how_far_it_is_searched() -> None:
     for effect in EFFECTS.values():
         assert set(effect.search) == {p.name for p in effect.parameters}, effect.id
         for search in effect.search.values():
-            assert search.of in fields
+            assert search.of in fields and search.beyond in {"", *fields}
             assert all(search.lowest <= start <= search.largest for start in search.starts)
 
 
@@ -83,3 +84,18 @@ def test_scales_follow_closed_forms(bench, recorded) -> None:
     assert scales.conductance * 15.8e6 == pytest.approx(flow, rel=1e-3)
     assert scales.force == pytest.approx(800e-6 * 15.8e6, rel=1e-9)
     assert scales.resistance * scales.conductance == pytest.approx(1.0)
+
+
+def test_a_cushion_is_searched_from_where_the_joint_came_nearest_to_its_end(bench, recorded) -> None:
+    experiments = recorded(bench, bench, largest_V=4.0)
+    scales = natural_scales(bench, "joint", experiments)
+    records = bench.records()
+    readings = experiments[0].simulate(records, 1e-3).signals.reading
+    nearest = min(stroke_and_lever(angle, records[0])[0] for angle in readings.tolist())
+    assert scales.nearest == pytest.approx(nearest, abs=5e-4)  # noise of 0.05 deg
+    assert scales.nearest > 0.3 * scales.stroke  # lengths counted from the end would not be reached
+    cushion = next(c for c in candidates_of(bench, "joint", scales) if c.id == "cylinder.end_cushion")
+    lengths = [start[f"{cushion.path}.length_m"] for start in cushion.starts]
+    assert scales.nearest < min(lengths) and max(lengths) < scales.nearest + 0.5 * scales.stroke
+    lower, upper = next((f.lower, f.upper) for f in cushion.free if f.path.endswith("length_m"))
+    assert lower < 0.02 * scales.stroke and upper == pytest.approx(scales.nearest + 0.5 * scales.stroke)
