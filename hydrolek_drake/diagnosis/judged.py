@@ -90,8 +90,18 @@ def dispersion(best: Judged) -> float:
     """How much flatter than for pure noise the likelihood is: tau, from the best model's excess."""
     fit = best.hypothesis.fit
     counted = best.held_out_counted + fit.counted
-    excess = 2.0 * best.half_chi_squared + fit.chi_squared - (1.0 + NOISE_KNOWN) ** 2 * counted
-    return max(1.0, excess / len(fit.unit))
+    return flatter(2.0 * best.half_chi_squared + fit.chi_squared, counted, len(fit.unit))
+
+
+def flatter(left: float, counted: int, parameters: int) -> float:
+    """How much flatter than for pure noise a likelihood is, from what is left beyond the noise for each parameter.
+
+    Args:
+        left: squared residuals in units of the noise.
+        counted: how many of them count.
+        parameters: that were fitted.
+    """
+    return max(1.0, (left - (1.0 + NOISE_KNOWN) ** 2 * counted) / parameters)
 
 
 def probability_of(effect_path: str, judged: Sequence[Judged]) -> float:

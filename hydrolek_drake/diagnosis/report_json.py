@@ -86,7 +86,8 @@ def _law_json(diagnosis: Diagnosis, law: FoundLaw) -> dict[str, Any]:
     return {
         "id": f"unlisted.{known.stage}",
         "joint": diagnosis.locations[-1].joint,
-        "probability": round(_law_posterior(diagnosis, law) * reliability("law"), 4),
+        # stages that the data do not tell apart share it
+        "probability": round(_law_posterior(diagnosis, law) * reliability("law") / (1 + len(law.rivals)), 4),
         "parameters": parameters,
         "holdout_over_noise": law.held_out_over_noise,
         "sentence": law_sentence(law),

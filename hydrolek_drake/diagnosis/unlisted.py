@@ -15,7 +15,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.effort import COARSE
 from hydrolek_drake.diagnosis.gains import GAIN_NEEDED
-from hydrolek_drake.diagnosis.judged import Judged
+from hydrolek_drake.diagnosis.judged import Judged, flatter
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
 from hydrolek_drake.diagnosis.law_search import promising
@@ -75,10 +75,28 @@ def find_law(
     alike = [found for found in ended if found.held_out_over_noise <= ALIKE * least]
     in_all = [left_in_all(found.fit, found.held_out_over_noise, held_out) for found in alike]
     best = alike[int(np.argmin(in_all))]
-    near = {
-        f.law.input.stage for f, each in zip(alike, in_all, strict=True) if each < min(in_all) + GAIN_NEEDED
-    }
-    return replace(best, rivals=tuple(sorted(near - {best.law.input.stage})))
+    counted = best.fit.counted + sum(experiment.counted for experiment in held_out)
+    return replace(best, rivals=rivals_of(best, alike, in_all, counted))
+
+
+def rivals_of(
+    best: FoundLaw, alike: Sequence[FoundLaw], in_all: Sequence[float], counted: int
+) -> tuple[str, ...]:
+    """Other stages at which a law leaves hardly more of all data than the best one.
+
+    Where even that leaves something systematic, such as the form of a friction that is not quite its own, what is
+    hardly more is larger by that excess, see `judged.flatter`.
+
+    Args:
+        best: the law that leaves least.
+        alike: laws that predict alike, the best among them.
+        in_all: what each leaves, see `left_in_all`.
+        counted: how many values these are.
+    """
+    least = min(in_all)
+    hardly = GAIN_NEEDED * flatter(least, counted, len(best.fit.unit))
+    near = {f.law.input.stage for f, each in zip(alike, in_all, strict=True) if each < least + hardly}
+    return tuple(sorted(near - {best.law.input.stage}))
 
 
 def left_in_all(fit: Fit, held_out_over_noise: float, held_out: Sequence[Experiment]) -> float:

@@ -109,7 +109,9 @@ def headline(diagnosis: Diagnosis) -> str:
         )
     if diagnosis.law is None:
         return f"{told}."
-    return f"{told}. At the {diagnosis.law.law.input.stage}, {law_sentence(diagnosis.law)}"
+    law = diagnosis.law
+    elsewhere = f" (a law at the {' or the '.join(law.rivals)} does nearly as well)" if law.rivals else ""
+    return f"{told}. At the {law.law.input.stage}{elsewhere}, {law_sentence(law)}"
 
 
 def law_sentence(law: FoundLaw) -> str:
