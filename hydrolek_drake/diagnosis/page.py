@@ -128,10 +128,15 @@ def _fit(diagnosis: Diagnosis) -> str:
     if fit is None:
         return ""
     unit = fit["unit"]
-    rows = [
-        (name, *(three_digits(fit[key][side]) for side in ("train_rms", "holdout_rms", "holdout_over_noise")))
-        for name, key in (("nominal model, refitted", "baseline"), ("with the effects named", "with_effects"))
+    models = [("nominal model, refitted", "baseline")]
+    if diagnosis.best.hypothesis.effects:
+        models.append(("with the effects named", "with_effects"))
+    sides = ("train_rms", "holdout_rms", "holdout_over_noise")
+    rows: list[tuple[str, ...]] = [
+        (name, *(three_digits(fit[key][s]) for s in sides)) for name, key in models
     ]
+    if diagnosis.law is not None:
+        rows.append(("with the law found", "", "", three_digits(diagnosis.law.held_out_over_noise)))
     head = ("position", f"fitted [{unit}]", f"held out [{unit}]", "all signals held out / noise")
     return (
         _table(head, rows)

@@ -87,6 +87,8 @@ def test_the_report_keeps_the_contract(diagnosed) -> None:
     assert report["fit"]["baseline"]["holdout_rms"] > report["fit"]["with_effects"]["holdout_rms"]
     page = (folder / "report.html").read_text()
     assert "https://" not in page.split("<script")[0] and "leakage past the piston" in page
+    with_effects = "with the effects named"
+    assert with_effects in page and with_effects not in (diagnosed("practice_01") / "report.html").read_text()
 
 
 def test_the_fitted_rig_is_usable_by_the_other_commands(diagnosed) -> None:
