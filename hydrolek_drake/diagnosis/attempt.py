@@ -120,24 +120,25 @@ def by_their_noise(
         alike: with signals that count alike, see `balanced`.
         candidates: every effect that may be added.
         say: told what is being done.
+
+    Raises:
+        KeyboardInterrupt: it was interrupted.
     """
     best, bench = alike.found.best, known.bench
     if not best.effects or alike.interrupted:
         return None
-    try:
-        own = bench.fit(best.effects, best.values, bench.fine, LOOK)
-    except KeyboardInterrupt:
-        bench.resume()
-        return None
+    own = bench.fit(best.effects, best.values, bench.fine, LOOK)
     if own.fit.over_noise > min(FAR, NEARER * known.found.best.fit.over_noise):
         return None
     say("this comes near the noise of every signal: going on from there")
-    return _attempted(
-        bench,
-        known.found,
-        lambda: search_on(bench, candidates, known.found, own, say),
-        known.held_out,
-        say,
+    return _whole(
+        _attempted(
+            bench,
+            known.found,
+            lambda: search_on(bench, candidates, known.found, own, say),
+            known.held_out,
+            say,
+        )
     )
 
 

@@ -130,6 +130,18 @@ def _candidate(effect: Effect, rig: Rig, joint: str, scales: Scales) -> Candidat
     return Candidate(effect, joint, tuple(free), tuple(dict(c) for c in itertools.product(*starts)), utmost)
 
 
+def widenings(
+    effects: Sequence[Candidate], candidates: Sequence[Candidate]
+) -> list[tuple[Candidate, Candidate, tuple[Candidate, ...]]]:
+    """Each effect that another one contains, that other one, and the effects with it in its place at the end."""
+    return [
+        (effect, wider, (*(other for other in effects if other is not effect), wider))
+        for effect in effects
+        for wider in candidates
+        if effect.is_special_case_of(wider)
+    ]
+
+
 def redundant(effects: Sequence[Candidate], candidate: Candidate) -> bool:
     """Whether an effect says nothing new beside others, because one of them contains it or is contained in it."""
     return any(one_contains_the_other(c, candidate) for c in effects)

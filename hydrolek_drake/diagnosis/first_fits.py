@@ -9,7 +9,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import GLANCE, GLANCE_S, LOOK
 from hydrolek_drake.diagnosis.moments import begun
-from hydrolek_drake.diagnosis.unsticking import LED_STEP, different, of_another_joint
+from hydrolek_drake.diagnosis.unsticking import LED_STEP, different, own_values
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.problem import DIVERGED
 
@@ -86,15 +86,6 @@ def sudden(
     finer = min(step, LED_STEP * bench.fine)  # a contact that opens is stiff
     fits = [bench.fit(effects, start, finer, LOOK, 1e-3, part, alone=True) for start in starts]
     return min(fits, key=lambda h: h.fit.objective)
-
-
-def own_values(bench: Workbench, effects: Sequence[Candidate], begin: dict[str, float]) -> dict[str, float]:
-    """Where a fit begins anew: effects as given, the joint's own parameters as the rig has them.
-
-    A model that lacks an effect has bent its parameters to make up for it.
-    """
-    joints = bench.joints_of(effects)
-    return {k: v for k, v in begin.items() if ".effects." in k or of_another_joint(k, joints)}
 
 
 def diverged(hypothesis: Hypothesis) -> bool:

@@ -9,7 +9,7 @@ approximation at several modes; MacKay, Information Theory, Inference, and Learn
 import math
 from collections.abc import Sequence
 
-from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.diagnosis.candidates import Candidate, widenings
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.effort import LOOK
 from hydrolek_drake.diagnosis.gains import cost_of
@@ -53,7 +53,8 @@ def deepest(
     )
     sets: dict[frozenset[str], tuple[tuple[Candidate, ...], Hypothesis]] = {}
     for hypothesis in explaining[:MOST_MODELS]:
-        for effects in (hypothesis.effects, *_wider(hypothesis, candidates)):
+        wider = (changed for _, _, changed in widenings(hypothesis.effects, candidates))
+        for effects in (hypothesis.effects, *wider):
             sets.setdefault(key_of(effects), (effects, hypothesis))
     work = [
         (effects, start)
@@ -75,16 +76,6 @@ def deepest(
 
 def _first(pair: tuple[float, Hypothesis]) -> float:
     return pair[0]
-
-
-def _wider(hypothesis: Hypothesis, candidates: Sequence[Candidate]) -> list[tuple[Candidate, ...]]:
-    """The same effects with one of them replaced by what contains it."""
-    return [
-        (*hypothesis.without(effect), wider)
-        for effect in hypothesis.effects
-        for wider in candidates
-        if effect.is_special_case_of(wider)
-    ]
 
 
 def _evenly(starts: Sequence[dict[str, float]]) -> Sequence[dict[str, float]]:

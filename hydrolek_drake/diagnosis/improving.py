@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 
-from hydrolek_drake.diagnosis.candidates import Candidate, redundant
+from hydrolek_drake.diagnosis.candidates import Candidate, redundant, widenings
 from hydrolek_drake.diagnosis.effort import (
     AT_NOISE,
     FAR,
@@ -16,7 +16,7 @@ from hydrolek_drake.diagnosis.gains import gain_needed
 from hydrolek_drake.diagnosis.lessening import lessened
 from hydrolek_drake.diagnosis.ranges import at_the_end, replaced, widened
 from hydrolek_drake.diagnosis.score import scores_of
-from hydrolek_drake.diagnosis.unsticking import different, fit_pulled, led_on, of_another_joint, started_again
+from hydrolek_drake.diagnosis.unsticking import different, fit_pulled, led_on, own_values, started_again
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
 EXCHANGED = 3
@@ -97,15 +97,10 @@ def widen(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: S
     lead on, see `unsticking.unstuck`.
     """
     work: list[tuple[tuple[Candidate, ...], dict[str, float]]] = []
-    for effect in hypothesis.effects:
-        rest = hypothesis.without(effect)
+    for effect, wider, effects in widenings(hypothesis.effects, candidates):
         kept = {k: v for k, v in hypothesis.values.items() if not k.startswith(f"{effect.path}.")}
-        for wider in candidates:
-            if not effect.is_special_case_of(wider):
-                continue
-            carried = wider.taken_over(effect, hypothesis.values)
-            starts = different([{**kept, **start, **carried} for start in wider.starts])
-            work += [((*rest, wider), start) for start in starts]
+        carried = wider.taken_over(effect, hypothesis.values)
+        work += [(effects, start) for start in different([{**kept, **s, **carried} for s in wider.starts])]
     pulled = bench.side_by_side(
         lambda item: fit_pulled(bench, item[0], [item[1]], bench.fine, bench.training), work
     )
@@ -125,9 +120,8 @@ def lead_on(bench: Workbench, found: Search) -> None:
     best = found.best
     if not best.effects or not AT_NOISE < best.fit.over_noise < FAR:
         return
-    joints = bench.joints_of(best.effects)
-    kept = {k: v for k, v in best.values.items() if ".effects." in k or of_another_joint(k, joints)}
-    again = fit_pulled(bench, best.effects, [kept], bench.fine, bench.training)
+    own = own_values(bench, best.effects, best.values)
+    again = fit_pulled(bench, best.effects, [own], bench.fine, bench.training)
     for _ in range(2):
         again = bench.refit(again, bench.fine, LOOK)
     found.keep(again)

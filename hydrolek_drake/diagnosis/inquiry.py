@@ -120,10 +120,12 @@ class Inquiry:
         if again is None:
             return answer
         alike, remark = again
-        own = by_their_noise(known, alike, self.candidates, self.say)
-        if own is not None and not own.interrupted and own.conclusion.verdict != "unlisted_physics":
+        told = (*answer.remarks, remark, INTERRUPTED) if alike.interrupted else (*answer.remarks, remark)
+        try:
+            own = by_their_noise(known, alike, self.candidates, self.say)
+        except KeyboardInterrupt:
+            known.bench.resume()
+            own, told = None, (*told, INTERRUPTED)
+        if own is not None and own.conclusion.verdict != "unlisted_physics":
             return Answer(own, own.conclusion, None, answer.remarks)
-        conclusion = material(alike.conclusion, alike.judged, alike.held_out)
-        return Answer(
-            alike, conclusion, None, (*answer.remarks, INTERRUPTED if alike.interrupted else remark)
-        )
+        return Answer(alike, material(alike.conclusion, alike.judged, alike.held_out), None, told)

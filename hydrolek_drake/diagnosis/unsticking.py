@@ -116,6 +116,15 @@ def begun_anew(
     return different([{**start, **kept} for start in starts_of(effects)])
 
 
+def own_values(bench: Workbench, effects: Sequence[Candidate], begin: dict[str, float]) -> dict[str, float]:
+    """Where a fit begins anew: effects as given, the joint's own parameters as the rig has them.
+
+    A model that lacks an effect has bent its parameters to make up for it.
+    """
+    joints = bench.joints_of(effects)
+    return {k: v for k, v in begin.items() if ".effects." in k or of_another_joint(k, joints)}
+
+
 def _timing(hypothesis: Hypothesis) -> dict[str, float]:
     """When something happens, which rollouts that forget do not tell."""
     return {free.path: hypothesis.values[free.path] for free in moments_of(hypothesis.effects)}

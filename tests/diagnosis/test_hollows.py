@@ -13,7 +13,7 @@ from hydrolek_drake.diagnosis.effort import LOOK
 from hydrolek_drake.diagnosis.evidence import judge
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.hollows import MOST_STARTS, _evenly, deepest, strayed
-from hydrolek_drake.diagnosis.search import scores_of
+from hydrolek_drake.diagnosis.score import scores_of
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters

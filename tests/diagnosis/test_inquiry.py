@@ -78,7 +78,9 @@ def test_other_weights_count_unless_what_they_lead_to_explains_every_signal(aske
     answer = asked(attempt=first, balanced=(alike, "weighed"), by_their_noise=own)
     assert answer.known is own and answer.conclusion is own.conclusion and answer.remarks == ()
     answer = asked(attempt=first, balanced=(_known("none", interrupted=True), "weighed"))
-    assert answer.remarks == (INTERRUPTED,)
+    assert answer.remarks == ("weighed", INTERRUPTED)
+    answer = asked(attempt=first, balanced=(alike, "weighed"), by_their_noise=KeyboardInterrupt)
+    assert answer.known is alike and answer.remarks == ("weighed", INTERRUPTED) and first.bench.resumed
 
 
 def test_a_law_that_comes_near_the_noise_needs_no_other_weights(asked):
