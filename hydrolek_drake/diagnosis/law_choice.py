@@ -4,11 +4,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from hydrolek_drake.diagnosis.balance import squares_of
-from hydrolek_drake.diagnosis.conclusion import EXPLAINED, EXPLAINED_AHEAD, MATERIAL, SURE, Conclusion
+from hydrolek_drake.diagnosis.conclusion import MATERIAL, SURE, Conclusion
 from hydrolek_drake.diagnosis.effort import AT_NOISE
 from hydrolek_drake.diagnosis.judged import Judged
-from hydrolek_drake.diagnosis.law_problem import FoundLaw
-from hydrolek_drake.diagnosis.unlisted import find_law, left_in_all, without_effects
+from hydrolek_drake.diagnosis.law_growing import explains
+from hydrolek_drake.diagnosis.law_problem import FoundLaw, left_in_all
+from hydrolek_drake.diagnosis.unlisted import find_law, without_effects
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiment import Experiment
@@ -67,7 +68,7 @@ def _law_and_model(
     A law that was found beside effects may be another one than the nominal model led to, so it is tried without them.
     """
     alone = find_law(bench, nominal, held_out, scales)
-    if _immaterial(best, nominal) or (alone is not None and _explains(alone)):
+    if _immaterial(best, nominal) or (alone is not None and explains(alone)):
         return alone, nominal
     law = find_law(bench, best, held_out, scales)
     to_beat = best.over_noise
@@ -122,7 +123,3 @@ def _immaterial(best: Judged, nominal: Judged) -> bool:
 
 def _ahead(law: FoundLaw) -> float:
     return law.held_out_over_noise
-
-
-def _explains(law: FoundLaw) -> bool:
-    return law.fit.over_noise <= EXPLAINED and law.held_out_over_noise <= EXPLAINED_AHEAD

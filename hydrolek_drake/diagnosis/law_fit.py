@@ -40,7 +40,7 @@ def glance(
     for values in (left.values, own):
         unit = parameters.unit(values)
         amplitudes = law.input.scale * np.array(law.amplitudes)
-        for seconds in (SCAN_S, GLANCE_S) if law.term is None else (GLANCE_S,):
+        for seconds in (SCAN_S, GLANCE_S) if law.periodic else (GLANCE_S,):
             part = [experiment.until(seconds) for experiment in bench.training]
             problem = LawProblem(parameters, part, step, law, span)
             start = problem.start(unit, amplitudes)
@@ -81,9 +81,10 @@ def fitted(
     values = problem.law_values(fit.unit)
     without = bench.training[0].simulate(parameters.records(fit.unit[:count]), step).signals
     difference = problem.signals(fit.unit)[0].reading - without.reading
-    over = _ahead(parameters, fit, problem, held_out, step, span)
+    over, ahead = _ahead(parameters, fit, problem, held_out, step, span)
     bench.evaluations += problem.evaluations
-    return FoundLaw(law, values, parameters.values(fit.unit[:count]), fit, over, difference)
+    nominal = parameters.values(fit.unit[:count])
+    return FoundLaw(law, values, nominal, fit, over, difference, span, ahead)
 
 
 def _ahead(
@@ -93,13 +94,17 @@ def _ahead(
     held_out: Sequence[Experiment],
     step: float,
     span: Span,
-) -> float:
-    """Held-out root mean square over the noise; the phase of a periodic law is fitted to each recording."""
+) -> tuple[float, tuple[np.ndarray, ...]]:
+    """Held-out root mean square over the noise, and the law's values on each recording.
+
+    The phase of a periodic law is fitted to each recording.
+    """
     total, counted = 0.0, 0
+    ahead: list[np.ndarray] = []
     for experiment in held_out:
         own = LawProblem(parameters, [experiment], step, problem.law, span)
         unit = fit.unit.copy()
-        if problem.law.term is None:
+        if problem.law.periodic:
             values = problem.law_values(fit.unit)
             amplitude = math.hypot(values[0], values[1])
 
@@ -121,6 +126,7 @@ def _ahead(
                 width *= 0.5
             unit = at(first)
         residual = own.residuals(unit)
+        ahead.append(own.law_values(unit))
         total += float(residual @ residual)
         counted += experiment.counted
-    return math.sqrt(total / max(counted, 1))
+    return math.sqrt(total / max(counted, 1)), tuple(ahead)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.diagnosis.law_problem import SCAN_S, Law
+from hydrolek_drake.diagnosis.law_terms import TRIED, Fitted, gain_along, terms_scored
 from hydrolek_drake.diagnosis.laws import TERMS, Input, Span, Term, law_record
 from hydrolek_drake.diagnosis.score import Across
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -28,12 +29,6 @@ FOLLOWED = 6
 
 LONGER_S = 60.0
 """With so many seconds of it."""
-
-TRIED = 1e-3
-"""Amplitude of a trial, as a fraction of the input's scale: small enough to be linear."""
-
-SIZES = (0.3, 0.1, 0.03)
-"""Larger amplitudes, where a law may not act in proportion any more."""
 
 
 @dataclass(frozen=True)
@@ -78,26 +73,11 @@ def promising(
         return residuals if np.isfinite(residuals).all() else np.full_like(residuals, np.nan)
 
     def of_terms(given: Input) -> list[Law]:
-        bench.alive()
-        here = response(bench.training, given, TERMS[0], 0.0)
-        rest = across(np.concatenate([here, off]))
-        found = []
-        for term in (term for term in TERMS if given.stage in term.stages):
-
-            def moved(size: float, term: Term = term) -> np.ndarray:
-                there = response(bench.training, given, term, size)
-                return across(np.concatenate([there - here, np.zeros(off.size)]))
-
-            gain, amplitudes = _gain(moved(TRIED)[:, None], rest)
-            start, least = amplitudes[0], float(np.sum((rest + moved(amplitudes[0])) ** 2))
-            for size in (sign * s for s in SIZES for sign in (1.0, -1.0)):
-                e = moved(size)
-                remaining = float(np.sum((rest + e) ** 2))
-                gain = max(gain, _along(e, rest))
-                if remaining < least:
-                    least, start = remaining, size
-            found.append(Law(given, term, 0.0, gain, (start,)))
-        return found
+        model = Fitted(records, span, step, across, off)
+        return [
+            Law(given, (term,), 0.0, gain, (start,))
+            for term, gain, start in terms_scored(bench, model, given, TERMS)
+        ]
 
     def beginning(seconds: float) -> _Part:
         part = [bench.training[0].until(seconds)]
@@ -120,8 +100,8 @@ def promising(
             for sine, cosine in ((TRIED, 0.0), (0.0, TRIED)):
                 moved = response(part.experiments, given, None, sine, cosine, frequency) - here
                 columns.append(part.across(np.concatenate([moved, np.zeros(off.size)])))
-            gain, amplitudes = _gain(np.stack(columns, axis=1), rest)
-            found.append(Law(given, None, frequency, gain * counted / max(part.counted, 1), amplitudes))
+            gain, amplitudes = gain_along(np.stack(columns, axis=1), rest)
+            found.append(Law(given, (), frequency, gain * counted / max(part.counted, 1), amplitudes))
         return found
 
     def of_frequencies(given: Input) -> list[Law]:
@@ -144,25 +124,3 @@ def _peaks(laws: Sequence[Law]) -> list[Law]:
     gains = np.array([-np.inf, *(law.gain for law in laws), -np.inf])
     higher = (gains[1:-1] > gains[:-2]) & (gains[1:-1] >= gains[2:])
     return sorted((law for law, peak in zip(laws, higher, strict=True) if peak), key=lambda law: -law.gain)
-
-
-def _gain(columns: np.ndarray, rest: np.ndarray) -> tuple[float, tuple[float, ...]]:
-    """Fall of the squared residuals if the columns take their best multiples, and these, in scales of the input.
-
-    A column of a rollout that diverged promises nothing.
-    """
-    norms = np.linalg.norm(columns, axis=0)
-    if not np.isfinite(columns).all() or not norms.all():
-        return 0.0, (0.0,) * columns.shape[1]
-    multiples, *_ = np.linalg.lstsq(columns / norms, -rest, rcond=None)
-    fitted = columns / norms @ multiples
-    amplitudes = np.clip(TRIED * multiples / norms, -0.9, 0.9)
-    return float(fitted @ fitted), tuple(amplitudes.tolist())
-
-
-def _along(change: np.ndarray, rest: np.ndarray) -> float:
-    """Fall of the squared residuals if a change takes its best positive multiple; of one that diverged nothing."""
-    if not np.isfinite(change).all():
-        return 0.0
-    power, along = float(change @ change), -float(change @ rest)
-    return along * along / power if along > 0.0 and power > 0.0 else 0.0

@@ -1,8 +1,8 @@
 """Short laws in a stage's own variables, for physics that is in no list.
 
-A law gives one unknown input of the rollout (`probes.PROBES`) as a function of time or of the joint's movement.
-Every law is one term with an amplitude; a periodic one has a frequency and a phase besides. What the factors of a
-term mean stands in `rollout.law`, which evaluates them.
+A law gives one unknown input of the rollout (`probes.PROBES`) as a function of time or of the movement at its stage.
+It is a sum of one to three terms, each with an amplitude; a periodic one has a frequency and a phase instead. What the
+factors of a term mean stands in `rollout.law`, which evaluates them.
 """
 
 import math
@@ -128,64 +128,100 @@ TERMS = (
 
 
 @dataclass(frozen=True)
+class Reach:
+    """How a joint, or its rod, moved.
+
+    Attributes:
+        speed: the largest [rad/s or m/s].
+        slow: below which the sign of a speed is smoothed, as the rig's friction is [rad/s or m/s].
+        low: end of the positions [rad or m].
+        high: the other end.
+        unit: of the positions.
+    """
+
+    speed: float
+    slow: float
+    low: float
+    high: float
+    unit: str
+
+
+@dataclass(frozen=True)
 class Span:
     """What the variables of the terms are told in, so that a law means the same in every recording.
 
     Attributes:
-        speed: the largest of the joint [rad/s or m/s].
-        slow: below which the sign of a speed is smoothed, as the rig's friction is [rad/s or m/s].
-        direction: 1 if the rod extends where the joint's position rises, else -1.
-        low: end of the positions [rad or m].
-        high: the other end.
+        joint: how it moved.
+        rod: how the rod moved; None in a machine without oil.
         opening: the spool's largest [m].
         pressure: of the supply [Pa].
         seconds: of the longest recording.
     """
 
-    speed: float
-    slow: float
-    direction: float
-    low: float
-    high: float
+    joint: Reach
+    rod: Reach | None
     opening: float
     pressure: float
     seconds: float
 
+    def at(self, probe: str) -> Reach:
+        """How what an input acts on moved: the rod in the hydraulics, else the joint."""
+        return self.joint if self.rod is None or probe in BEYOND_THE_ROD else self.rod
 
-def span_of(signals: Sequence[Signals], record: np.void, seconds: float) -> Span:
+
+BEYOND_THE_ROD = ("load", "sensor")
+"""Inputs that see the joint's position and speed; all others see the rod's."""
+
+
+def span_of(
+    signals: Sequence[Signals], record: np.void, seconds: float, position_unit: str, rod_unit: str = "m"
+) -> Span:
     """The span of some rollouts.
 
     Args:
         signals: of the training recordings.
         record: the joint's parameters.
         seconds: of the longest recording.
+        position_unit: rad or m.
+        rod_unit: m, or rad where a vane turns the joint.
     """
     position = np.concatenate([np.nan_to_num(s.position) for s in signals])
-    low, high = float(position.min()), float(position.max())
+    velocity = np.concatenate([np.nan_to_num(s.velocity) for s in signals])
     pressure = float(record["supply"]["pressure"])
     smoothed = float(record["cylinder"]["friction_velocity"])
-    lever = 1.0
+    rod = None
     if math.isfinite(smoothed):
-        _, lever = stroke_and_lever(0.5 * (low + high), record)
+        pairs = [stroke_and_lever(q, record) for q in position.tolist()]
+        stroke, lever = np.array(pairs).T
+        rod = _reach(stroke, lever * velocity, smoothed, rod_unit)
+        _, middle = stroke_and_lever(0.5 * float(position.min() + position.max()), record)
+        smoothed /= abs(middle)
     else:
         smoothed = float(record["load"]["friction_velocity"])
-        lever = float(record["linkage"]["direction"])
     return Span(
-        speed=max(float(np.abs(np.nan_to_num(s.velocity)).max()) for s in signals) or 1.0,
-        slow=smoothed / abs(lever),
-        direction=math.copysign(1.0, lever),
-        low=low,
-        high=high if high > low else low + 1.0,
+        joint=_reach(position, velocity, smoothed, position_unit),
+        rod=rod,
         opening=max(float(np.abs(np.nan_to_num(s.spool)).max()) for s in signals) or 1.0,
         pressure=pressure if pressure > 0.0 else 1.0,
         seconds=seconds,
     )
 
 
+def _reach(position: np.ndarray, velocity: np.ndarray, slow: float, unit: str) -> Reach:
+    low, high = float(position.min()), float(position.max())
+    return Reach(
+        speed=float(np.abs(velocity).max()) or 1.0,
+        slow=slow,
+        low=low,
+        high=high if high > low else low + 1.0,
+        unit=unit,
+    )
+
+
 def law_record(
     probe: str, span: Span, term: Term | None, sine: float, cosine: float = 0.0, frequency: float = 0.0
 ) -> np.ndarray:
-    """A law as the rollout takes it. # (1,) of `rollout.law.LAW`.
+    """One term of a law as the rollout takes it. # (1,) of `rollout.law.LAW`.
 
     Args:
         probe: what it gives; one of `probes.PROBES`.
@@ -203,6 +239,17 @@ def law_record(
         record["speed_shape"] = SPEEDS.index(term.speed)
         record["other"] = OTHERS.index(term.other)
     record["sine"], record["cosine"], record["frequency"] = sine, cosine, frequency
-    for name in ("seconds", "low", "high", "speed", "slow", "direction", "opening", "pressure"):
+    reach = span.at(probe)
+    record["at_rod"] = float(reach is span.rod)
+    for name in ("low", "high", "speed", "slow"):
+        record[name] = getattr(reach, name)
+    for name in ("seconds", "opening", "pressure"):
         record[name] = getattr(span, name)
     return record
+
+
+def law_records(probe: str, span: Span, terms: Sequence[Term], amplitudes: Sequence[float]) -> np.ndarray:
+    """A law of one or more terms. # (k,) of `rollout.law.LAW`; arguments as of `law_record`."""
+    return np.concatenate(
+        [law_record(probe, span, term, size) for term, size in zip(terms, amplitudes, strict=True)]
+    )

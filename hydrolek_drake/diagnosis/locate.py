@@ -147,7 +147,7 @@ def locate_law(bench: Workbench, best: Hypothesis, baseline: Hypothesis, law: Fo
     total = max(baseline.fit.chi_squared - baseline.fit.counted, np.finfo(float).tiny)
     share = (best.fit.chi_squared - law.fit.chi_squared) / total
     condition = told_condition(experiment.time, law.difference, holds)
-    if law.law.term is None:
+    if law.law.periodic:
         condition = f"periodic, {law.values[2]:.3g} Hz; {condition}"
     return Location(
         stage=law.law.input.stage,

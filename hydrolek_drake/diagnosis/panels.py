@@ -3,6 +3,7 @@
 import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
+from hydrolek_drake.diagnosis.law_problem import FoundLaw, records_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.replay.display import display_factor, display_unit
@@ -58,38 +59,57 @@ def held_out_spans(experiment: Experiment) -> tuple[tuple[float, float], ...]:
     )
 
 
-def simulated(diagnosis: Diagnosis, hypothesis: Hypothesis, experiment: Experiment) -> Signals:
-    """What a fitted model does under the recorded command."""
+def before(diagnosis: Diagnosis, experiment: Experiment) -> Signals:
+    """What the nominal model, refitted, does under the recorded command."""
+    return _simulated(diagnosis, diagnosis.baseline.hypothesis, experiment)
+
+
+def after(diagnosis: Diagnosis, experiment: Experiment) -> Signals:
+    """What the best model does under the recorded command, with the law for physics in no list if one was found."""
+    return _simulated(diagnosis, diagnosis.best.hypothesis, experiment, diagnosis.law)
+
+
+def _simulated(
+    diagnosis: Diagnosis, hypothesis: Hypothesis, experiment: Experiment, law: FoundLaw | None = None
+) -> Signals:
     assert diagnosis.bench is not None
     parameters = diagnosis.bench.parameters(hypothesis.effects)
-    records = parameters.records(parameters.unit(hypothesis.values))
-    return experiment.simulate(records, diagnosis.step).signals
+    if law is None:
+        records = parameters.records(parameters.unit(hypothesis.values))
+        return experiment.simulate(records, diagnosis.step).signals
+    place = next((i for i, held in enumerate(diagnosis.held_out) if held is experiment), None)
+    own = law.values if place is None else law.ahead[place]
+    return experiment.simulate(
+        parameters.records(parameters.unit(law.parameters)),
+        diagnosis.step,
+        law=records_of(law.law, law.span, own),
+    ).signals
 
 
 def _stack(
     diagnosis: Diagnosis, experiment: Experiment, what: str, shaded: tuple[tuple[float, float], ...]
 ) -> list[Panel]:
-    before = simulated(diagnosis, diagnosis.baseline.hypothesis, experiment)
-    after = simulated(diagnosis, diagnosis.best.hypothesis, experiment)
-    enlarged = bool(diagnosis.best.hypothesis.effects)
+    without, enlarged = before(diagnosis, experiment), after(diagnosis, experiment)
+    more = bool(diagnosis.best.hypothesis.effects) or diagnosis.law is not None
+    name_after = "with the missing physics" if diagnosis.law is None else "with the law found"
     time = experiment.time
     stack: list[Panel] = []
     for channel in experiment.channels:
         factor, unit = display_factor(channel.unit), display_unit(channel.unit)
-        old, new = getattr(before, channel.model), getattr(after, channel.model)
+        old, new = getattr(without, channel.model), getattr(enlarged, channel.model)
         curves = [
             ("measured", channel.measured, MEASURED_COLOUR),
             ("nominal model, refitted", old, BEFORE_COLOUR),
         ]
-        if enlarged:
-            curves.append(("with the missing physics", new, AFTER_COLOUR))
+        if more:
+            curves.append((name_after, new, AFTER_COLOUR))
         lines = tuple(Line(name, *thinned(time, factor * v), colour) for name, v, colour in curves)
         stack.append(
             Panel(f"{channel.key} [{unit}]", lines, shaded, None, 2.0, heading=what if not stack else "")
         )
         band = BEYOND_NOISE * factor * channel.noise
         told = [("left before", channel.measured - old, RESIDUAL_COLOUR)]
-        if enlarged:
+        if more:
             told.append(("left after", channel.measured - new, AFTER_COLOUR))
         for name, residual, colour in told:
             line = Line(name, *thinned(time, factor * residual), colour)

@@ -8,7 +8,7 @@ import yaml
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.page import page
-from hydrolek_drake.diagnosis.panels import columns, simulated
+from hydrolek_drake.diagnosis.panels import after, before, columns
 from hydrolek_drake.diagnosis.report_json import as_json
 from hydrolek_drake.diagnosis.words import headline
 from hydrolek_drake.errors import InputError
@@ -58,15 +58,14 @@ def _write_residuals(diagnosis: Diagnosis, folder: Path) -> None:
     sides = {"train": diagnosis.bench.training, "holdout": diagnosis.held_out}
     for side, experiments in sides.items():
         for number, experiment in enumerate(experiments, start=1):
-            before = simulated(diagnosis, diagnosis.baseline.hypothesis, experiment)
-            after = simulated(diagnosis, diagnosis.best.hypothesis, experiment)
+            without, enlarged = before(diagnosis, experiment), after(diagnosis, experiment)
             signals: dict[str, np.ndarray] = {f"{experiment.joint}.command": experiment.command_at_samples}
             units = {f"{experiment.joint}.command": "V"}
             for channel in experiment.channels:
                 told = {
                     "measured": channel.measured,
-                    "before": channel.measured - getattr(before, channel.model),
-                    "after": channel.measured - getattr(after, channel.model),
+                    "before": channel.measured - getattr(without, channel.model),
+                    "after": channel.measured - getattr(enlarged, channel.model),
                 }
                 for name, values in told.items():
                     signals[f"{channel.key}_{name}"] = values

@@ -16,6 +16,7 @@ from hydrolek_drake.diagnosis.words import (
     off_zero_sentences,
     path_of,
     unit_at,
+    where_sentence,
 )
 from hydrolek_drake.identification.channel import Channel
 from hydrolek_drake.identification.experiment import Experiment
@@ -80,8 +81,13 @@ def effects_json(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 
 def _law_json(diagnosis: Diagnosis, law: FoundLaw) -> dict[str, Any]:
     known = law.law.input
-    parameters = {"amplitude": {"value": law.amplitude, "unit": known.unit}}
-    if law.law.term is None:
+    parameters: dict[str, dict[str, Any]] = {}
+    for number, size in enumerate(law.amplitudes, start=1):
+        key = "amplitude" if number == 1 else f"amplitude_{number}"
+        parameters[key] = {"value": size, "unit": known.unit}
+        if not law.law.periodic:
+            parameters[key]["of"] = law.law.terms[number - 1].name
+    if law.law.periodic:
         parameters["frequency"] = {"value": float(law.values[2]), "unit": "Hz"}
     return {
         "id": f"unlisted.{known.stage}",
@@ -90,7 +96,7 @@ def _law_json(diagnosis: Diagnosis, law: FoundLaw) -> dict[str, Any]:
         "probability": round(_law_posterior(diagnosis, law) * reliability("law") / (1 + len(law.rivals)), 4),
         "parameters": parameters,
         "holdout_over_noise": law.held_out_over_noise,
-        "sentence": law_sentence(law),
+        "sentence": f"{law_sentence(law)}{where_sentence(law)}",
     }
 
 

@@ -17,13 +17,13 @@ from hydrolek_drake.diagnosis.effort import COARSE
 from hydrolek_drake.diagnosis.gains import GAIN_NEEDED
 from hydrolek_drake.diagnosis.judged import Judged, flatter
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
-from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
+from hydrolek_drake.diagnosis.law_growing import grown
+from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, left_in_all
 from hydrolek_drake.diagnosis.law_search import promising
 from hydrolek_drake.diagnosis.laws import Span, inputs_of, span_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import Fit
 
 TRIED = 24
 """So many laws are fitted with a few steps: the best of every input, periodic or not, and what promises most."""
@@ -36,6 +36,9 @@ FITTED = 6
 
 ALIKE = 1.1
 """Laws whose held-out errors lie within this factor predict alike: so much the parameters' own uncertainty adds."""
+
+NEAR = 1.5
+"""Laws whose held-out errors lie within this factor of the best may overtake it with more terms."""
 
 BETTER = 0.8
 """A law must take the held-out error below this share of what it was, or it is no law of this machine."""
@@ -69,42 +72,52 @@ def find_law(
     ended = bench.side_by_side(
         lambda item: fitted(bench, left, item[0], held_out, span, item[1][1:], finer), ranked
     )
+    ended = bench.side_by_side(lambda found: grown(bench, left, found, held_out, finer), _ahead(ended))
     least = min(found.held_out_over_noise for found in ended)
     if not least < BETTER * named.over_noise:
         return None
     alike = [found for found in ended if found.held_out_over_noise <= ALIKE * least]
     in_all = [left_in_all(found.fit, found.held_out_over_noise, held_out) for found in alike]
-    best = alike[int(np.argmin(in_all))]
-    counted = best.fit.counted + sum(experiment.counted for experiment in held_out)
-    return replace(best, rivals=rivals_of(best, alike, in_all, counted))
+    counted = alike[0].fit.counted + sum(experiment.counted for experiment in held_out)
+    return likeliest(alike, in_all, counted)
 
 
-def rivals_of(
-    best: FoundLaw, alike: Sequence[FoundLaw], in_all: Sequence[float], counted: int
-) -> tuple[str, ...]:
-    """Other stages at which a law leaves hardly more of all data than the best one.
+def _ahead(ended: Sequence[FoundLaw]) -> list[FoundLaw]:
+    """Laws that come near the one that predicts best; of each input only the best one."""
+    least = min(found.held_out_over_noise for found in ended)
+    near = sorted(
+        (found for found in ended if found.held_out_over_noise <= NEAR * least),
+        key=lambda found: found.held_out_over_noise,
+    )
+    best: dict[str, FoundLaw] = {}
+    for found in near:
+        best.setdefault(found.law.input.probe, found)
+    return list(best.values())
 
-    Where even that leaves something systematic, such as the form of a friction that is not quite its own, what is
+
+def likeliest(alike: Sequence[FoundLaw], in_all: Sequence[float], counted: int) -> FoundLaw:
+    """The law that leaves least of all data, with the other stages at which one leaves hardly more.
+
+    Where even the best leaves something systematic, such as the form of a friction that is not quite its own, what is
     hardly more is larger by that excess, see `judged.flatter`.
+    A friction at the rod and one at the joint make the same movement and pressures if each may vary over the stroke
+    as it likes. Of two that do as well the one at the rod is named first, where seals are pressed on by the oil; this
+    is an assumption about such machines, and the other one is told with it.
 
     Args:
-        best: the law that leaves least.
-        alike: laws that predict alike, the best among them.
+        alike: laws that predict alike.
         in_all: what each leaves, see `left_in_all`.
         counted: how many values these are.
     """
-    least = min(in_all)
-    hardly = GAIN_NEEDED * flatter(least, counted, len(best.fit.unit))
-    near = {f.law.input.stage for f, each in zip(alike, in_all, strict=True) if each < least + hardly}
-    return tuple(sorted(near - {best.law.input.stage}))
-
-
-def left_in_all(fit: Fit, held_out_over_noise: float, held_out: Sequence[Experiment]) -> float:
-    """Squared residuals, in units of the noise, of training and held-out data together.
-
-    Where two laws predict alike, what they leave of the training data decides too.
-    """
-    return fit.objective + held_out_over_noise**2 * sum(experiment.counted for experiment in held_out)
+    ranked = sorted(zip(in_all, range(len(alike)), strict=True))
+    least, place = ranked[0]
+    hardly = GAIN_NEEDED * flatter(least, counted, len(alike[place].fit.unit))
+    near = [alike[i] for each, i in ranked if each < least + hardly] or [alike[place]]
+    best = near[0]
+    if best.law.input.stage == "load" and best.law.brakes:
+        best = next((f for f in near if f.law.input.stage == "cylinder" and f.law.brakes), best)
+    stages = {f.law.input.stage for f in near} - {best.law.input.stage}
+    return replace(best, rivals=tuple(sorted(stages)))
 
 
 def without_effects(
@@ -132,6 +145,8 @@ def _span(bench: Workbench, left: Hypothesis, step: float) -> Span:
         [e.simulate(records, step).signals for e in bench.training],
         records[bench.training[0].index],
         max(float(np.ptp(e.time)) for e in bench.training),
+        bench.training[0].channels[0].unit,
+        "m" if bench.rig.variant(bench.training[0].joint, "cylinder") == "cylinder" else "rad",
     )
 
 
@@ -141,7 +156,7 @@ def _one_of_each(laws: Sequence[Law]) -> list[Law]:
     first: list[Law] = []
     rest: list[Law] = []
     for law in laws:
-        key = (law.input.probe, law.term is None)
+        key = (law.input.probe, law.periodic)
         (rest if key in seen else first).append(law)
         seen.add(key)
     return [*first, *rest][:TRIED]

@@ -7,7 +7,7 @@ from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.told_numbers import with_interval
 from hydrolek_drake.physics.parameters import Parameter
-from hydrolek_drake.replay.display import three_digits
+from hydrolek_drake.replay.display import shown, three_digits
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.rig import declaration
 
@@ -117,6 +117,28 @@ def headline(diagnosis: Diagnosis) -> str:
 def law_sentence(law: FoundLaw) -> str:
     """The law for physics in no list, and how well it does."""
     return f"{law.equation()} leaves {_ratio(law.held_out_over_noise)} the noise on held-out data."
+
+
+def where_sentence(law: FoundLaw) -> str:
+    """What the letters of a law mean; nothing for one that has none."""
+    names = " ".join(term.name for term in law.law.terms)
+    reach = law.span.at(law.law.input.probe)
+    rod = reach is law.span.rod
+    place, low, high = (
+        "stroke" if rod else "position",
+        shown(reach.low, reach.unit),
+        shown(reach.high, reach.unit),
+    )
+    speed = shown(reach.speed, reach.unit)
+    told = {
+        "t/T": f"T = {shown(law.span.seconds, 's')}",
+        "z": f"z is the {place}, -1 at {low} and 1 at {high}",
+        "v": f"v is the speed of the {'rod' if rod else 'joint'} over {speed}/s",
+        "p_": f"p_A and p_B are pressures over {shown(law.span.pressure, 'Pa')}",
+        "x": f"x is the spool over {shown(law.span.opening, 'm')}",
+    }
+    used = [text for letter, text in told.items() if letter in names]
+    return f" Here {_listed(used)}." if used else ""
 
 
 def _listed(titles: Sequence[str]) -> str:

@@ -7,149 +7,27 @@ the delayed command changes, so that a fit sees the transport delay as a smooth 
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numba import njit
 
 from hydrolek_drake.physics import (
     amplifier,
-    base,
     command,
-    cylinder,
     hooks,
-    linkage,
     load,
     sensor,
     solenoid,
-    supply,
-    valve,
 )
 from hydrolek_drake.physics.solenoid import GAMMA
-from hydrolek_drake.rollout.law import braking_slope, felt
 from hydrolek_drake.rollout.probes import Probe, probe_at
+from hydrolek_drake.rollout.rates import State, felt_at, rates
 
 SIGNALS = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool", "supply_pressure", "force")
 
-
-class State(NamedTuple):
-    """What moves in one joint, spool apart."""
-
-    p_a: float  # pressure on side A [Pa]
-    p_b: float  # pressure on side B [Pa]
-    q: float  # joint position [rad or m]
-    w: float  # joint velocity
-    flow: float  # flow that the supply feels [m^3/s]
-    tilt: float  # of the base [rad]
-    tilt_rate: float
-    lead_q: float  # position of the cylinder's side of a play [rad]
-    lead_w: float
-
-
-class Slopes(NamedTuple):
-    """Diagonal of the Jacobian where it can be stiff [1/s]."""
-
-    p_a: float
-    p_b: float
-    w: float
-    tilt_rate: float
-    lead_w: float
-
-
-LEAST_CAPACITY = 0.1
-"""A search may ask for less capacity than the oil has, down to this share: none at all has no solution."""
-
 PULLED = ("reading", "pressure_a", "pressure_b")
 NOT_PULLED = np.zeros((0, len(PULLED)))
-
-
-@njit
-def rates(
-    s: State,
-    x: float,
-    voltage: float,
-    time: float,
-    inertia: float,
-    outside: Probe,
-    law: np.ndarray | None,
-    joint: Any,
-) -> tuple[State, Slopes, float, float]:
-    """Rates of the state, their stiff slopes, the supply pressure [Pa] and the rod force [N]."""
-    probe = felt(outside, law, time, s.q, s.w, s.p_a, s.p_b, x)
-    rocking = hooks.base_stiffness(joint) > 0.0
-    playing = hooks.linkage_gap(joint) > 0.0
-    side_q = s.lead_q if playing else s.q
-    side_w = s.lead_w if playing else s.w
-    if rocking:
-        side_q -= s.tilt
-        side_w -= s.tilt_rate
-
-    rate_a = rate_b = slope_a = slope_b = 0.0
-    flow_rate = 0.0
-    p_supply = 0.0
-    slope_f = 0.0
-    if joint.cylinder.variant == cylinder.ELECTRIC_MOTOR:
-        lever = joint.linkage.direction
-        force = cylinder.motor_force(voltage, joint)
-    else:
-        stroke, lever = linkage.stroke_and_lever(side_q, joint)
-        v = lever * side_w
-        p_supply = supply.supply_pressure(s.flow + probe.flow, joint) + probe.supply
-        open_a, open_b = valve.openings(x, joint)
-        open_a *= 1.0 + probe.valve
-        open_b *= 1.0 + probe.valve
-        flow_a, flow_b, drawn, settle_a, settle_b = valve.chamber_flows(
-            open_a, open_b, p_supply, s.p_a, s.p_b, time, joint
-        )
-        rate_a, rate_b, stiff_a, stiff_b = cylinder.pressure_rates(
-            s.p_a, s.p_b, flow_a, flow_b, stroke, v, joint
-        )
-        softer_a = max(1.0 + probe.capacity_a * stiff_a, LEAST_CAPACITY)
-        softer_b = max(1.0 + probe.capacity_b * stiff_b, LEAST_CAPACITY)
-        rate_a, stiff_a = rate_a / softer_a, stiff_a / softer_a
-        rate_b, stiff_b = rate_b / softer_b, stiff_b / softer_b
-        slope_a = -stiff_a * settle_a
-        slope_b = -stiff_b * settle_b
-        friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
-        force = cylinder.pressure_force(s.p_a, s.p_b, joint) - friction
-        flow_rate = supply.flow_rate_of_change(s.flow, drawn, joint)
-
-    force += probe.cylinder
-    moment = force * lever
-    resisting, slope_r = load.resisting_load(s.q, s.w, time, joint)
-    resisting -= probe.load
-    slope_r -= braking_slope(law, lever, time, s.q, s.w, s.p_a, s.p_b, x)
-    lead_acceleration = slope_lead = 0.0
-    if playing:
-        side_inertia = joint.linkage.play_inertia
-        through = linkage.play_torque(s.lead_q - s.q, s.lead_w - s.w, joint)
-        lead_acceleration = (moment - through) / side_inertia
-        slope_lead = -slope_f * lever * lever / side_inertia
-        acceleration = (through - resisting) / inertia
-        slope_w = -slope_r / inertia
-    else:
-        acceleration = (moment - resisting) / inertia
-        slope_w = -(slope_f * lever * lever + slope_r) / inertia
-    tilt_acceleration = slope_tilt = 0.0
-    if rocking:
-        tilt_acceleration, slope_tilt = base.base_acceleration(s.tilt, s.tilt_rate, moment, joint)
-        slope_tilt -= slope_f * lever * lever / hooks.base_inertia(joint)
-    return (
-        State(
-            rate_a,
-            rate_b,
-            s.w,
-            acceleration,
-            flow_rate,
-            s.tilt_rate,
-            tilt_acceleration,
-            s.lead_w,
-            lead_acceleration,
-        ),
-        Slopes(slope_a, slope_b, slope_w, slope_tilt, slope_lead),
-        p_supply,
-        force,
-    )
 
 
 @njit
@@ -270,7 +148,7 @@ def integrate(
         pull_time: with this time constant reading and pressures are pulled to what was measured, as in an
             observer [s]; zero or less for a free rollout.
         measured: `PULLED` at `times`, NaN where there is no value, shape (n, 3); no rows for a free rollout.
-        law: how an input from outside follows from the state, one row of `law.LAW`, or None.
+        law: how inputs from outside follow from the state, rows of `law.LAW`, or None.
         out: `SIGNALS`, before the pull, shape (n, 8).
 
     Returns:
@@ -301,7 +179,7 @@ def integrate(
             if following <= last and command_times[following] + delay < target:
                 until = max(command_times[following] + delay, t)
             probe = probe_at(t, begin, probe_spacing, probe_values)
-            by_command = felt(probe, law, t - on, s.q, s.w, s.p_a, s.p_b, x).command
+            by_command = felt_at(probe, law, t - on, s, x, joint).command
             voltage = command.drive_voltage(_arrived(command_values, held, joint) + by_command, joint)
             steps = max(math.ceil((until - t) / longest_step - 1e-9), 1)
             h = (until - t) / steps
@@ -312,7 +190,7 @@ def integrate(
                     probe_next = probe_at(t + (i + 1) * h, begin, probe_spacing, probe_values)
                     gain = 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
                     if law is not None:
-                        gain += felt(probe, law, time, s.q, s.w, s.p_a, s.p_b, x).amplifier - probe.amplifier
+                        gain += felt_at(probe, law, time, s, x, joint).amplifier - probe.amplifier
                     x_next, xd = solenoid.advance(
                         x, xd, gain * drive_a, gain * drive_b, h, spool_steps, joint
                     )
@@ -325,7 +203,7 @@ def integrate(
         if _out_of_bounds(x, s):
             return row
         probe = probe_at(t, begin, probe_spacing, probe_values)
-        now = felt(probe, law, t - on, s.q, s.w, s.p_a, s.p_b, x)
+        now = felt_at(probe, law, t - on, s, x, joint)
         voltage = command.drive_voltage(_arrived(command_values, held, joint) + now.command, joint)
         inertia = _inertia_at(t - on, rod, joint)
         _, _, p_supply, force = rates(s, x, voltage, t - on, inertia, probe, law, joint)

@@ -1,13 +1,14 @@
-"""A short law as feedback: one input from outside (`probes`) as a function of time and of the joint's own state.
+"""A short law as feedback: inputs from outside (`probes`) as functions of time and of the joint's own state.
 
-value = (a sin 2 pi f t + b cos 2 pi f t, or a where f = 0) * time * place * speed * other
+value = sum of (a sin 2 pi f t + b cos 2 pi f t, or a where f = 0) * time * place * speed * other
 
-with one factor out of each of the lists below. The law is evaluated within the rollout: a friction that was given
+with one factor out of each of the lists below in every term. Place and speed are those of the stage: of the rod where
+the term acts in the hydraulics, else of the joint. The law is evaluated within the rollout: a friction that was given
 as a course in time could not hold a joint that sticks.
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -18,9 +19,8 @@ TIMES = ("1", "t/T", "(t/T)^2")
 PLACES = ("1", "z", "z^2", "(1 - z^2)", "((1 + z)/2)^2", "((1 - z)/2)^2")
 SPEEDS = ("1", "sign(v)", "v", "|v|", "v |v|")
 OTHERS = ("1", "p_A", "p_B", "(p_A - p_B)", "x", "|x|")
-"""t: time since switching on, T: `seconds`, z: position from -1 at `low` to 1 at `high`, v: speed over `speed`, for a
-force at the rod positive where the rod extends, sign(v): tanh(v over `slow`), p: pressure over `pressure`, x: spool
-over `opening`."""
+"""t: time since switching on, T: `seconds`, z: stroke or position, -1 at `low` and 1 at `high`, v: speed over
+`speed`, sign(v): tanh(v over `slow`), p: pressure over `pressure`, x: spool over `opening`."""
 
 LAW = np.dtype(
     [
@@ -28,15 +28,28 @@ LAW = np.dtype(
         for name in (
             "probe", "time", "place", "speed_shape", "other",  # what, and which factors, as places in their lists
             "sine", "cosine", "frequency",  # a, b (SI unit of the probe), f [Hz]
-            "seconds", "low", "high", "speed", "slow", "direction", "opening", "pressure",
+            "at_rod",  # 1 where place and speed are the rod's, 0 where they are the joint's
+            "seconds", "low", "high", "speed", "slow", "opening", "pressure",
         )
     ]
 )  # fmt: skip
-"""Speeds and positions in those of the joint [rad or m]; direction: 1 if the rod extends where the joint's position
-rises, else -1."""
+"""One row for each term."""
 
 _CYLINDER = float(PROBES.index("cylinder"))
 _LOAD = float(PROBES.index("load"))
+
+
+class Seen(NamedTuple):
+    """What a law may depend on, at one moment."""
+
+    time: float  # since switching on [s]
+    q: float  # position of the joint [rad or m]
+    w: float  # its speed
+    stroke: float  # of the rod [m, of a vane rad]; 0 in a machine without oil
+    v: float  # its speed, positive where it extends
+    p_a: float  # pressure on side A [Pa]
+    p_b: float  # pressure on side B [Pa]
+    x: float  # of the spool [m]
 
 
 @njit
@@ -88,68 +101,73 @@ def other_factor(shape: float, p_a: float, p_b: float, x: float) -> float:
 
 
 @njit
-def _without_speed(law: Any, time: float, q: float, p_a: float, p_b: float, x: float) -> float:
-    """A law's value but for its factor of the speed."""
+def _without_speed(law: Any, seen: Seen) -> float:
+    """A term's value but for its factor of the speed."""
     size = law.sine
     if law.frequency > 0.0:
-        angle = 2.0 * math.pi * law.frequency * time
+        angle = 2.0 * math.pi * law.frequency * seen.time
         size = law.sine * math.sin(angle) + law.cosine * math.cos(angle)
-    z = 2.0 * (q - law.low) / (law.high - law.low) - 1.0
+    place = seen.stroke if law.at_rod > 0.0 else seen.q
+    z = 2.0 * (place - law.low) / (law.high - law.low) - 1.0
     return (
         size
-        * time_factor(law.time, time / law.seconds)
+        * time_factor(law.time, seen.time / law.seconds)
         * place_factor(law.place, z)
-        * other_factor(law.other, p_a / law.pressure, p_b / law.pressure, x / law.opening)
+        * other_factor(law.other, seen.p_a / law.pressure, seen.p_b / law.pressure, seen.x / law.opening)
     )
 
 
 @njit
-def law_value(law: Any, time: float, q: float, w: float, p_a: float, p_b: float, x: float) -> float:
-    """A law's value.
+def law_value(law: Any, seen: Seen) -> float:
+    """A term's value.
 
     Args:
         law: a record of `LAW`.
-        time: since switching on [s].
-        q: position of the joint [rad or m].
-        w: its speed.
-        p_a: pressure on side A [Pa].
-        p_b: pressure on side B [Pa].
-        x: of the spool [m].
+        seen: what it depends on.
     """
-    turned = w * law.direction if law.probe == _CYLINDER else w
-    speed = speed_factor(law.speed_shape, turned / law.speed, math.tanh(turned / law.slow))
-    return _without_speed(law, time, q, p_a, p_b, x) * speed
+    v = seen.v if law.at_rod > 0.0 else seen.w
+    return _without_speed(law, seen) * speed_factor(law.speed_shape, v / law.speed, math.tanh(v / law.slow))
 
 
 @njit
-def felt(
-    probe: Probe, laws: np.ndarray | None, time: float, q: float, w: float, p_a: float, p_b: float, x: float
-) -> Probe:
-    """Probes with what a law adds, if there is one; arguments as of `law_value`."""
+def felt(probe: Probe, laws: np.ndarray | None, seen: Seen) -> Probe:
+    """Probes with what the terms of a law add, if there is one."""
     if laws is None:  # known when this is compiled: the rollout without a law is a program of its own
         return probe
-    law = laws[0]
-    return added(probe, law.probe, law_value(law, time, q, w, p_a, p_b, x))
+    for row in range(len(laws)):
+        law = laws[row]
+        probe = added(probe, law.probe, law_value(law, seen))
+    return probe
 
 
 @njit
-def braking_slope(
-    laws: np.ndarray | None, lever: float, time: float, q: float, w: float, p_a: float, p_b: float, x: float
-) -> float:
+def braking_slope(laws: np.ndarray | None, lever: float, seen: Seen) -> float:
     """Secant slope of a law's moment over the joint's speed where it brakes, else 0 [N m s/rad].
 
-    What a stiff integrator must know of a friction; arguments as of `law_value`, and the rod's lever.
+    What a stiff integrator must know of a friction.
+
+    Args:
+        laws: records of `LAW`, or None.
+        lever: of the rod at the joint [m/rad].
+        seen: what the law depends on.
     """
     if laws is None:
         return 0.0
-    law = laws[0]
-    if (law.probe != _CYLINDER and law.probe != _LOAD) or law.speed_shape == 0.0 or law.speed_shape == 3.0:
-        return 0.0
-    secant = 1.0 / law.speed
-    if law.speed_shape == 1.0:
-        ratio = w / law.slow
-        secant = math.tanh(ratio) / w if abs(ratio) > 1e-6 else 1.0 / law.slow
-    elif law.speed_shape == 4.0:
-        secant = abs(w) / law.speed**2
-    arm = lever * law.direction if law.probe == _CYLINDER else 1.0
-    return min(_without_speed(law, time, q, p_a, p_b, x) * secant * arm, 0.0)
+    slope = 0.0
+    for row in range(len(laws)):
+        law = laws[row]
+        if (
+            (law.probe != _CYLINDER and law.probe != _LOAD)
+            or law.speed_shape == 0.0
+            or law.speed_shape == 3.0
+        ):
+            continue
+        v = seen.v if law.at_rod > 0.0 else seen.w
+        secant = 1.0 / law.speed
+        if law.speed_shape == 1.0:
+            secant = math.tanh(v / law.slow) / v if abs(v) > 1e-6 * law.slow else 1.0 / law.slow
+        elif law.speed_shape == 4.0:
+            secant = abs(v) / law.speed**2
+        arm = lever if law.at_rod > 0.0 else 1.0
+        slope += _without_speed(law, seen) * secant * arm * arm
+    return min(slope, 0.0)

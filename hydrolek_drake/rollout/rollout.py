@@ -148,7 +148,7 @@ def roll_out(
             shape (k, 10), the first at the first of `times`; None for none.
         pull: reading and pressures are pulled to what was measured, as in an observer: time constant [s], and
             `kernel.PULLED` at `times`, NaN where there is no value, shape (n, 3); None for a free rollout.
-        law: how one input from outside follows from the state, one row of `law.LAW`, shape (1,); None for none.
+        law: how inputs from outside follow from the state, rows of `law.LAW`, shape (k,); None for none.
 
     Raises:
         InputError: times that do not rise, or not as many command values as command times.

@@ -19,7 +19,7 @@ def bench() -> Rig:
 
 @pytest.fixture(scope="session")
 def recorded() -> Callable[..., list[Experiment]]:
-    """(machine, fitted rig, seed, noise, largest volts, pressures, unknown input, its frequency) -> 12 s of it."""
+    """(machine, fitted rig, seed, noise, largest volts, pressures, unknown input, frequency, law) -> 12 s of it."""
 
     def make(
         machine: Rig,
@@ -30,6 +30,7 @@ def recorded() -> Callable[..., list[Experiment]]:
         pressure_noise_Pa: float | None = None,
         unknown: tuple[str, float] | None = None,
         unknown_Hz: float = 0.0,
+        law: Callable[[Experiment], np.ndarray] | None = None,
     ) -> list[Experiment]:
         rng = np.random.default_rng(seed)
         time = np.arange(0.0, 12.0, 0.01)
@@ -48,7 +49,10 @@ def recorded() -> Callable[..., list[Experiment]]:
             course = np.sin(2.0 * np.pi * unknown_Hz * moments) if unknown_Hz > 0.0 else 1.0
             rows[:, PROBES.index(unknown[0])] = unknown[1] * course
             probes = (0.01, rows)
-        played = experiments_of(machine, blank)[0].simulate(machine.records(), 1e-4, probes).signals
+        experiment = experiments_of(machine, blank)[0]
+        played = experiment.simulate(
+            machine.records(), 1e-4, probes, law=None if law is None else law(experiment)
+        ).signals
         angle = played.reading + np.radians(noise_deg) * rng.standard_normal(time.size)
         signals = {"joint.command": levels, "joint.angle": angle}
         if pressure_noise_Pa is not None:

@@ -8,13 +8,16 @@ import pytest
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.effort import POLISH
 from hydrolek_drake.diagnosis.judged import Judged
-from hydrolek_drake.diagnosis.law_search import _along, _gain, promising
-from hydrolek_drake.diagnosis.laws import Term, inputs_of, law_record, span_of
+from hydrolek_drake.diagnosis.law_growing import MOST_TERMS
+from hydrolek_drake.diagnosis.law_problem import records_of
+from hydrolek_drake.diagnosis.law_search import promising
+from hydrolek_drake.diagnosis.law_terms import _along, gain_along
+from hydrolek_drake.diagnosis.laws import Term, inputs_of, law_record, law_records, span_of
 from hydrolek_drake.diagnosis.unlisted import find_law
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
-from hydrolek_drake.rollout.law import law_value
+from hydrolek_drake.rollout.law import Seen, law_value
 
 HOSE = 8e-13
 """Capacity of a hose on side A [m^3/Pa]: 5 to 10 times that of the bench's oil."""
@@ -26,10 +29,10 @@ RIPPLE, RIPPLE_HZ = 2e6, 3.104
 def test_a_law_means_the_same_in_a_shorter_and_gentler_recording(bench, recorded) -> None:
     brisk, gentle = (recorded(bench, bench, largest_V=volts)[0] for volts in (9.0, 3.0))
     runs = [e.simulate(bench.records()).signals for e in (brisk, gentle)]
-    span = span_of(runs[:1], bench.records()[0], 12.0)
+    span = span_of(runs[:1], bench.records()[0], 12.0, "rad")
     law = law_record("load", span, Term(("load",), speed="v"), 5.0)[0]
     for run in runs:
-        told = [law_value(law, 0.0, 0.0, w, 0.0, 0.0, 0.0) for w in run.velocity]
+        told = [law_value(law, Seen(0.0, 0.0, w, 0.0, 0.0, 0.0, 0.0, 0.0)) for w in run.velocity]
         assert told == pytest.approx(5.0 * run.velocity / np.abs(runs[0].velocity).max())
     assert np.abs(runs[1].velocity).max() < 0.8 * np.abs(runs[0].velocity).max()
 
@@ -41,13 +44,13 @@ def test_a_ripple_is_found_between_the_frequencies_that_are_scanned(bench, recor
         nominal = workbench.refit(fit_baseline(workbench), workbench.fine, POLISH)
         records = workbench.parameters(()).records(nominal.fit.unit)
         signals = [e.simulate(records, workbench.fine).signals for e in training]
-        span = span_of(signals, records[training[0].index], 12.0)
+        span = span_of(signals, records[training[0].index], 12.0, "rad")
         scales = natural_scales(bench, "joint", training)
         inputs = inputs_of(scales, bench.value("supply.pressure"), 10.0, training[0].channels[0].unit)
         laws = promising(
             workbench, nominal, [i for i in inputs if i.stage == "supply"], span, 4 * workbench.fine
         )
-    ripple = next(law for law in laws if law.term is None)
+    ripple = next(law for law in laws if law.periodic)
     assert nominal.fit.over_noise > 2.0
     assert ripple is max(laws, key=lambda law: law.gain)
     assert ripple.frequency == pytest.approx(RIPPLE_HZ, abs=0.15 / 12.0)
@@ -56,11 +59,11 @@ def test_a_ripple_is_found_between_the_frequencies_that_are_scanned(bench, recor
 
 def test_a_law_with_which_the_rollout_diverged_promises_nothing() -> None:
     rest, good = np.array([1.0, -2.0, 2.0]), np.array([-0.5, 1.0, -1.0])
-    assert _gain(good[:, None], rest)[0] == pytest.approx(9.0)
+    assert gain_along(good[:, None], rest)[0] == pytest.approx(9.0)
     assert _along(good, rest) == pytest.approx(9.0)
     for bad in (np.nan, np.inf):
         away = np.array([-0.5, bad, bad])
-        assert _gain(np.stack([good, away], axis=1), rest) == (0.0, (0.0, 0.0))
+        assert gain_along(np.stack([good, away], axis=1), rest) == (0.0, (0.0, 0.0))
         assert _along(away, rest) == 0.0
 
 
@@ -76,7 +79,49 @@ def test_a_hose_that_expands_is_found_at_the_fluid(bench, recorded) -> None:
     assert judged.over_noise > 2.0
     assert found is not None
     assert found.law.input.stage == "fluid"
-    assert found.amplitude == pytest.approx(HOSE, rel=0.1)
+    assert found.amplitudes[0] == pytest.approx(HOSE, rel=0.1)
     assert found.held_out_over_noise < 1.1
     assert "side A" in found.equation()
     assert not found.equation().endswith("* 1")
+
+
+def test_a_friction_over_the_stroke_is_found_at_the_rod_as_a_law_of_several_terms(bench, recorded) -> None:
+    """F = -(400 N + 2500 N u^2) sign(v), with u from 0 to 1 over the cylinder's whole stroke: no single term of z."""
+    dry, tight = 400.0, 2500.0
+    stroke = bench.value("joints.joint.cylinder.stroke")
+
+    def planted(experiment):
+        run = experiment.simulate(bench.records()).signals
+        span = span_of([run], bench.records()[0], 12.0, "rad")
+        half, middle = 0.5 * (span.rod.high - span.rod.low), 0.5 * (span.rod.high + span.rod.low)
+        terms = (
+            Term((), speed="sign(v)"),
+            Term((), place="z", speed="sign(v)"),
+            Term((), place="z^2", speed="sign(v)"),
+        )
+        over = tight / stroke**2
+        sizes = (-dry - over * middle**2, -2.0 * over * middle * half, -over * half**2)
+        return law_records("cylinder", span, terms, sizes)
+
+    training, held_out = (recorded(bench, bench, seed=seed, law=planted) for seed in (1, 2))
+    with ThreadPoolExecutor(2) as pool:
+        workbench = Workbench(bench, free_parameters(bench), training, pool)
+        nominal = workbench.refit(fit_baseline(workbench), workbench.fine, POLISH)
+        left = workbench.residuals(nominal, held_out, workbench.fine)
+        judged = Judged(nominal, left, sum(e.counted for e in held_out))
+        found = find_law(workbench, judged, held_out, natural_scales(bench, "joint", training))
+    assert judged.over_noise > 2.0
+    assert found is not None and found.law.input.stage == "cylinder"
+    assert set(found.rivals) <= {"load"}  # which may rub as the rod does
+    assert 1 < len(found.law.terms) <= MOST_TERMS
+    assert found.held_out_over_noise < 1.1
+
+    def friction(u: float) -> float:
+        """At a stroke, as a share of the whole."""
+        seen = Seen(0.0, 0.0, 0.0, u * stroke, found.span.rod.speed, 0.0, 0.0, 0.0)
+        laws = records_of(found.law, found.span, found.values)
+        return -sum(law_value(row, seen) for row in laws)
+
+    low, high = found.span.rod.low / stroke, found.span.rod.high / stroke
+    for u in np.linspace(low, high, 7):
+        assert friction(u) == pytest.approx(dry + tight * u**2, abs=0.15 * (dry + tight))

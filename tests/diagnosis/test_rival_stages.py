@@ -7,16 +7,24 @@ import pytest
 
 from hydrolek_drake.diagnosis.gains import GAIN_NEEDED
 from hydrolek_drake.diagnosis.judged import NOISE_KNOWN, flatter
-from hydrolek_drake.diagnosis.unlisted import rivals_of
+from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
+from hydrolek_drake.diagnosis.laws import Input, Term
+from hydrolek_drake.diagnosis.unlisted import likeliest
 
 COUNTED, PARAMETERS = 7000, 11
 AT_NOISE = COUNTED * (1.0 + NOISE_KNOWN) ** 2
 
 
-def _law(stage):
-    return SimpleNamespace(
-        law=SimpleNamespace(input=SimpleNamespace(stage=stage)),
-        fit=SimpleNamespace(unit=np.zeros(PARAMETERS)),
+def _law(stage, *terms):
+    return FoundLaw(
+        Law(Input(stage, stage, "", "", 1.0), terms, 0.0, 0.0, ()),
+        np.zeros(len(terms)),
+        {},
+        SimpleNamespace(unit=np.zeros(PARAMETERS)),
+        1.0,
+        np.zeros(0),
+        None,
+        (),
     )
 
 
@@ -32,7 +40,19 @@ def _law(stage):
 )
 def test_a_stage_is_told_beside_another_where_little_more_is_left_there(least, behind, rivals) -> None:
     laws = [_law("load"), _law("cylinder"), _law("load")]
-    assert rivals_of(laws[0], laws, [least, least + behind, least + 1.0], COUNTED) == rivals
+    told = likeliest(laws, [least, least + behind, least + 1.0], COUNTED)
+    assert told.law is laws[0].law and told.rivals == rivals
+
+
+@pytest.mark.parametrize(
+    ("behind", "rubs", "stages"),
+    [(0.9, True, ("cylinder", "load")), (0.9, False, ("load", "cylinder")), (1.1, True, ("load",))],
+)
+def test_of_frictions_that_do_as_well_the_one_at_the_rod_is_named_first(behind, rubs, stages) -> None:
+    term = Term((), speed="sign(v)") if rubs else Term((), place="z")
+    laws = [_law("load", term), _law("cylinder", term)]
+    told = likeliest(laws, [AT_NOISE, AT_NOISE + behind * GAIN_NEEDED], COUNTED)
+    assert (told.law.input.stage, *told.rivals) == stages
 
 
 def test_at_the_noise_the_likelihood_is_that_of_noise() -> None:

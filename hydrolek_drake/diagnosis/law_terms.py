@@ -1,0 +1,103 @@
+"""What each term of a law promises, beside a model and terms that it has already: linear algebra, as in `score`."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.laws import TERMS, Input, Span, Term, law_record
+from hydrolek_drake.diagnosis.score import Across
+from hydrolek_drake.diagnosis.workbench import Workbench
+
+TRIED = 1e-3
+"""Amplitude of a trial, as a fraction of the input's scale: small enough to be linear."""
+
+SIZES = (0.3, 0.1, 0.03)
+"""Larger amplitudes, where a law may not act in proportion any more."""
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A model to which terms of a law may be added.
+
+    Attributes:
+        records: its parameters.
+        span: what the variables of the terms are told in.
+        step: of the integration [s].
+        across: takes out of residuals what its parameters can undo.
+        off: its parameters' distances from their priors.
+        has: terms that it has already, as the rollout takes them; None for none.
+    """
+
+    records: np.ndarray
+    span: Span
+    step: float
+    across: Across
+    off: np.ndarray
+    has: np.ndarray | None = None
+
+
+def terms_scored(
+    bench: Workbench, model: Fitted, given: Input, terms: Sequence[Term]
+) -> list[tuple[Term, float, float]]:
+    """Terms at an input, the fall of the squared residuals that each promises, and where its amplitude may begin.
+
+    Args:
+        bench: training data.
+        model: the model to which they are added.
+        given: the input.
+        terms: of which those that act at this stage are tried.
+    """
+    bench.alive()
+    still = np.zeros(model.off.size)
+
+    def response(term: Term, size: float) -> np.ndarray:
+        law = law_record(given.probe, model.span, term, given.scale * size)
+        if model.has is not None:
+            law = np.concatenate([model.has, law])
+        parts = [e.residuals(e.simulate(model.records, model.step, law=law).signals) for e in bench.training]
+        return np.concatenate(parts)
+
+    here = response(TERMS[0], 0.0)
+    rest = model.across(np.concatenate([here, model.off]))
+    found = []
+    for term in (term for term in terms if given.stage in term.stages):
+
+        def moved(size: float, term: Term = term) -> np.ndarray:
+            there = response(term, size)
+            if not np.isfinite(there).all():
+                return np.full_like(rest, np.nan)
+            return model.across(np.concatenate([there - here, still]))
+
+        gain, amplitudes = gain_along(moved(TRIED)[:, None], rest)
+        start, least = amplitudes[0], float(np.sum((rest + moved(amplitudes[0])) ** 2))
+        for size in (sign * s for s in SIZES for sign in (1.0, -1.0)):
+            change = moved(size)
+            remaining = float(np.sum((rest + change) ** 2))
+            gain = max(gain, _along(change, rest))
+            if remaining < least:
+                least, start = remaining, size
+        found.append((term, gain, start))
+    return found
+
+
+def gain_along(columns: np.ndarray, rest: np.ndarray) -> tuple[float, tuple[float, ...]]:
+    """Fall of the squared residuals if the columns take their best multiples, and these, in scales of the input.
+
+    A column of a rollout that diverged promises nothing.
+    """
+    norms = np.linalg.norm(columns, axis=0)
+    if not np.isfinite(columns).all() or not norms.all():
+        return 0.0, (0.0,) * columns.shape[1]
+    multiples, *_ = np.linalg.lstsq(columns / norms, -rest, rcond=None)
+    fitted = columns / norms @ multiples
+    amplitudes = np.clip(TRIED * multiples / norms, -0.9, 0.9)
+    return float(fitted @ fitted), tuple(amplitudes.tolist())
+
+
+def _along(change: np.ndarray, rest: np.ndarray) -> float:
+    """Fall of the squared residuals if a change takes its best positive multiple; of one that diverged nothing."""
+    if not np.isfinite(change).all():
+        return 0.0
+    power, along = float(change @ change), -float(change @ rest)
+    return along * along / power if along > 0.0 and power > 0.0 else 0.0

@@ -1,0 +1,147 @@
+"""Rates of one joint's state: what its stages and their effects make of pressures, position and spool.
+
+Only the wiring stands here; every equation is called from `physics`.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from hydrolek_drake.physics import base, cylinder, hooks, linkage, load, supply, valve
+from hydrolek_drake.rollout.law import Seen, braking_slope, felt
+from hydrolek_drake.rollout.probes import Probe
+
+
+class State(NamedTuple):
+    """What moves in one joint, spool apart."""
+
+    p_a: float  # pressure on side A [Pa]
+    p_b: float  # pressure on side B [Pa]
+    q: float  # joint position [rad or m]
+    w: float  # joint velocity
+    flow: float  # flow that the supply feels [m^3/s]
+    tilt: float  # of the base [rad]
+    tilt_rate: float
+    lead_q: float  # position of the cylinder's side of a play [rad]
+    lead_w: float
+
+
+class Slopes(NamedTuple):
+    """Diagonal of the Jacobian where it can be stiff [1/s]."""
+
+    p_a: float
+    p_b: float
+    w: float
+    tilt_rate: float
+    lead_w: float
+
+
+LEAST_CAPACITY = 0.1
+"""A search may ask for less capacity than the oil has, down to this share: none at all has no solution."""
+
+
+@njit
+def _rod_side(s: State, joint: Any) -> tuple[float, float]:
+    """Position and speed of the joint [rad or m] as the rod has them, before a play and from a base that rocks."""
+    playing = hooks.linkage_gap(joint) > 0.0
+    q, w = (s.lead_q, s.lead_w) if playing else (s.q, s.w)
+    return (q - s.tilt, w - s.tilt_rate) if hooks.base_stiffness(joint) > 0.0 else (q, w)
+
+
+@njit
+def felt_at(probe: Probe, law: np.ndarray | None, time: float, s: State, x: float, joint: Any) -> Probe:
+    """Probes with what a law adds in a state, for stages outside of `rates`."""
+    if law is None:
+        return probe
+    q, w = _rod_side(s, joint)
+    stroke = lever = 0.0
+    if joint.cylinder.variant != cylinder.ELECTRIC_MOTOR:
+        stroke, lever = linkage.stroke_and_lever(q, joint)
+    return felt(probe, law, Seen(time, s.q, s.w, stroke, lever * w, s.p_a, s.p_b, x))
+
+
+@njit
+def rates(
+    s: State,
+    x: float,
+    voltage: float,
+    time: float,
+    inertia: float,
+    outside: Probe,
+    law: np.ndarray | None,
+    joint: Any,
+) -> tuple[State, Slopes, float, float]:
+    """Rates of the state, their stiff slopes, the supply pressure [Pa] and the rod force [N]."""
+    rocking = hooks.base_stiffness(joint) > 0.0
+    playing = hooks.linkage_gap(joint) > 0.0
+    oil = joint.cylinder.variant != cylinder.ELECTRIC_MOTOR
+    side_q, side_w = _rod_side(s, joint)
+    stroke, lever = linkage.stroke_and_lever(side_q, joint) if oil else (0.0, joint.linkage.direction)
+    v = lever * side_w
+    seen = Seen(time, s.q, s.w, stroke, v, s.p_a, s.p_b, x)
+    probe = felt(outside, law, seen)
+
+    rate_a = rate_b = slope_a = slope_b = 0.0
+    flow_rate = 0.0
+    p_supply = 0.0
+    slope_f = 0.0
+    if not oil:
+        force = cylinder.motor_force(voltage, joint)
+    else:
+        p_supply = supply.supply_pressure(s.flow + probe.flow, joint) + probe.supply
+        open_a, open_b = valve.openings(x, joint)
+        open_a *= 1.0 + probe.valve
+        open_b *= 1.0 + probe.valve
+        flow_a, flow_b, drawn, settle_a, settle_b = valve.chamber_flows(
+            open_a, open_b, p_supply, s.p_a, s.p_b, time, joint
+        )
+        rate_a, rate_b, stiff_a, stiff_b = cylinder.pressure_rates(
+            s.p_a, s.p_b, flow_a, flow_b, stroke, v, joint
+        )
+        softer_a = max(1.0 + probe.capacity_a * stiff_a, LEAST_CAPACITY)
+        softer_b = max(1.0 + probe.capacity_b * stiff_b, LEAST_CAPACITY)
+        rate_a, stiff_a = rate_a / softer_a, stiff_a / softer_a
+        rate_b, stiff_b = rate_b / softer_b, stiff_b / softer_b
+        slope_a = -stiff_a * settle_a
+        slope_b = -stiff_b * settle_b
+        friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
+        force = cylinder.pressure_force(s.p_a, s.p_b, joint) - friction
+        flow_rate = supply.flow_rate_of_change(s.flow, drawn, joint)
+
+    force += probe.cylinder
+    moment = force * lever
+    resisting, slope_r = load.resisting_load(s.q, s.w, time, joint)
+    resisting -= probe.load
+    slope_r -= braking_slope(law, lever, seen)
+    lead_acceleration = slope_lead = 0.0
+    if playing:
+        side_inertia = joint.linkage.play_inertia
+        through = linkage.play_torque(s.lead_q - s.q, s.lead_w - s.w, joint)
+        lead_acceleration = (moment - through) / side_inertia
+        slope_lead = -slope_f * lever * lever / side_inertia
+        acceleration = (through - resisting) / inertia
+        slope_w = -slope_r / inertia
+    else:
+        acceleration = (moment - resisting) / inertia
+        slope_w = -(slope_f * lever * lever + slope_r) / inertia
+    tilt_acceleration = slope_tilt = 0.0
+    if rocking:
+        tilt_acceleration, slope_tilt = base.base_acceleration(s.tilt, s.tilt_rate, moment, joint)
+        slope_tilt -= slope_f * lever * lever / hooks.base_inertia(joint)
+    return (
+        State(
+            rate_a,
+            rate_b,
+            s.w,
+            acceleration,
+            flow_rate,
+            s.tilt_rate,
+            tilt_acceleration,
+            s.lead_w,
+            lead_acceleration,
+        ),
+        Slopes(slope_a, slope_b, slope_w, slope_tilt, slope_lead),
+        p_supply,
+        force,
+    )
