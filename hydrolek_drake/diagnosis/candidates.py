@@ -2,8 +2,8 @@
 
 import itertools
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 from hydrolek_drake.effects import EFFECTS, Effect
 from hydrolek_drake.effects.scales import Scales
@@ -21,15 +21,15 @@ class Candidate:
         joint: where it acts.
         free: its parameters with the range of the search.
         starts: full path -> value, where searches begin.
-        utmost: how far the range of its size may be widened: what the size can be at all, or the range that the rig
-            states.
+        utmost: full path -> how far the range of a parameter may be widened: what it can be at all, or the range that
+            the rig states. A moment lies in the recording and has none.
     """
 
     effect: Effect
     joint: str
     free: tuple[Free, ...]
     starts: tuple[dict[str, float], ...]
-    utmost: tuple[float, float]
+    utmost: Mapping[str, tuple[float, float]] = field(compare=False)
 
     @property
     def id(self) -> str:
@@ -109,7 +109,7 @@ def _acts(effect: Effect, rig: Rig, joint: str) -> bool:
 
 def _candidate(effect: Effect, rig: Rig, joint: str, scales: Scales) -> Candidate | None:
     free: list[Free] = []
-    utmost = (-math.inf, math.inf)
+    utmost: dict[str, tuple[float, float]] = {}
     starts: list[list[tuple[str, float]]] = []
     for name, search in effect.search.items():
         path = f"joints.{joint}.effects.{effect.id}.{name}"
@@ -120,8 +120,9 @@ def _candidate(effect: Effect, rig: Rig, joint: str, scales: Scales) -> Candidat
             lower, upper = entry.range
             log = entry.scale == "log"
         lower, upper = max(lower, declared.lowest), min(upper, declared.highest)
-        if name == effect.size:
-            utmost = (lower, upper) if entry.range is not None else (declared.lowest, declared.highest)
+        if not search.moment:
+            stated = entry.range is not None
+            utmost[path] = (lower, upper) if stated else (declared.lowest, declared.highest)
         if not (math.isfinite(lower) and math.isfinite(upper) and lower < upper):
             return None
         free.append(Free(path, lower, upper, log))

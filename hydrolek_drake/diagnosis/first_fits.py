@@ -9,7 +9,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import GLANCE, GLANCE_S, LOOK
 from hydrolek_drake.diagnosis.moments import begun
-from hydrolek_drake.diagnosis.unsticking import LED_STEP, different, own_values
+from hydrolek_drake.diagnosis.unsticking import LED_STEP, begun_anew, different, fit_pulled, own_values
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.problem import DIVERGED
 
@@ -71,6 +71,17 @@ def anew(bench: Workbench, trial: Trial, step: float) -> Hypothesis:
     if effects[-1].effect.sudden:
         return bench.refit(sudden(bench, effects, trial.starts[0], step), step, LOOK)
     return bench.fit(effects, own_values(bench, effects, trial.likeliest), step, LOOK)
+
+
+def anew_pulled(bench: Workbench, trial: Trial, step: float) -> Hypothesis:
+    """Effects fitted from the rig's own values and where their searches begin, a few steps with pulled rollouts ahead.
+
+    A nominal model near the noise may have bent its parameters so far to make up for what is missing that hardly
+    anything speaks for the effect from there; with free rollouts the way from the rig's own values is long.
+    """
+    part = [experiment.until(GLANCE_S) for experiment in bench.training]
+    starts = begun_anew(bench, trial.effects, trial.likeliest)
+    return bench.refit(fit_pulled(bench, trial.effects, starts, step, part), step, GLANCE, alone=True)
 
 
 def sudden(

@@ -18,7 +18,7 @@ from hydrolek_drake.diagnosis.effort import (
     NEARLY,
     POLISH,
 )
-from hydrolek_drake.diagnosis.first_fits import Trial, anew, glance, own_values
+from hydrolek_drake.diagnosis.first_fits import Trial, anew, anew_pulled, glance, own_values
 from hydrolek_drake.diagnosis.gains import gain_needed
 from hydrolek_drake.diagnosis.moments import timed
 from hydrolek_drake.diagnosis.score import Score, gain_of_pair, scores_of
@@ -70,6 +70,7 @@ def grow(
     far = over > FAR
     step = bench.coarsest(beam[0], over, COARSE if far else 2.0 if over > NEAR else 1.0)
     trials: dict[frozenset[str], Trial] = {}
+    every: dict[frozenset[str], Trial] = {}
     pairs: list[Trial] = []
     for parent in beam:
         scored: Sequence[Score]
@@ -77,13 +78,14 @@ def grow(
             scored = scores_of(bench, bench.refit(parent, step, 1) if far else parent, candidates, step)
         else:
             scored = of_nominal
-        _add(trials, bench, parent, scored, far)
+        _add(trials, bench, parent, scored, all_of_them=far)
         if AT_NOISE < over < NEAR:
             pairs += _pairs(parent, scored)
+            _add(every, bench, parent, scored, all_of_them=True)
     if not trials:
         return Grown([], {})
     if over < NEAR:
-        return Grown(_near(bench, list(trials.values()), pairs if over > AT_NOISE else None, step), {})
+        return Grown(_near(bench, list(trials.values()), pairs, list(every.values()), step), {})
     return _from_afar(bench, list(trials.values()), step)
 
 
@@ -92,13 +94,14 @@ def _add(
     bench: Workbench,
     parent: Hypothesis,
     scored: Sequence[Score],
-    far: bool,
+    *,
+    all_of_them: bool,
 ) -> None:
-    """Add what may be tried beside a model to what is tried already."""
+    """Add what may be tried beside a model to what is tried already: what promises something, or everything."""
     for score in scored:
         if redundant(parent.effects, score.candidate):
             continue
-        if not (far or score.candidate.effect.sudden) and score.gain < 0.5 * gain_needed(parent.fit):
+        if not (all_of_them or score.candidate.effect.sudden) and score.gain < 0.5 * gain_needed(parent.fit):
             continue
         effects = (*parent.effects, score.candidate)
         trial = trials.setdefault(key_of(effects), Trial(effects))
@@ -107,7 +110,7 @@ def _add(
         trial.may_begin(start, score.left)
         for moment in score.moments[:LIKELY]:
             trial.may_begin({**start, **moment})
-        if far and not parent.effects:
+        if all_of_them and not parent.effects:
             # the parent's values may have gone far astray to make up for what is missing
             trial.may_begin(own_values(bench, effects, start))
 
@@ -156,18 +159,21 @@ def _in_order(hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
 def _near(
     bench: Workbench,
     trials: Sequence[Trial],
-    pairs: Sequence[Trial] | None,
+    pairs: Sequence[Trial],
+    every: Sequence[Trial],
     step: float,
 ) -> list[Hypothesis]:
     """Fits beside a model that is right but for something small: Gauss-Newton steps from it go straight there.
 
-    Where they do not reach the noise, it has bent its parameters, and what promises most is fitted anew from the rig's
-    own.
+    Where they do not reach the noise, it has bent its parameters: what promises most is fitted anew from the rig's own,
+    and so is everything with pulled rollouts, after which the best of these go on.
 
     Args:
         bench: data and fits.
         trials: what is tried.
-        pairs: the same of two effects more; None where the model is at the noise.
+        pairs: the same of two effects more; none where the model is at the noise.
+        every: everything that can be tried, whether it promises something or not; nothing where the model is at the
+            noise.
         step: integration step [s].
     """
     by_left = sorted(trials, key=lambda trial: min(trial.left))[:FOLLOWED]
@@ -175,11 +181,14 @@ def _near(
     others = [trial for trial in by_gain if trial not in by_left]
     fits = bench.side_by_side(
         lambda trial: bench.fit(trial.effects, trial.likeliest, step, POLISH),
-        [*by_left, *others, *(pairs or ())],
+        [*by_left, *others, *pairs],
     )
-    if pairs is not None and min(h.fit.over_noise for h in fits) > AT_NOISE:
+    if every and min(h.fit.over_noise for h in fits) > AT_NOISE:
         again = [trial for trial in trials if trial in by_gain or trial.effects[-1].effect.sudden]
         fits += bench.side_by_side(lambda trial: anew(bench, trial, step), again)
+        smooth = [trial for trial in every if not trial.effects[-1].effect.sudden]
+        pulled = _in_order(bench.side_by_side(lambda trial: anew_pulled(bench, trial, step), smooth))
+        fits += bench.side_by_side(lambda h: bench.refit(h, step, LOOK, alone=True), pulled[:FOLLOWED])
     fits = _in_order(fits)
     return _in_order([timed(bench, fits[0], step), *fits[1:]])
 

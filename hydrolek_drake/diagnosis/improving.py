@@ -54,7 +54,7 @@ def searched_further(
             break
         say(f"searching further for {' and '.join(c.effect.title for c in narrow)}: its range was too narrow")
         effects: tuple[Candidate, ...] = best.effects
-        wide = [widened(c) for c in narrow]
+        wide = [widened(c, best.values) for c in narrow]
         for candidate in wide:
             candidates, effects = replaced(candidates, candidate), replaced(effects, candidate)
         fitted = bench.fit(effects, best.values, bench.fine, LOOK)

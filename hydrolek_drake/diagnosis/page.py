@@ -9,7 +9,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.evidence import FINER
 from hydrolek_drake.diagnosis.panels import columns
-from hydrolek_drake.diagnosis.report_json import MOST_LISTED, detectable, effects_json, fit_json
+from hydrolek_drake.diagnosis.report_json import MOST_LISTED, detectable, effects_json, fit_json, models_of
 from hydrolek_drake.diagnosis.told_numbers import quantity, with_interval
 from hydrolek_drake.diagnosis.words import headline, off_zero_sentences
 from hydrolek_drake.identification.thinning import STEPS
@@ -128,15 +128,8 @@ def _fit(diagnosis: Diagnosis) -> str:
     if fit is None:
         return ""
     unit = fit["unit"]
-    models = [("nominal model, refitted", "baseline")]
-    if diagnosis.best.hypothesis.effects:
-        models.append(("with the effects named", "with_effects"))
     sides = ("train_rms", "holdout_rms", "holdout_over_noise")
-    rows: list[tuple[str, ...]] = [
-        (name, *(three_digits(fit[key][s]) for s in sides)) for name, key in models
-    ]
-    if diagnosis.law is not None:
-        rows.append(("with the law found", "", "", three_digits(diagnosis.law.held_out_over_noise)))
+    rows = [(name, *(three_digits(errors[s]) for s in sides)) for name, errors in models_of(diagnosis, fit)]
     head = ("position", f"fitted [{unit}]", f"held out [{unit}]", "all signals held out / noise")
     return (
         _table(head, rows)

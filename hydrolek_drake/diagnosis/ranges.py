@@ -2,37 +2,35 @@
 
 An effect's range follows from the machine's natural scales: what a worn machine may have. Where the best model has an
 effect at the far end of its range and does not explain the data, the machine may have more of it, and what is added
-to that model only makes up for the rest.
+to that model only makes up for the rest. The same goes for what else an effect has, such as the speed over which a
+friction fades, at either end.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.score import AT_BOUND
 from hydrolek_drake.diagnosis.workbench import Hypothesis
+from hydrolek_drake.identification.parameter_set import Free
 
 WIDER = 4.0
 """A range that proves too narrow is widened so many times."""
 
 
 def at_the_end(hypothesis: Hypothesis) -> list[Candidate]:
-    """Effects of a fitted model whose size lies at the far end of a range that could be wider."""
-    return [
-        candidate
-        for candidate in hypothesis.effects
-        if _at_far_end(candidate, hypothesis.values[candidate.size_path]) and widened(candidate) != candidate
-    ]
+    """Effects of a fitted model of which a parameter lies at the end of a range that could be wider."""
+    return [c for c in hypothesis.effects if widened(c, hypothesis.values) != c]
 
 
-def widened(candidate: Candidate) -> Candidate:
-    """The same effect, searched further, as far as its size can be at all."""
-    size, (lowest, highest) = candidate.size, candidate.utmost
-    if candidate.effect.weakens:
-        lower, upper = max(size.lower / WIDER, lowest), size.upper
-    else:
-        lower, upper = max(min(size.lower, size.lower * WIDER), lowest), min(size.upper * WIDER, highest)
-    free = tuple(replace(f, lower=lower, upper=upper) if f is size else f for f in candidate.free)
+def widened(candidate: Candidate, values: Mapping[str, float]) -> Candidate:
+    """The same effect, searched further where a parameter lies at an end, as far as it can be at all.
+
+    Args:
+        candidate: the effect.
+        values: full path -> fitted value.
+    """
+    free = tuple(_further(candidate, f, values[f.path]) for f in candidate.free)
     return replace(candidate, free=free)
 
 
@@ -41,8 +39,18 @@ def replaced(candidates: Sequence[Candidate], new: Candidate) -> tuple[Candidate
     return tuple(new if c.size_path == new.size_path else c for c in candidates)
 
 
-def _at_far_end(candidate: Candidate, value: float) -> bool:
-    place = candidate.size.to_unit(value)
-    if candidate.effect.weakens:
-        return place < AT_BOUND
-    return place > 1.0 - AT_BOUND or (candidate.size.lower < 0.0 and place < AT_BOUND)
+def _further(candidate: Candidate, free: Free, value: float) -> Free:
+    """A parameter with a wider range if it lies at an end of its own; a size not at that where the effect is off."""
+    lowest, highest = candidate.utmost.get(free.path, (free.lower, free.upper))
+    place = free.to_unit(value)
+    size = free.path == candidate.size_path
+    if place > 1.0 - AT_BOUND and not (size and candidate.effect.weakens):
+        upper = min(free.upper * WIDER, highest)
+        mirrored = size and free.lower < 0.0
+        return replace(free, lower=max(free.lower * WIDER, lowest) if mirrored else free.lower, upper=upper)
+    if place < AT_BOUND and free.lower < 0.0:
+        upper = min(free.upper * WIDER, highest) if size else free.upper
+        return replace(free, lower=max(free.lower * WIDER, lowest), upper=upper)
+    if place < AT_BOUND and free.lower > 0.0 and (not size or candidate.effect.weakens):
+        return replace(free, lower=max(free.lower / WIDER, lowest))
+    return free

@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
+from hydrolek_drake.diagnosis.panels import after
 from hydrolek_drake.diagnosis.reliability import kind_of, reliability
 from hydrolek_drake.diagnosis.told_numbers import quantity
 from hydrolek_drake.diagnosis.words import (
@@ -115,6 +116,18 @@ def _law_posterior(diagnosis: Diagnosis, law: FoundLaw) -> float:
     return 1.0 / (1.0 + math.exp(-float(np.clip(ahead * len(law.fit.unit) / excess, -50.0, 50.0))))
 
 
+def models_of(diagnosis: Diagnosis, fit: dict[str, Any]) -> list[tuple[str, dict[str, float]]]:
+    """The models of `fit_json` in words, each with its errors."""
+    told = [("nominal model, refitted", fit["baseline"])]
+    if "without_law" in fit:
+        told.append(("with the effects named", fit["without_law"]))
+    if diagnosis.law is not None:
+        told.append(("with the law found", fit["with_effects"]))
+    elif diagnosis.best.hypothesis.effects:
+        told.append(("with the effects named", fit["with_effects"]))
+    return told
+
+
 def detectable(diagnosis: Diagnosis) -> dict[str, str]:
     """Effect -> smallest size that these data would have shown."""
     found = {}
@@ -128,7 +141,10 @@ def detectable(diagnosis: Diagnosis) -> dict[str, str]:
 
 
 def fit_json(diagnosis: Diagnosis) -> dict[str, Any] | None:
-    """Errors of the position before and after, in the unit that people read."""
+    """Errors of the position before and with everything that was added, in the unit that people read.
+
+    Where a law was found beside effects, also with these alone.
+    """
     if diagnosis.bench is None:
         return None
     training, held_out = diagnosis.bench.training, diagnosis.held_out
@@ -143,6 +159,19 @@ def fit_json(diagnosis: Diagnosis) -> dict[str, Any] | None:
             "holdout_rms": factor * position_rms(held_out, judged.held_out),
             "train_over_noise": hypothesis.fit.over_noise,
             "holdout_over_noise": judged.over_noise,
+        }
+    if diagnosis.law is not None:
+        train, held = (
+            np.concatenate([e.residuals(after(diagnosis, e)) for e in experiments])
+            for experiments in (training, held_out)
+        )
+        if diagnosis.best.hypothesis.effects:
+            sides["without_law"] = sides["with_effects"]
+        sides["with_effects"] = {
+            "train_rms": factor * position_rms(training, train),
+            "holdout_rms": factor * position_rms(held_out, held),
+            "train_over_noise": diagnosis.law.fit.over_noise,
+            "holdout_over_noise": diagnosis.law.held_out_over_noise,
         }
     return {
         "noise_floor": factor * _mean_noise(training, channel.key),

@@ -6,7 +6,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
-from hydrolek_drake.diagnosis.report_json import effects_json, fit_json
+from hydrolek_drake.diagnosis.report_json import effects_json, fit_json, models_of
 from hydrolek_drake.diagnosis.words import headline, off_zero_sentences
 from hydrolek_drake.replay.display import three_digits
 
@@ -26,10 +26,10 @@ def summary(diagnosis: Diagnosis) -> Iterator[str | Table]:
     fit = fit_json(diagnosis)
     if fit is None:
         return
-    for name, key in (("nominal model, refitted", "baseline"), ("with effects", "with_effects")):
+    for name, errors in models_of(diagnosis, fit):
         yield (
-            f"{name}: {fit[key]['train_rms']:.3g} {fit['unit']} rms fitted, "
-            f"{fit[key]['holdout_rms']:.3g} {fit['unit']} held out (noise {fit['noise_floor']:.3g})"
+            f"{name}: {errors['train_rms']:.3g} {fit['unit']} rms fitted, "
+            f"{errors['holdout_rms']:.3g} {fit['unit']} held out (noise {fit['noise_floor']:.3g})"
         )
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
     table.add_column("model")

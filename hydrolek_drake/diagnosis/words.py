@@ -129,11 +129,11 @@ def where_sentence(law: FoundLaw) -> str:
         shown(reach.low, reach.unit),
         shown(reach.high, reach.unit),
     )
-    speed = shown(reach.speed, reach.unit)
+    over = f" over {shown(reach.speed, reach.unit)}/s" if "v" in names.replace("sign(v)", "") else ""
     told = {
         "t/T": f"T = {shown(law.span.seconds, 's')}",
         "z": f"z is the {place}, -1 at {low} and 1 at {high}",
-        "v": f"v is the speed of the {'rod' if rod else 'joint'} over {speed}/s",
+        "v": f"v is the {'rod' if rod else 'joint'}'s speed{over}",
         "p_": f"p_A and p_B are pressures over {shown(law.span.pressure, 'Pa')}",
         "x": f"x is the spool over {shown(law.span.opening, 'm')}",
     }

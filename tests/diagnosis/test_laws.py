@@ -1,6 +1,7 @@
 """Laws for physics in no list: what they mean, and that a planted one is found at its stage."""
 
 from concurrent.futures import ThreadPoolExecutor
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,11 +10,13 @@ from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.effort import POLISH
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_growing import MOST_TERMS
-from hydrolek_drake.diagnosis.law_problem import records_of
+from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, records_of
 from hydrolek_drake.diagnosis.law_search import promising
 from hydrolek_drake.diagnosis.law_terms import _along, gain_along
-from hydrolek_drake.diagnosis.laws import Term, inputs_of, law_record, law_records, span_of
+from hydrolek_drake.diagnosis.laws import Input, Term, inputs_of, law_record, law_records, span_of
+from hydrolek_drake.diagnosis.panels import after
 from hydrolek_drake.diagnosis.unlisted import find_law
+from hydrolek_drake.diagnosis.words import where_sentence
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -83,6 +86,9 @@ def test_a_hose_that_expands_is_found_at_the_fluid(bench, recorded) -> None:
     assert found.held_out_over_noise < 1.1
     assert "side A" in found.equation()
     assert not found.equation().endswith("* 1")
+    told = SimpleNamespace(bench=workbench, best=judged, law=found, held_out=held_out, step=workbench.fine)
+    shown = held_out[0].residuals(after(told, held_out[0]))
+    assert np.sqrt(np.mean(shown**2)) == pytest.approx(found.held_out_over_noise, rel=0.02)
 
 
 def test_a_friction_over_the_stroke_is_found_at_the_rod_as_a_law_of_several_terms(bench, recorded) -> None:
@@ -125,3 +131,27 @@ def test_a_friction_over_the_stroke_is_found_at_the_rod_as_a_law_of_several_term
     low, high = found.span.rod.low / stroke, found.span.rod.high / stroke
     for u in np.linspace(low, high, 7):
         assert friction(u) == pytest.approx(dry + tight * u**2, abs=0.15 * (dry + tight))
+
+
+def test_a_law_says_what_its_letters_mean(bench) -> None:
+    run = SimpleNamespace(
+        position=np.radians([10.0, 40.0]), velocity=np.array([0.0, 0.5]), spool=np.array([0.0, 1e-3])
+    )
+    span = span_of([run], bench.records()[0], 20.0, "rad")
+    given = Input("load", "load", "moment added at the joint", "N m", 100.0)
+
+    def told(*terms, values):
+        law = Law(given, terms, 0.0, 0.0, ())
+        found = FoundLaw(law, np.array(values), {}, None, 1.0, np.zeros(0), span, ())
+        return found.equation(), where_sentence(found)
+
+    friction = Term((), speed="sign(v)")
+    assert told(friction, Term((), place="z", speed="sign(v)"), values=(-30.0, 12.0)) == (
+        "moment added at the joint = -30 N m * sign(v) + 12 N m * z sign(v)",
+        " Here z is the position, -1 at 10 deg and 1 at 40 deg; v is the joint's speed.",
+    )
+    assert told(Term((), speed="v |v|"), Term(()), values=(-3.0, -2.0)) == (
+        "moment added at the joint = -3 N m * v |v| - 2 N m",
+        " Here v is the joint's speed over 28.6 deg/s.",
+    )
+    assert told(Term(()), values=(5.0,)) == ("moment added at the joint = 5 N m", "")

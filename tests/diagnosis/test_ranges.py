@@ -22,31 +22,56 @@ def candidates(bench, recorded):
     return {c.id: c for c in candidates_of(bench, "joint", scales)}
 
 
-def test_a_range_is_widened_away_from_where_the_effect_is_off(candidates) -> None:
+def _ended(candidate, **at):
+    """Fitted values in the middle of their ranges, but for some at an end: 0 or 1."""
+    return {free.path: free.from_unit(at.get(free.path.rpartition(".")[2], 0.5)) for free in candidate.free}
+
+
+def test_a_size_is_widened_away_from_where_the_effect_is_off(candidates) -> None:
     air, drift, base = (candidates[id_] for id_ in ("fluid.entrained_air", "sensor.drift", "base.compliance"))
-    assert widened(air).size.upper == pytest.approx(WIDER * air.size.upper)
-    assert widened(air).size.lower == air.size.lower == 0.0
-    assert widened(drift).size.upper == pytest.approx(WIDER * drift.size.upper)
+    wide = widened(air, _ended(air, air_fraction=1.0))
+    assert wide.size.upper == pytest.approx(WIDER * air.size.upper)
+    assert wide.size.lower == air.size.lower == 0.0
+    assert widened(air, _ended(air)) == air == widened(air, _ended(air, air_fraction=0.0))
+    name = drift.effect.size
+    for end in (0.0, 1.0):
+        wide = widened(drift, _ended(drift, **{name: end}))
+        assert wide.size.upper == pytest.approx(WIDER * drift.size.upper)
+        assert wide.size.lower == pytest.approx(WIDER * drift.size.lower)
     assert drift.size.lower < 0.0
-    assert widened(drift).size.lower == pytest.approx(WIDER * drift.size.lower)
     # a base is there the more the softer it is
-    assert widened(base).size.lower == pytest.approx(base.size.lower / WIDER)
-    assert widened(base).size.upper == base.size.upper
-    others = [free for free in widened(base).free if free.path != base.size_path]
+    wide = widened(base, _ended(base, **{base.effect.size: 0.0}))
+    assert wide.size.lower == pytest.approx(base.size.lower / WIDER)
+    assert wide.size.upper == base.size.upper
+    assert widened(base, _ended(base, **{base.effect.size: 1.0})) == base
+    others = [free for free in wide.free if free.path != base.size_path]
     assert others == [free for free in base.free if free.path != base.size_path]
+
+
+def test_what_else_an_effect_has_is_widened_at_either_end(candidates) -> None:
+    stribeck, payload = candidates["cylinder.stribeck_friction"], candidates["load.payload"]
+    name = "stribeck_velocity_m_per_s"
+    fades = next(free for free in stribeck.free if free.path.endswith(name))
+    for end, factors in ((0.0, (1.0 / WIDER, 1.0)), (1.0, (1.0, WIDER))):
+        wide = next(
+            f for f in widened(stribeck, _ended(stribeck, **{name: end})).free if f.path == fades.path
+        )
+        assert (wide.lower, wide.upper) == pytest.approx((factors[0] * fades.lower, factors[1] * fades.upper))
+    assert widened(payload, _ended(payload, time_s=1.0)) == payload  # the recording is no longer than that
 
 
 def test_a_range_is_not_widened_beyond_what_can_be_or_what_the_rig_states(
     bench, recorded, candidates
 ) -> None:
     fade = candidates["amplifier.gain_fade"]
-    assert widened(fade).size.upper == 1.0  # more than all of the current cannot be lost
+    # more than all of the current cannot be lost
+    assert widened(fade, _ended(fade, **{fade.effect.size: 1.0})).size.upper == 1.0
     path = bench.full_path(AIR)
     entries = {**bench.entries, path: replace(bench.entries[path], range=(0.0, 0.01))}
     stated = replace(bench, entries=entries)
     scales = natural_scales(bench, "joint", recorded(bench, bench))
     air = next(c for c in candidates_of(stated, "joint", scales) if c.id == "fluid.entrained_air")
-    assert widened(air) == air
+    assert widened(air, _ended(air, air_fraction=1.0)) == air
 
 
 def test_more_of_an_effect_than_a_worn_machine_has_is_found_alone(bench, recorded, candidates) -> None:
