@@ -101,8 +101,9 @@ def likeliest(alike: Sequence[FoundLaw], in_all: Sequence[float], counted: int) 
     Where even the best leaves something systematic, such as the form of a friction that is not quite its own, what is
     hardly more is larger by that excess, see `judged.flatter`.
     A friction at the rod and one at the joint make the same movement and pressures if each may vary over the stroke
-    as it likes. Of two that do as well the one at the rod is named first, where seals are pressed on by the oil; this
-    is an assumption about such machines, and the other one is told with it.
+    as it likes, and so do any two forces there where the lever is constant, as of a vane. Of two that do as well, a
+    friction is named at the rod first, where seals are pressed on by the oil, and what pushes or shakes at the load;
+    this is an assumption about such machines, and the other stage is told with it.
 
     Args:
         alike: laws that predict alike.
@@ -114,8 +115,10 @@ def likeliest(alike: Sequence[FoundLaw], in_all: Sequence[float], counted: int) 
     hardly = GAIN_NEEDED * flatter(least, counted, len(alike[place].fit.unit))
     near = [alike[i] for each, i in ranked if each < least + hardly] or [alike[place]]
     best = near[0]
-    if best.law.input.stage == "load" and best.law.brakes:
-        best = next((f for f in near if f.law.input.stage == "cylinder" and f.law.brakes), best)
+    if best.law.input.stage in ("cylinder", "load"):
+        wanted = "cylinder" if best.law.brakes else "load"
+        same = (f for f in near if f.law.input.stage == wanted and f.law.brakes == best.law.brakes)
+        best = next(same, best)
     stages = {f.law.input.stage for f in near} - {best.law.input.stage}
     return replace(best, rivals=tuple(sorted(stages)))
 

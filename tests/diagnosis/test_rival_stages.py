@@ -12,6 +12,7 @@ from hydrolek_drake.diagnosis.laws import Input, Term
 from hydrolek_drake.diagnosis.unlisted import likeliest
 
 COUNTED, PARAMETERS = 7000, 11
+RUBS, PUSHES = Term((), speed="sign(v)"), Term((), place="z")
 AT_NOISE = COUNTED * (1.0 + NOISE_KNOWN) ** 2
 
 
@@ -39,20 +40,35 @@ def _law(stage, *terms):
     ],
 )
 def test_a_stage_is_told_beside_another_where_little_more_is_left_there(least, behind, rivals) -> None:
-    laws = [_law("load"), _law("cylinder"), _law("load")]
+    laws = [_law("load", RUBS), _law("cylinder", PUSHES), _law("load", RUBS)]
     told = likeliest(laws, [least, least + behind, least + 1.0], COUNTED)
     assert told.law is laws[0].law and told.rivals == rivals
 
 
 @pytest.mark.parametrize(
-    ("behind", "rubs", "stages"),
-    [(0.9, True, ("cylinder", "load")), (0.9, False, ("load", "cylinder")), (1.1, True, ("load",))],
+    ("terms", "behind", "stages"),
+    [
+        ({"load": RUBS, "cylinder": RUBS}, 0.9, ("cylinder", "load")),
+        ({"load": RUBS, "cylinder": RUBS}, 1.1, ("load",)),
+        ({"load": RUBS, "cylinder": PUSHES}, 0.9, ("load", "cylinder")),
+        ({"load": PUSHES, "cylinder": PUSHES}, 0.9, ("load", "cylinder")),
+        ({"cylinder": PUSHES, "load": PUSHES}, 0.9, ("load", "cylinder")),
+        ({"cylinder": PUSHES, "load": PUSHES}, 1.1, ("cylinder",)),
+        ({"cylinder": RUBS, "load": RUBS}, 0.9, ("cylinder", "load")),
+    ],
 )
-def test_of_frictions_that_do_as_well_the_one_at_the_rod_is_named_first(behind, rubs, stages) -> None:
-    term = Term((), speed="sign(v)") if rubs else Term((), place="z")
-    laws = [_law("load", term), _law("cylinder", term)]
+def test_of_two_that_do_as_well_a_friction_is_named_at_the_rod_and_what_pushes_at_the_load(
+    terms, behind, stages
+) -> None:
+    laws = [_law(stage, term) for stage, term in terms.items()]
     told = likeliest(laws, [AT_NOISE, AT_NOISE + behind * GAIN_NEEDED], COUNTED)
     assert (told.law.input.stage, *told.rivals) == stages
+
+
+def test_a_shaking_is_named_at_the_load_of_a_vane() -> None:
+    laws = [_law("cylinder"), _law("load")]
+    told = likeliest(laws, [AT_NOISE, AT_NOISE + 1.0], COUNTED)
+    assert (told.law.input.stage, told.rivals) == ("load", ("cylinder",))
 
 
 def test_at_the_noise_the_likelihood_is_that_of_noise() -> None:
