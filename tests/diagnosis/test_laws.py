@@ -70,15 +70,24 @@ def test_a_law_with_which_the_rollout_diverged_promises_nothing() -> None:
         assert _along(away, rest) == 0.0
 
 
-def test_a_hose_that_expands_is_found_at_the_fluid(bench, recorded) -> None:
-    kept = {"largest_V": 7.0, "pressure_noise_Pa": 2e4, "unknown": ("capacity_a", HOSE)}
-    training, held_out = (recorded(bench, bench, seed=seed, **kept) for seed in (1, 2))
+def _sought(bench, training, held_out):
+    """Workbench, fitted nominal model and the law that is found beside it."""
     with ThreadPoolExecutor(2) as pool:
         workbench = Workbench(bench, free_parameters(bench), training, pool)
         nominal = workbench.refit(fit_baseline(workbench), workbench.fine, POLISH)
         left = workbench.residuals(nominal, held_out, workbench.fine)
         judged = Judged(nominal, left, sum(e.counted for e in held_out))
-        found = find_law(workbench, judged, held_out, natural_scales(bench, "joint", training))
+        return (
+            workbench,
+            judged,
+            find_law(workbench, judged, held_out, natural_scales(bench, "joint", training)),
+        )
+
+
+def test_a_hose_that_expands_is_found_at_the_fluid(bench, recorded) -> None:
+    kept = {"largest_V": 7.0, "pressure_noise_Pa": 2e4, "unknown": ("capacity_a", HOSE)}
+    training, held_out = (recorded(bench, bench, seed=seed, **kept) for seed in (1, 2))
+    workbench, judged, found = _sought(bench, training, held_out)
     assert judged.over_noise > 2.0
     assert found is not None
     assert found.law.input.stage == "fluid"
@@ -110,12 +119,7 @@ def test_a_friction_over_the_stroke_is_found_at_the_rod_as_a_law_of_several_term
         return law_records("cylinder", span, terms, sizes)
 
     training, held_out = (recorded(bench, bench, seed=seed, law=planted) for seed in (1, 2))
-    with ThreadPoolExecutor(2) as pool:
-        workbench = Workbench(bench, free_parameters(bench), training, pool)
-        nominal = workbench.refit(fit_baseline(workbench), workbench.fine, POLISH)
-        left = workbench.residuals(nominal, held_out, workbench.fine)
-        judged = Judged(nominal, left, sum(e.counted for e in held_out))
-        found = find_law(workbench, judged, held_out, natural_scales(bench, "joint", training))
+    _, judged, found = _sought(bench, training, held_out)
     assert judged.over_noise > 2.0
     assert found is not None and found.law.input.stage == "cylinder"
     assert set(found.rivals) <= {"load"}  # which may rub as the rod does
