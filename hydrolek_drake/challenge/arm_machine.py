@@ -96,6 +96,7 @@ def _rates(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) -> No
 
     ratio = v / g.stribeck_v
     dry = g.coulomb_n + g.stribeck_n * math.exp(-ratio * ratio) + g.tight_n * (s / g.stroke) ** 2
+    dry += g.rubbing_n * math.exp(-(((s / g.stroke - g.rubbing_at) / g.rubbing_wide) ** 2))
     rod = g.a_a * p_a - g.a_b * p_b - g.c_cyl * (1.0 - thin) * v - dry * math.tanh(v / g.slide_v)
     if g.cushion > 0.0 and s < g.cushion_m and v < 0.0:
         rod -= g.cushion * (1.0 - s / g.cushion_m) * v

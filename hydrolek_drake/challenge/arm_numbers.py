@@ -112,6 +112,9 @@ class ArmMachine(NamedTuple):
     ripple_pa: float = 0.0  # supply pressure + ripple sin(2 pi f t)
     ripple_hz: float = 1.0
     tight_n: float = 0.0  # dry friction that grows with the square of the stroke, so much at its end
+    rubbing_n: float = 0.0  # dry friction where the bore is scored, around one share of the stroke
+    rubbing_at: float = 0.5
+    rubbing_wide: float = 0.1
     hose: float = 0.0  # hose on side A, volume v_a hose p / 1 MPa on top
     shaking_nm: float = 0.0  # periodic moment at the joint
     shaking_hz: float = 1.0

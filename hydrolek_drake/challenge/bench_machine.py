@@ -14,8 +14,8 @@ from hydrolek_drake.challenge.bench_numbers import Machine
 from hydrolek_drake.challenge.driving import SAMPLE_S, Driving, Played, controlled
 
 STEP_S = 2e-5
-TIGHT_AT_M = 0.15
-"""Stroke at which the friction that grows with it has its given size: about the longest that the bench reaches."""
+REACHED_M = 0.15
+"""About the longest stroke that the bench reaches: friction that grows with the stroke has its given size there."""
 
 
 @njit
@@ -72,7 +72,8 @@ def _derivative(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) 
         out[3] = 0.0
     ratio = v / g.stribeck_v
     dry = (g.coulomb_n + g.stribeck_n * math.exp(-ratio * ratio)) * math.tanh(v / g.v_dry)
-    dry += g.tight_n * (s / TIGHT_AT_M) ** 2 * math.tanh(v / g.v_dry)
+    scored = g.rubbing_n * math.exp(-(((s / REACHED_M - g.rubbing_at) / g.rubbing_wide) ** 2))
+    dry += (g.tight_n * (s / REACHED_M) ** 2 + scored) * math.tanh(v / g.v_dry)
     rod = g.a_a * p_a - g.a_b * p_b - g.c_cyl * (1.0 - s_warm) * v - dry
     if g.cushion > 0.0 and s < g.cushion_m and v < 0.0:
         rod -= g.cushion * v * (1.0 - s / g.cushion_m)

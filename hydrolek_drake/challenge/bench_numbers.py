@@ -70,6 +70,9 @@ class Machine(NamedTuple):
     ripple_pa: float = 0.0  # in no list: supply pressure + ripple sin(2 pi f t)
     ripple_hz: float = 1.0
     tight_n: float = 0.0  # in no list: dry friction that grows with the stroke squared
+    rubbing_n: float = 0.0  # in no list: dry friction where the bore is scored, around one stroke
+    rubbing_at: float = 0.5
+    rubbing_wide: float = 0.1
     hose: float = 0.0  # in no list: hose on side A, volume v_0 hose p / 1 MPa on top
     shaking_nm: float = 0.0  # in no list: periodic moment at the joint
     shaking_hz: float = 1.0

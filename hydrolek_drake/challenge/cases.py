@@ -13,7 +13,7 @@ import numpy as np
 from hydrolek_drake.challenge.bench_machine import STEP_S
 from hydrolek_drake.challenge.build import BENCH, Build, build_of
 from hydrolek_drake.challenge.driving import SAMPLE_S, Played, random_series
-from hydrolek_drake.challenge.listed import with_effects
+from hydrolek_drake.challenge.listed import LISTED, with_effects
 from hydrolek_drake.recordings import write_signals
 from hydrolek_drake.rigs import Rig
 
@@ -34,6 +34,8 @@ SIZING_STEP_S = 5e-5
 """Integration step while an effect's size is sought, which need not be exact."""
 
 SCALINGS = 3
+DRIVES = 3
+"""Commands are drawn so often: not every one takes a joint to where its effects show."""
 LARGEST_SCALING = 20.0
 """Sizes stay within this factor of those in sizes.yaml: beyond, a worn joint would have been scrapped."""
 
@@ -54,7 +56,7 @@ class Case:
         machine: the numbers that differ from the rig's.
         seed: of commands and noise.
         rig: whose machine it is.
-        shows: effect -> how many times the noise it shows by itself; empty in old labels.
+        shows: effect -> how many times the noise it shows, beside the other one of a double; empty in old labels.
     """
 
     name: str
@@ -123,18 +125,20 @@ def _case(
     drive = "closed" if rng.random() < 0.5 else "open"
     pressures = bool(rng.random() < 0.5)
     seed = int(rng.integers(2**31))
-    concealed: list[tuple[str, Any, str | None]] = [(name, build.listed[name], name) for name in names]
-    concealed += [(name, build.unlisted[name], None) for name in strange]
-    found: dict[str, tuple[dict[str, float], float]] = {}
-    for tried in dict.fromkeys((drive, "open")):
-        found = {
-            name: _scaled(build, machine, entry, level, tried, seed, rng, listed)
-            for name, entry, listed in concealed
-        }
+    concealed = {name: build.listed[name] for name in names} | {n: build.unlisted[n] for n in strange}
+    scaled: dict[str, dict[str, float]] = {}
+    shows: dict[str, float] = {}
+    for tried in (drive, *("open",) * DRIVES):
+        if tried == drive == "open" and scaled:
+            seed = int(rng.integers(2**31))
         drive = tried
-        if all(shown > 0.5 * SHOWS[level] for _, shown in found.values()):
-            break  # else a controller may keep the joint from where an effect shows
-    scaled = {name: parameters for name, (parameters, _) in found.items()}
+        scaled = {
+            name: _scaled(build, machine, name, entry, level, drive, seed, rng)
+            for name, entry in concealed.items()
+        }
+        shows = _shown(build, machine, scaled, drive, seed)
+        if all(shown > 0.5 * SHOWS[level] for shown in shows.values()):
+            break  # else a controller or these commands keep the joint from where an effect shows
     return Case(
         name=f"case_{number:03d}",
         kind=kind,
@@ -147,50 +151,66 @@ def _case(
         machine=own,
         seed=seed,
         rig=build.rig.name,
-        shows={name: shown for name, (_, shown) in found.items()},
+        shows=shows,
     )
 
 
 def machine_of(build: Build, case: Case) -> Any:
     """The machine of a case."""
-    plain = build.nominal._replace(**case.machine)
-    fields = {name: value for numbers in case.unlisted.values() for name, value in numbers.items()}
-    return with_effects(plain, case.effects)._replace(**fields)
+    return _with(build.nominal._replace(**case.machine), case.effects | case.unlisted)
 
 
 def _scaled(
     build: Build,
     machine: Any,
+    name: str,
     entry: Mapping[str, Any],
     level: str,
     drive: str,
     seed: int,
     rng: np.random.Generator,
-    name: str | None,
-) -> tuple[dict[str, float], float]:
-    """Parameters of an effect, scaled until it shows as much as wanted, and how much it shows."""
+) -> dict[str, float]:
+    """Parameters of an effect, scaled until it shows as much as wanted by itself."""
     drawn = {p: float(math.exp(rng.uniform(*np.log(ends)))) for p, ends in entry.get("draw", {}).items()}
     sign = -1.0 if entry.get("signed") and rng.random() < 0.5 else 1.0
     factor = 1.0
     parameters: dict[str, float] = {}
-    shown = 0.0
     for _ in range(SCALINGS):
         parameters = {p: sign * v * factor for p, v in entry["size"].items()} | drawn
-        changed = with_effects(machine, {name: parameters}) if name else machine._replace(**parameters)
-        shown = _mismatch(build, machine, changed, drive, seed)
-        if not math.isfinite(shown):
-            shown = 10.0 * SHOWS["large"]
+        shown = _mismatch(build, machine, _with(machine, {name: parameters}), drive, seed)
         ratio = SHOWS[level] / max(shown, 0.02)
         factor *= 1.0 / ratio if entry.get("weakens") else ratio
         factor = min(max(factor, 1.0 / LARGEST_SCALING), LARGEST_SCALING)
-    return parameters, shown
+    return parameters
+
+
+def _with(machine: Any, concealed: Mapping[str, Mapping[str, float]]) -> Any:
+    """The machine with listed effects and with physics in no list, whose parameters are the machine's numbers."""
+    listed = {name: parameters for name, parameters in concealed.items() if name in LISTED}
+    strange = {
+        p: v for name, parameters in concealed.items() if name not in LISTED for p, v in parameters.items()
+    }
+    return with_effects(machine, listed)._replace(**strange)
+
+
+def _shown(
+    build: Build, machine: Any, concealed: Mapping[str, Mapping[str, float]], drive: str, seed: int
+) -> dict[str, float]:
+    """How many times the noise each one shows beside the others."""
+    together = _with(machine, concealed)
+    shows = {}
+    for name in concealed:
+        others = _with(machine, {other: p for other, p in concealed.items() if other != name})
+        shows[name] = _mismatch(build, others, together, drive, seed)
+    return shows
 
 
 def _mismatch(build: Build, plain: Any, changed: Any, drive: str, seed: int) -> float:
     """Root mean square of what the machine without the effect does otherwise in the training data, over the noise."""
     done = _drive(build, changed, drive, TRAIN_S, np.random.default_rng(seed), 0.0, SIZING_STEP_S)
     without = build.replay(plain, done.volts, SIZING_STEP_S)
-    return float(np.sqrt(np.mean((done.reading - without.reading) ** 2))) / build.noise
+    shown = float(np.sqrt(np.mean((done.reading - without.reading) ** 2))) / build.noise
+    return shown if math.isfinite(shown) else 10.0 * SHOWS["large"]
 
 
 def _drive(

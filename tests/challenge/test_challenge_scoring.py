@@ -7,7 +7,16 @@ import pytest
 
 from hydrolek_drake.challenge.build import ARM_JOINTS, BENCH, build_of, rig_names
 from hydrolek_drake.challenge.calibration import calibration_png
-from hydrolek_drake.challenge.cases import _in_turn, digest, draw_cases, labels_of, read_case, record
+from hydrolek_drake.challenge.cases import (
+    TRAIN_S,
+    _in_turn,
+    _shown,
+    digest,
+    draw_cases,
+    labels_of,
+    read_case,
+    record,
+)
 from hydrolek_drake.challenge.confusion import confusion_markdown, confusions
 from hydrolek_drake.challenge.listed import with_effects
 from hydrolek_drake.challenge.scoring import markdown, score, summaries, summaries_markdown, summary
@@ -194,3 +203,30 @@ def test_cases_of_joints_are_drawn_alike_and_recorded_with_their_noise(tmp_path)
     )  # nothing moves in the first half second
     # 50 samples know their deviation to 10 %; three times that, and the resolution's rounding
     assert noise * 0.7 < np.sqrt(np.mean(rest**2)) < noise * 1.35
+
+
+def test_what_an_effect_shows_is_counted_beside_the_others() -> None:
+    build = build_of(load_rig(BENCH, {}))
+    drift = {"sensor.drift": {"rate_rad_per_min": 0.02}}
+    still = {"fluid.entrained_air": {"air_fraction": 0.0}}
+    alone = _shown(build, build.nominal, drift, "open", 3)
+    # a drift of the reading is r t, whose root mean square over T is r T / sqrt(3), whatever else the machine has
+    expected = 0.02 / 60.0 * TRAIN_S / np.sqrt(3.0) / build.noise
+    assert alone["sensor.drift"] == pytest.approx(expected, rel=1e-3)
+    beside = _shown(build, build.nominal, drift | still, "open", 3)
+    assert beside == {"sensor.drift": pytest.approx(expected, rel=1e-3), "fluid.entrained_air": 0.0}
+    cushion = {"cylinder.end_cushion": {"damping_N_s_per_m": 2e4, "length_m": 0.05}}
+    late = {"command.delay": {"delay_s": 2.0 * TRAIN_S}}  # no command arrives, so that no cushion is reached
+    assert _shown(build, build.nominal, cushion, "open", 3)["cylinder.end_cushion"] > 1.0
+    assert _shown(build, build.nominal, cushion | late, "open", 3)["cylinder.end_cushion"] == 0.0
+
+
+def test_friction_where_the_bore_is_scored_acts_there_alone() -> None:
+    build = build_of(load_rig(BENCH, {}))
+    scored = {"rubbing_n": 1500.0, "rubbing_at": 0.6, "rubbing_wide": 0.1}
+    reached = build.nominal._replace(**scored)
+    elsewhere = build.nominal._replace(**scored | {"rubbing_at": 3.0})  # farther than the rod comes
+    volts = np.r_[np.zeros(50), np.full(350, 3.0), np.full(400, -3.0)]
+    plain = build.play(build.nominal, volts).reading
+    assert np.array_equal(build.play(elsewhere, volts).reading, plain)
+    assert np.max(np.abs(build.play(reached, volts).reading - plain)) > 10.0 * build.noise
