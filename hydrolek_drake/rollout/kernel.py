@@ -1,6 +1,6 @@
 """One joint's chain of stages, integrated in one compiled loop.
 
-Only the wiring stands here; every equation is called from `physics`. The integrator is the two-stage
+The rates of its state come from `rates`, the spool's and the oil supply's steps from `physics`. The integrator is the two-stage
 Rosenbrock-W method (see `physics.solenoid.GAMMA`) with the diagonal of the Jacobian: of second order, and
 stable for stiff friction and small oil volumes, which enter through that diagonal. Steps end exactly where
 the delayed command changes, so that a fit sees the transport delay as a smooth parameter.
@@ -12,14 +12,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from hydrolek_drake.physics import (
-    amplifier,
-    command,
-    hooks,
-    load,
-    sensor,
-    solenoid,
-)
+from hydrolek_drake.physics import amplifier, command, hooks, load, sensor, solenoid
 from hydrolek_drake.physics.solenoid import GAMMA
 from hydrolek_drake.rollout.probes import Probe, probe_at
 from hydrolek_drake.rollout.rates import State, felt_at, rates
