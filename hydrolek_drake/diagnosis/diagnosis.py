@@ -3,12 +3,13 @@
 import time as clock
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from threadpoolctl import threadpool_limits
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import Conclusion
+from hydrolek_drake.diagnosis.enlarged import enlarged_rig, room_for_law
 from hydrolek_drake.diagnosis.evidence import FINER, judge_given_up
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.inquiry import INTERRUPTED, Inquiry
@@ -20,7 +21,7 @@ from hydrolek_drake.diagnosis.moments import intervals_of_moments
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
 from hydrolek_drake.diagnosis.splitting import prepared
 from hydrolek_drake.diagnosis.visible import Visible, visible_sizes
-from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import Free, free_parameters
@@ -83,8 +84,9 @@ class Diagnosis:
         return FINER * self.bench.fine
 
     def fitted_rig(self) -> Rig:
-        """The rig with the named effects switched on and every parameter estimated anew."""
-        return fitted_rig(self.rig, self.best.hypothesis)
+        """The rig with the named effects and the law switched on and every parameter estimated anew."""
+        assert self.bench is not None
+        return enlarged_rig(self.rig, self.best.hypothesis, self.law, self.bench.training[0].joint)
 
 
 def diagnose(
@@ -140,7 +142,7 @@ def _diagnosed(
     )
     inquiry = Inquiry(
         candidates,
-        scales[joints[0]] if len(joints) == 1 else None,
+        scales[joints[0]] if len(joints) == 1 and room_for_law(rig, joints[0]) else None,
         apart=bool(holdout) or between is not None,
         say=say,
     )
@@ -208,13 +210,3 @@ def _nominal(rig: Rig, training: Sequence[Experiment]) -> tuple[Free, ...]:
     return tuple(
         p for p in free_parameters(rig) if not p.path.startswith("joints.") or p.path.split(".")[1] in driven
     )
-
-
-def fitted_rig(rig: Rig, hypothesis: Hypothesis) -> Rig:
-    """A rig with a hypothesis's values, each with its source."""
-    fitted = rig.with_values(hypothesis.values)
-    entries = dict(fitted.entries)
-    for path in hypothesis.values:
-        full = fitted.full_path(path)
-        entries[full] = replace(entries[full], source="fitted to recordings by hydrolek diagnose")
-    return replace(fitted, entries=entries)

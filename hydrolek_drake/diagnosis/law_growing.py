@@ -20,7 +20,7 @@ from hydrolek_drake.diagnosis.score import Across
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 
-MOST_TERMS = 3
+LONGEST = 3
 """So many terms at most: a law is to be short."""
 
 FOLLOWED = 2
@@ -53,7 +53,7 @@ def grown(
         in_all = left_in_all(found.fit, found.held_out_over_noise, held_out)
         return in_all, GAIN_NEEDED * flatter(in_all, counted, len(found.fit.unit))
 
-    while not law.law.periodic and len(law.law.terms) < MOST_TERMS and told(law)[1] > GAIN_NEEDED:
+    while not law.law.periodic and len(law.law.terms) < LONGEST and told(law)[1] > GAIN_NEEDED:
         least = told(law)[0]
         better = [
             further

@@ -110,7 +110,7 @@ def left_in_all(fit: Fit, held_out_over_noise: float, held_out: Sequence[Experim
 
 
 def records_of(law: Law, span: Span, values: np.ndarray) -> np.ndarray:
-    """A law with its values (SI) as the rollout takes it. # (k,) of `rollout.law.LAW`."""
+    """A law with its values (SI) as the rollout takes it. # (k,) of `physics.law.LAW`."""
     if law.periodic:
         return law_record(law.input.probe, span, None, *values.tolist())
     return law_records(law.input.probe, span, law.terms, values.tolist())

@@ -2,7 +2,7 @@
 
 A law gives one unknown input of the rollout (`probes.PROBES`) as a function of time or of the movement at its stage.
 It is a sum of one to three terms, each with an amplitude; a periodic one has a frequency and a phase instead. What the
-factors of a term mean stands in `rollout.law`, which evaluates them.
+factors of a term mean stands in `physics.law`, which evaluates them.
 """
 
 import math
@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.effects.scales import Scales
-from hydrolek_drake.rollout.law import LAW, OTHERS, PLACES, SPEEDS, TIMES
+from hydrolek_drake.physics.law import LAW, OTHERS, PLACES, SPEEDS, TIMES
+from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rollout.one_point import stroke_and_lever
-from hydrolek_drake.rollout.probes import PROBES
 from hydrolek_drake.rollout.rollout import Signals
 
 
@@ -75,7 +75,7 @@ CONSTANT = "1"
 
 @dataclass(frozen=True)
 class Term:
-    """A function of time and movement, of size about one: a product of factors of `rollout.law`.
+    """A function of time and movement, of size about one: a product of factors of `physics.law`.
 
     Attributes:
         stages: at which it has a physical meaning: a friction is no business of the pump's.
@@ -221,7 +221,7 @@ def _reach(position: np.ndarray, velocity: np.ndarray, slow: float, unit: str) -
 def law_record(
     probe: str, span: Span, term: Term | None, sine: float, cosine: float = 0.0, frequency: float = 0.0
 ) -> np.ndarray:
-    """One term of a law as the rollout takes it. # (1,) of `rollout.law.LAW`.
+    """One term of a law as the rollout takes it. # (1,) of `physics.law.LAW`.
 
     Args:
         probe: what it gives; one of `probes.PROBES`.
@@ -249,7 +249,7 @@ def law_record(
 
 
 def law_records(probe: str, span: Span, terms: Sequence[Term], amplitudes: Sequence[float]) -> np.ndarray:
-    """A law of one or more terms. # (k,) of `rollout.law.LAW`; arguments as of `law_record`."""
+    """A law of one or more terms. # (k,) of `physics.law.LAW`; arguments as of `law_record`."""
     return np.concatenate(
         [law_record(probe, span, term, size) for term, size in zip(terms, amplitudes, strict=True)]
     )

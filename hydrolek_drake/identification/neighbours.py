@@ -11,9 +11,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from hydrolek_drake.physics import load
+from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.one_point import stroke_and_lever
-from hydrolek_drake.rollout.probes import PROBES
 
 SPACING_S = 0.01
 """Spacing of the samples of what the others do [s]."""

@@ -50,6 +50,23 @@ def orifice_conductance(area: float, drop: float, coefficient: float, joint: Any
     return coefficient * area * math.sqrt(2.0 / fluid.density) / smooth
 
 
+LEAST_CAPACITY = 0.1
+"""A search may ask for less capacity than the oil has, down to this share: none at all has no solution."""
+
+
+@njit
+def softer(capacity: float, stiffness: float) -> float:
+    """How many times more slowly a pressure changes where something besides the oil takes volume.
+
+    With the chamber's stiffness B/V the oil takes V/B per pressure, and the rest `capacity`: 1 + capacity B/V.
+
+    Args:
+        capacity: volume that is taken per pressure besides the oil's [m^3/Pa].
+        stiffness: of the chamber [Pa/m^3].
+    """
+    return max(1.0 + capacity * stiffness, LEAST_CAPACITY)
+
+
 @njit
 def effective_bulk_modulus(pressure: float, joint: Any) -> float:
     """Bulk modulus at a pressure [Pa]; entrained air softens the oil where the pressure is low."""

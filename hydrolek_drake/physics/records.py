@@ -1,4 +1,4 @@
-"""The parameter record of one joint: one field per stage, and one per effect.
+"""The parameter record of one joint: one field per stage, one per effect, and one per term of a law.
 
 All numbers are float64, so a record is also a flat vector (`flat`), which is how parameters are fitted and
 how they are stored in a Drake context.
@@ -20,6 +20,7 @@ from hydrolek_drake.physics import (
     supply,
     valve,
 )
+from hydrolek_drake.physics.law import LAW_RECORD
 from hydrolek_drake.physics.parameters import Stage
 
 SHARED_STAGES: dict[str, Stage] = {s.STAGE.name: s.STAGE for s in (supply, fluid)}
@@ -36,7 +37,10 @@ STAGES: dict[str, Stage] = {**SHARED_STAGES, **JOINT_STAGES}
 EFFECT_RECORD = np.dtype(
     [(effect.key, [(p.name, np.float64) for p in effect.parameters]) for effect in EFFECTS.values()]
 )
-JOINT = np.dtype([(stage.name, stage.dtype()) for stage in STAGES.values()] + [("effects", EFFECT_RECORD)])
+JOINT = np.dtype(
+    [(stage.name, stage.dtype()) for stage in STAGES.values()]
+    + [("effects", EFFECT_RECORD), ("law", LAW_RECORD)]
+)
 
 
 def flat(joints: np.ndarray) -> np.ndarray:

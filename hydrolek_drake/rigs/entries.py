@@ -87,6 +87,21 @@ def parse_entry(raw: Any, parameter: Parameter, where: str) -> Entry:
     return Entry(value, unit, str(raw["source"]), limits, scale)
 
 
+def written_entry(entry: Entry) -> dict[str, Any]:
+    """A parameter as a rig file states it."""
+    if entry.same_as is not None:
+        return {"same_as": entry.same_as}
+    written: dict[str, Any] = {
+        "value": float(entry.value),
+        "unit": entry.unit.split("|")[0],
+        "source": entry.source,
+    }
+    if entry.range is not None:
+        written["range"] = [float(v) for v in entry.range]
+        written["scale"] = entry.scale
+    return written
+
+
 def parse_quantity(text: str, parameter: Parameter, where: str) -> float:
     """A value given as text, "12e6" in SI or "12 MPa" with its unit, in SI.
 

@@ -13,6 +13,7 @@ from hydrolek_drake.rigs import geometry
 from hydrolek_drake.rigs.entries import Entry, parse_entry
 from hydrolek_drake.rigs.keys import refuse_unknown
 from hydrolek_drake.rigs.rig import LONGEST_STEP, SPOOL_STEPS, Rig
+from hydrolek_drake.rigs.short_law import LawTerm, read_law
 
 
 def rig_from_tree(tree: dict[str, Any], path: Path) -> Rig:
@@ -23,15 +24,16 @@ def rig_from_tree(tree: dict[str, Any], path: Path) -> Rig:
     """
     variants: dict[str, str] = {}
     entries: dict[str, Entry] = {}
+    laws: dict[str, tuple[LawTerm, ...]] = {}
     for name, stage in SHARED_STAGES.items():
         _read_stage(tree.get(name), stage, name, path, variants, entries)
     everywhere = _effects_section(tree, f"{path}: effects")
     for joint, sections in tree["joints"].items():
         for section in sections:
-            if section not in JOINT_STAGES and section != "effects":
+            if section not in JOINT_STAGES and section not in ("effects", "law"):
                 raise InputError(
                     f"{path}: joints.{joint}.{section}: unknown stage; "
-                    f"a joint has {', '.join([*JOINT_STAGES, 'effects'])}"
+                    f"a joint has {', '.join([*JOINT_STAGES, 'effects', 'law'])}"
                 )
         for name, stage in JOINT_STAGES.items():
             _read_stage(sections.get(name), stage, f"joints.{joint}.{name}", path, variants, entries)
@@ -41,6 +43,8 @@ def rig_from_tree(tree: dict[str, Any], path: Path) -> Rig:
             path,
             entries,
         )
+        if law := read_law(sections.get("law"), f"joints.{joint}.law", path):
+            laws[joint] = law
     integration = tree.get("integration") or {}
     refuse_unknown(integration, ("longest_step", "spool_steps"), f"{path}: integration")
     for parameter in (LONGEST_STEP, SPOOL_STEPS):
@@ -67,6 +71,7 @@ def rig_from_tree(tree: dict[str, Any], path: Path) -> Rig:
         columns={str(theirs): str(ours) for theirs, ours in columns.items()},
         initial_position=initial,
         tree=tree,
+        laws=laws,
     )
     geometry.check(rig)
     return rig

@@ -3,7 +3,7 @@
 import difflib
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.records import JOINT, JOINT_STAGES, SHARED_STAGES
 from hydrolek_drake.rigs import geometry
 from hydrolek_drake.rigs.entries import Entry, parse_quantity
+from hydrolek_drake.rigs.short_law import LawTerm, law_record
 from hydrolek_drake.rigs.writing import written_tree
 
 LONGEST_STEP = Parameter("longest_step", "s", "upper bound of the rollout's integration step", lowest=1e-9)
@@ -38,6 +39,7 @@ class Rig:
         columns: column of a recording -> name of the contract, e.g. "qm" -> "axis.position_m".
         initial_position: "rig", or "recording": where a replay starts.
         tree: the file's content with all it is based on.
+        laws: joint -> terms of a law for physics in no list; joints without one are left out.
     """
 
     name: str
@@ -50,6 +52,7 @@ class Rig:
     columns: dict[str, str]
     initial_position: str
     tree: dict[str, Any]
+    laws: dict[str, tuple[LawTerm, ...]] = field(default_factory=dict)
 
     def value(self, path: str) -> float:
         """Value of a parameter in SI; `path` as in `full_path`."""
@@ -146,6 +149,7 @@ class Rig:
                     records[i]["effects"][effect.key][p.name] = self.value(
                         f"joints.{owner}.effects.{effect.id}.{p.name}"
                     )
+            records[i]["law"] = law_record(self.laws.get(joint, ()))
         return records
 
     def as_tree(self) -> dict[str, Any]:

@@ -4,8 +4,9 @@ import copy
 import math
 from typing import TYPE_CHECKING, Any
 
+from hydrolek_drake.rigs.entries import Entry, written_entry
+
 if TYPE_CHECKING:
-    from hydrolek_drake.rigs.entries import Entry
     from hydrolek_drake.rigs.rig import Rig
 
 
@@ -18,6 +19,9 @@ def written_tree(rig: "Rig") -> dict[str, Any]:
     tree.pop("effects", None)  # each joint gets its own below
     for sections in tree["joints"].values():
         sections.pop("effects", None)
+        sections.pop("law", None)
+    for joint, terms in rig.laws.items():
+        tree["joints"][joint]["law"] = [term.as_tree() for term in terms]
     for path, entry in rig.entries.items():
         neutral = entry.value == declaration(rig, path).neutral
         if ".effects." in path:
@@ -32,7 +36,7 @@ def written_tree(rig: "Rig") -> dict[str, Any]:
     return tree
 
 
-def _write(tree: dict[str, Any], path: str, entry: "Entry") -> None:
+def _write(tree: dict[str, Any], path: str, entry: Entry) -> None:
     head, _, of_effect = path.partition(".effects.")
     if of_effect:
         effect_id, _, name = of_effect.rpartition(".")
@@ -44,18 +48,4 @@ def _write(tree: dict[str, Any], path: str, entry: "Entry") -> None:
         if not isinstance(node.get(key), dict):
             node[key] = {}  # a stage without parameters may stand in the file as nothing
         node = node[key]
-    node[keys[-1]] = _written(entry)
-
-
-def _written(entry: "Entry") -> dict[str, Any]:
-    if entry.same_as is not None:
-        return {"same_as": entry.same_as}
-    written: dict[str, Any] = {
-        "value": float(entry.value),
-        "unit": entry.unit.split("|")[0],
-        "source": entry.source,
-    }
-    if entry.range is not None:
-        written["range"] = [float(v) for v in entry.range]
-        written["scale"] = entry.scale
-    return written
+    node[keys[-1]] = written_entry(entry)

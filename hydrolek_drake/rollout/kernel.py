@@ -1,6 +1,6 @@
 """One joint's chain of stages, integrated in one compiled loop.
 
-The rates of its state come from `rates`, the spool's and the oil supply's steps from `physics`. The integrator is the two-stage
+The rates of its state come from `rates`, the equations of its stages from `physics`. The integrator is the two-stage
 Rosenbrock-W method (see `physics.solenoid.GAMMA`) with the diagonal of the Jacobian: of second order, and
 stable for stiff friction and small oil volumes, which enter through that diagonal. Steps end exactly where
 the delayed command changes, so that a fit sees the transport delay as a smooth parameter.
@@ -13,8 +13,8 @@ import numpy as np
 from numba import njit
 
 from hydrolek_drake.physics import amplifier, command, hooks, load, sensor, solenoid
+from hydrolek_drake.physics.probes import Probe, probe_at
 from hydrolek_drake.physics.solenoid import GAMMA
-from hydrolek_drake.rollout.probes import Probe, probe_at
 from hydrolek_drake.rollout.rates import State, felt_at, rates
 
 SIGNALS = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool", "supply_pressure", "force")
@@ -172,18 +172,21 @@ def integrate(
             if following <= last and command_times[following] + delay < target:
                 until = max(command_times[following] + delay, t)
             probe = probe_at(t, begin, probe_spacing, probe_values)
-            by_command = felt_at(probe, law, t - on, s, x, joint).command
-            voltage = command.drive_voltage(_arrived(command_values, held, joint) + by_command, joint)
+            arrived = _arrived(command_values, held, joint)
+            voltage = command.drive_voltage(arrived + probe.command, joint)
             steps = max(math.ceil((until - t) / longest_step - 1e-9), 1)
             h = (until - t) / steps
             if h > 0.0:
                 for i in range(steps):
                     time = t + i * h - on
+                    gain = 0.0
+                    if law is not None:
+                        now = felt_at(probe, law, time, s, x, joint)
+                        gain = now.amplifier - probe.amplifier
+                        voltage = command.drive_voltage(arrived + now.command, joint)
                     drive_a, drive_b = amplifier.coil_currents(voltage, time + 0.5 * h, joint)
                     probe_next = probe_at(t + (i + 1) * h, begin, probe_spacing, probe_values)
-                    gain = 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
-                    if law is not None:
-                        gain += felt_at(probe, law, time, s, x, joint).amplifier - probe.amplifier
+                    gain += 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
                     x_next, xd = solenoid.advance(
                         x, xd, gain * drive_a, gain * drive_b, h, spool_steps, joint
                     )

@@ -1,6 +1,6 @@
 """Rates of one joint's state: what its stages and their effects make of pressures, position and spool.
 
-Only the wiring stands here; every equation is called from `physics`.
+Only the wiring stands here, as in the Diagram; every equation is called from `physics`.
 """
 
 from typing import Any, NamedTuple
@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-from hydrolek_drake.physics import base, cylinder, hooks, linkage, load, supply, valve
-from hydrolek_drake.rollout.law import Seen, braking_slope, felt
-from hydrolek_drake.rollout.probes import Probe
+from hydrolek_drake.physics import base, cylinder, fluid, hooks, linkage, load, supply, valve
+from hydrolek_drake.physics.law import Seen, braking_slope, felt
+from hydrolek_drake.physics.probes import Probe
 
 
 class State(NamedTuple):
@@ -35,10 +35,6 @@ class Slopes(NamedTuple):
     w: float
     tilt_rate: float
     lead_w: float
-
-
-LEAST_CAPACITY = 0.1
-"""A search may ask for less capacity than the oil has, down to this share: none at all has no solution."""
 
 
 @njit
@@ -99,8 +95,7 @@ def rates(
         rate_a, rate_b, stiff_a, stiff_b = cylinder.pressure_rates(
             s.p_a, s.p_b, flow_a, flow_b, stroke, v, joint
         )
-        softer_a = max(1.0 + probe.capacity_a * stiff_a, LEAST_CAPACITY)
-        softer_b = max(1.0 + probe.capacity_b * stiff_b, LEAST_CAPACITY)
+        softer_a, softer_b = fluid.softer(probe.capacity_a, stiff_a), fluid.softer(probe.capacity_b, stiff_b)
         rate_a, stiff_a = rate_a / softer_a, stiff_a / softer_a
         rate_b, stiff_b = rate_b / softer_b, stiff_b / softer_b
         slope_a = -stiff_a * settle_a

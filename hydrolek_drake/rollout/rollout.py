@@ -8,10 +8,11 @@ import numpy as np
 from hydrolek_drake.compiled import read_only
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import cylinder, hooks, load, sensor
+from hydrolek_drake.physics.law import law_of
+from hydrolek_drake.physics.probes import NO_PROBE
 from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, flat, position_of
 from hydrolek_drake.rollout import kernel
 from hydrolek_drake.rollout.one_point import stroke_and_lever
-from hydrolek_drake.rollout.probes import NO_PROBE
 
 STATE_SIZE = 2 + len(kernel.State._fields) + 2
 
@@ -148,7 +149,8 @@ def roll_out(
             shape (k, 10), the first at the first of `times`; None for none.
         pull: reading and pressures are pulled to what was measured, as in an observer: time constant [s], and
             `kernel.PULLED` at `times`, NaN where there is no value, shape (n, 3); None for a free rollout.
-        law: how inputs from outside follow from the state, rows of `law.LAW`, shape (k,); None for none.
+        law: how inputs from outside follow from the state, rows of `law.LAW`, shape (k,), besides the law that the
+            joint's record holds; None for none.
 
     Raises:
         InputError: times that do not rise, or not as many command values as command times.
@@ -178,7 +180,7 @@ def roll_out(
                 read_only(probe_values),
                 pull_time,
                 read_only(measured),
-                law,
+                _with_own(law, joint),
                 out,
             )
             if rows < len(times):
@@ -187,6 +189,14 @@ def roll_out(
             out[:] = np.nan
             diverged = "a parameter by which something is divided is zero"
     return Outcome(Signals(times, *out.T), diverged, start)
+
+
+def _with_own(law: np.ndarray | None, joint: np.ndarray) -> np.ndarray | None:
+    """A law and that of the joint's record."""
+    own = law_of(joint)
+    if law is None or own is None:
+        return own if law is None else law
+    return np.concatenate([own, law])
 
 
 def _check_times(command_times: np.ndarray, command_values: np.ndarray, times: np.ndarray) -> None:

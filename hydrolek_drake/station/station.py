@@ -13,6 +13,7 @@ from pydrake.systems.primitives import Adder, Gain, LogVectorOutput, VectorLogSi
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import cylinder, linkage
+from hydrolek_drake.physics.law import law_of
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.station.chain import read_chain, read_mounts
 from hydrolek_drake.station.plant import Payload, RigPlant, add_plant
@@ -26,6 +27,7 @@ from hydrolek_drake.systems.play import Play
 from hydrolek_drake.systems.potentiometer import Potentiometer
 from hydrolek_drake.systems.proportional_amplifier import ProportionalAmplifier
 from hydrolek_drake.systems.rocking_base import RockingBase
+from hydrolek_drake.systems.short_law import Outside, ShortLaw
 from hydrolek_drake.systems.solenoid_spool import SolenoidSpool
 from hydrolek_drake.systems.supply import Supply
 from hydrolek_drake.systems.transport_delay import TransportDelay
@@ -135,6 +137,8 @@ def make_station(
         _wire_hydraulics(builder, add, rig, joints, sizes, delay, parts)
     sensor = add(Potentiometer(joints, sizes.step, noise))
     builder.Connect(parts.sensed, sensor.motion)
+    if any(law_of(joints[i : i + 1]) is not None for i in range(len(joints))):
+        _wire_law(builder, add(ShortLaw(joints)), systems)
     logs = _add_logs(builder, systems, sizes.log_period)
     for port in (sensor.measured, sensor.voltage):
         builder.ExportOutput(port, port.get_name())
@@ -262,6 +266,22 @@ def _wire_hydraulics(
     builder.Connect(actuator.force, parts.linkage.force)
     builder.ExportInput(supply.available, "pressure_available")
     builder.ExportOutput(actuator.pressure, "pressure_measured")
+
+
+def _wire_law(builder: DiagramBuilder, law: ShortLaw, systems: dict[str, System]) -> None:
+    """Let a law see the machine, and every stage feel it."""
+    seen = {
+        law.motion: ("linkage", "joint_motion"),
+        law.rod: ("linkage", "rod_motion"),
+        law.pressure: ("actuator", "pressure"),
+        law.spool: ("solenoid_spool", "spool_position"),
+    }
+    for port, (system, name) in seen.items():
+        if system in systems and not (name == "rod_motion" and "actuator" not in systems):
+            builder.Connect(systems[system].GetOutputPort(name), port)
+    for system in systems.values():
+        if isinstance(outside := getattr(system, "outside", None), Outside):
+            builder.Connect(law.outside, outside.port)
 
 
 def _add_logs(builder: DiagramBuilder, systems: dict[str, System], period: float) -> dict[str, VectorLogSink]:

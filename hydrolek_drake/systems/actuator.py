@@ -9,17 +9,27 @@ from numba import njit
 from pydrake.systems.framework import BasicVector, Context, ContinuousState, LeafSystem
 
 from hydrolek_drake.physics.cylinder import friction_force, pressure_force, pressure_rates
+from hydrolek_drake.physics.fluid import softer
+from hydrolek_drake.physics.probes import CAPACITY_A, CAPACITY_B, CYLINDER
+from hydrolek_drake.systems.short_law import Outside
 
 
 @njit(cache=True)
 def _rates(
-    joints: np.ndarray, pressure: np.ndarray, flow: np.ndarray, motion: np.ndarray, out: np.ndarray
+    joints: np.ndarray,
+    pressure: np.ndarray,
+    flow: np.ndarray,
+    motion: np.ndarray,
+    outside: np.ndarray,
+    out: np.ndarray,
 ) -> None:
     n = len(joints)
     for i in range(n):
-        out[i], out[n + i], _, _ = pressure_rates(
+        rate_a, rate_b, stiff_a, stiff_b = pressure_rates(
             pressure[i], pressure[n + i], flow[i], flow[n + i], motion[i], motion[n + i], joints[i]
         )
+        out[i] = rate_a / softer(outside[i, CAPACITY_A], stiff_a)
+        out[n + i] = rate_b / softer(outside[i, CAPACITY_B], stiff_b)
 
 
 @njit(cache=True)
@@ -28,6 +38,7 @@ def _forces(
     pressure: np.ndarray,
     flow: np.ndarray,
     motion: np.ndarray,
+    outside: np.ndarray,
     time: float,
     ahead: float,
     out: np.ndarray,
@@ -38,12 +49,12 @@ def _forces(
         friction, _ = friction_force(motion[i], motion[n + i], time, joint)
         p_a, p_b = pressure[i], pressure[n + i]
         if ahead > 0.0:
-            rate_a, rate_b, _, _ = pressure_rates(
+            rate_a, rate_b, stiff_a, stiff_b = pressure_rates(
                 p_a, p_b, flow[i], flow[n + i], motion[i], motion[n + i], joint
             )
-            p_a += ahead * rate_a
-            p_b += ahead * rate_b
-        out[i] = pressure_force(p_a, p_b, joint) - friction
+            p_a += ahead * rate_a / softer(outside[i, CAPACITY_A], stiff_a)
+            p_b += ahead * rate_b / softer(outside[i, CAPACITY_B], stiff_b)
+        out[i] = pressure_force(p_a, p_b, joint) - friction + outside[i, CYLINDER]
 
 
 class Actuator(LeafSystem):
@@ -52,6 +63,7 @@ class Actuator(LeafSystem):
     Ports:
         in `oil_flow` (3n) [m^3/s].
         in `rod_motion` (2n): strokes [m], then velocities [m/s]; angles for vane and motor.
+        in `outside` (10 n): what a law adds, or open.
         out `pressure` (2n): chambers A, then B [Pa]; the continuous state.
         out `rod_force` (n): positive pushes out [N]; moments [N m] for vane and motor.
     """
@@ -73,13 +85,19 @@ class Actuator(LeafSystem):
         self._no_flow = np.zeros(3 * n)
         self.flow = self.DeclareVectorInputPort("oil_flow", 3 * n)
         self.motion = self.DeclareVectorInputPort("rod_motion", 2 * n)
+        self.outside = Outside(self, n)
         self._state = self.DeclareContinuousState(BasicVector(2 * n))
         self.pressure = self.DeclareStateOutputPort("pressure", self._state)
         self.force = self.DeclareVectorOutputPort(
             "rod_force",
             n,
             self._calc_force,
-            prerequisites_of_calc={self.xc_ticket(), self.time_ticket(), self.motion.ticket()}
+            prerequisites_of_calc={
+                self.xc_ticket(),
+                self.time_ticket(),
+                self.motion.ticket(),
+                self.outside.port.ticket(),
+            }
             | ({self.flow.ticket()} if ahead > 0.0 else set()),
         )
 
@@ -87,7 +105,14 @@ class Actuator(LeafSystem):
         """Continuity of the oil in both chambers."""
         rates = np.empty(2 * len(self._joints))
         pressure = context.get_continuous_state_vector().CopyToVector()
-        _rates(self._joints, pressure, self.flow.Eval(context), self.motion.Eval(context), rates)
+        _rates(
+            self._joints,
+            pressure,
+            self.flow.Eval(context),
+            self.motion.Eval(context),
+            self.outside.eval(context),
+            rates,
+        )
         derivatives.SetFromVector(rates)
 
     def _calc_force(self, context: Context, output: BasicVector) -> None:
@@ -95,4 +120,5 @@ class Actuator(LeafSystem):
         flow = self.flow.Eval(context) if self._ahead > 0.0 else self._no_flow
         motion = self.motion.Eval(context)
         force = output.get_mutable_value()
-        _forces(self._joints, pressure, flow, motion, context.get_time(), self._ahead, force)
+        outside = self.outside.eval(context)
+        _forces(self._joints, pressure, flow, motion, outside, context.get_time(), self._ahead, force)

@@ -4,19 +4,28 @@ import numpy as np
 from numba import njit
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
+from hydrolek_drake.physics.probes import VALVE
 from hydrolek_drake.physics.valve import chamber_flows, openings
+from hydrolek_drake.systems.short_law import Outside
 
 
 @njit(cache=True)
 def _flows(
-    joints: np.ndarray, x: np.ndarray, pressure: np.ndarray, p_supply: float, time: float, out: np.ndarray
+    joints: np.ndarray,
+    x: np.ndarray,
+    pressure: np.ndarray,
+    p_supply: float,
+    outside: np.ndarray,
+    time: float,
+    out: np.ndarray,
 ) -> None:
     n = len(joints)
     for i in range(n):
         joint = joints[i]
         open_a, open_b = openings(x[i], joint)
+        gain = 1.0 + outside[i, VALVE]
         out[i], out[n + i], out[2 * n + i], _, _ = chamber_flows(
-            open_a, open_b, p_supply, pressure[i], pressure[n + i], time, joint
+            gain * open_a, gain * open_b, p_supply, pressure[i], pressure[n + i], time, joint
         )
 
 
@@ -27,6 +36,7 @@ class FourWayValve(LeafSystem):
         in `spool_position` (n) [m].
         in `pressure` (2n): chambers A, then B [Pa].
         in `supply_pressure` (1) [Pa].
+        in `outside` (10 n): what a law adds, or open.
         out `oil_flow` (3n): into chambers A, into chambers B (leakage past the piston included), and drawn
             from the supply [m^3/s].
     """
@@ -40,6 +50,7 @@ class FourWayValve(LeafSystem):
         self.spool = self.DeclareVectorInputPort("spool_position", n)
         self.pressure = self.DeclareVectorInputPort("pressure", 2 * n)
         self.supply = self.DeclareVectorInputPort("supply_pressure", 1)
+        self.outside = Outside(self, n)
         self.flow = self.DeclareVectorOutputPort("oil_flow", 3 * n, self._calc)
 
     def _calc(self, context: Context, output: BasicVector) -> None:
@@ -48,6 +59,7 @@ class FourWayValve(LeafSystem):
             self.spool.Eval(context),
             self.pressure.Eval(context),
             float(self.supply.Eval(context)[0]),
+            self.outside.eval(context),
             context.get_time(),
             output.get_mutable_value(),
         )

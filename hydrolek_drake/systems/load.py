@@ -5,7 +5,9 @@ from numba import njit
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from hydrolek_drake.physics.load import SLIDING, gravity_load, passive_load
+from hydrolek_drake.physics.probes import LOAD
 from hydrolek_drake.systems.linkage import Chain
+from hydrolek_drake.systems.short_law import Outside
 
 
 @njit(cache=True)
@@ -16,6 +18,7 @@ def _torques(
     w: np.ndarray,
     moment: np.ndarray,
     acts: np.ndarray,
+    outside: np.ndarray,
     time: float,
     place: np.ndarray,
     out: np.ndarray,
@@ -24,7 +27,7 @@ def _torques(
     for i in range(len(joints)):
         position, velocity = state[q[i]], state[w[i]]
         passive, _ = passive_load(position, velocity, joints[i])
-        torque = moment[i] * acts[i] - passive
+        torque = moment[i] * acts[i] - passive + outside[i, LOAD]
         if joints[i].load.variant == SLIDING:
             torque -= gravity_load(position, time, joints[i])
         out[place[i]] = torque
@@ -39,6 +42,7 @@ class Load(LeafSystem):
     Ports:
         in `plant_state` (all positions and velocities of the plant).
         in `moment` (n): of the actuators [N m]; may stay open if all of them act at their mounts.
+        in `outside` (10 n): what a law adds, or open.
         out `joint_torque` (velocities of the plant): generalized forces [N m or N].
     """
 
@@ -62,6 +66,7 @@ class Load(LeafSystem):
         self._none = np.zeros(n)
         self.plant_state = self.DeclareVectorInputPort("plant_state", 2 * velocities)
         self.moment = self.DeclareVectorInputPort("moment", n)
+        self.outside = Outside(self, n)
         self.torque = self.DeclareVectorOutputPort("joint_torque", velocities, self._calc)
 
     def _calc(self, context: Context, output: BasicVector) -> None:
@@ -74,6 +79,7 @@ class Load(LeafSystem):
             self._chain.velocity_index,
             self.moment.Eval(context) if self._moments else self._none,
             self._acts,
+            self.outside.eval(context),
             context.get_time(),
             self._place,
             torque,

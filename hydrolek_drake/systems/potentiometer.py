@@ -5,7 +5,9 @@ from numba import njit
 from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
 
 from hydrolek_drake.compiled import read_only
+from hydrolek_drake.physics.probes import SENSOR
 from hydrolek_drake.physics.sensor import played, potentiometer_voltage, reading
+from hydrolek_drake.systems.short_law import Outside
 
 
 @njit(cache=True)
@@ -16,11 +18,18 @@ def _follow(joints: np.ndarray, held: np.ndarray, motion: np.ndarray, out: np.nd
 
 @njit(cache=True)
 def _readings(
-    joints: np.ndarray, held: np.ndarray, motion: np.ndarray, time: float, noise: np.ndarray, out: np.ndarray
+    joints: np.ndarray,
+    held: np.ndarray,
+    motion: np.ndarray,
+    outside: np.ndarray,
+    time: float,
+    noise: np.ndarray,
+    out: np.ndarray,
 ) -> None:
     for i in range(len(joints)):
         joint = joints[i]
-        value = reading(played(held[i], motion[i], joint), time, joint) + noise[i] * joint.sensor.noise
+        value = reading(played(held[i], motion[i], joint), time, joint) + outside[i, SENSOR]
+        value += noise[i] * joint.sensor.noise
         if joint.sensor.resolution > 0.0:
             value = np.round(value / joint.sensor.resolution) * joint.sensor.resolution
         out[i] = value
@@ -37,6 +46,7 @@ class Potentiometer(LeafSystem):
 
     Ports:
         in `motion` (2n): joint positions, then velocities.
+        in `outside` (10 n): what a law adds, or open.
         out `position_measured` (n) [rad or m].
         out `position_ideal` (n): the same without noise and resolution; ground truth of the sensor's errors.
         out `potentiometer_voltage` (n) [V]; NaN for a joint without a potentiometer.
@@ -58,6 +68,7 @@ class Potentiometer(LeafSystem):
         self._generator = generator
         self._silent = read_only(np.zeros(n))
         self.motion = self.DeclareVectorInputPort("motion", 2 * n)
+        self.outside = Outside(self, n)
         self._held = self.DeclareDiscreteState(np.zeros(n))
         self._noise = self.DeclareDiscreteState(np.zeros(n))
         if generator is not None or np.any(joints["effects"]["sensor_hysteresis"]["half_width_rad"] > 0.0):
@@ -77,7 +88,8 @@ class Potentiometer(LeafSystem):
     def _read(self, context: Context, joints: np.ndarray, noise: np.ndarray) -> np.ndarray:
         held = context.get_discrete_state(self._held).get_value()
         values = np.empty(len(held))
-        _readings(joints, held, self.motion.Eval(context), context.get_time(), noise, values)
+        motion, outside = self.motion.Eval(context), self.outside.eval(context)
+        _readings(joints, held, motion, outside, context.get_time(), noise, values)
         return values
 
     def _calc(self, context: Context, output: BasicVector) -> None:

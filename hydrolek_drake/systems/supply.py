@@ -4,7 +4,9 @@ import numpy as np
 from numba import njit
 from pydrake.systems.framework import BasicVector, Context, ContinuousState, LeafSystem
 
+from hydrolek_drake.physics.probes import SUPPLY
 from hydrolek_drake.physics.supply import flow_rate_of_change, supply_pressure
+from hydrolek_drake.systems.short_law import Outside
 
 
 @njit(cache=True)
@@ -28,6 +30,7 @@ class Supply(LeafSystem):
         in `oil_flow` (3n): its last n entries are drawn from the supply [m^3/s].
         in `pressure_available` (1): share of the pump's pressure that is there, 1 when healthy, 0 when a hose
             has burst; 1 if unconnected.
+        in `outside` (10 n): what laws add, or open; all joints feel it.
         out `supply_pressure` (1) [Pa].
     """
 
@@ -39,12 +42,17 @@ class Supply(LeafSystem):
         self._n = len(joints)
         self.flow = self.DeclareVectorInputPort("oil_flow", 3 * self._n)
         self.available = self.DeclareVectorInputPort("pressure_available", 1)
+        self.outside = Outside(self, self._n)
         self._state = self.DeclareContinuousState(BasicVector([0.0]))
         self.pressure = self.DeclareVectorOutputPort(
             "supply_pressure",
             1,
             self._calc,
-            prerequisites_of_calc={self.xc_ticket(), self.available.ticket()},
+            prerequisites_of_calc={
+                self.xc_ticket(),
+                self.available.ticket(),
+                self.outside.port.ticket(),
+            },
         )
 
     def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:
@@ -56,4 +64,5 @@ class Supply(LeafSystem):
     def _calc(self, context: Context, output: BasicVector) -> None:
         flow = context.get_continuous_state_vector().GetAtIndex(0)
         share = self.available.Eval(context)[0] if self.available.HasValue(context) else 1.0
-        output.SetAtIndex(0, _pressure(self._joints, flow, share))
+        added = float(self.outside.eval(context)[:, SUPPLY].sum())
+        output.SetAtIndex(0, _pressure(self._joints, flow, share) + added)

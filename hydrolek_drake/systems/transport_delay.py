@@ -5,6 +5,8 @@ from numba import njit
 from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
 
 from hydrolek_drake.physics.command import drive_voltage, transport_delay
+from hydrolek_drake.physics.probes import COMMAND
+from hydrolek_drake.systems.short_law import Outside
 
 
 def whole_steps_and_rest(joints: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
@@ -28,31 +30,36 @@ def _take_in(
     command: np.ndarray,
     whole: np.ndarray,
     rest: np.ndarray,
+    outside: np.ndarray,
     line: np.ndarray,
     out: np.ndarray,
 ) -> None:
-    """Write this step's voltages into the ring `line` (steps times n, then its row) and read the delayed ones."""
+    """Write this step's commands into the ring `line` (steps times n, its row) and read the delayed voltages."""
     n = len(joints)
     length, newest = (len(line) - 1) // n, int(line[-1])
     for i in range(n):
-        line[newest * n + i] = drive_voltage(command[i], joints[i])
-        newer = line[((newest - whole[i]) % length) * n + i]
-        older = line[((newest - whole[i] - 1) % length) * n + i]
+        line[newest * n + i] = command[i]
+        added = outside[i, COMMAND]
+        newer = drive_voltage(line[((newest - whole[i]) % length) * n + i] + added, joints[i])
+        older = drive_voltage(line[((newest - whole[i] - 1) % length) * n + i] + added, joints[i])
         out[i] = newer + rest[i] * (older - newer)
     line[-1] = (newest + 1) % length
 
 
 @njit(cache=True)
 def _arriving(
-    joints: np.ndarray, command: np.ndarray, whole: np.ndarray, line: np.ndarray, out: np.ndarray
+    joints: np.ndarray,
+    command: np.ndarray,
+    whole: np.ndarray,
+    outside: np.ndarray,
+    line: np.ndarray,
+    out: np.ndarray,
 ) -> None:
     n = len(joints)
     length, newest = (len(line) - 1) // n, int(line[-1])
     for i in range(n):
-        if whole[i] == 0:
-            out[i] = drive_voltage(command[i], joints[i])
-        else:
-            out[i] = line[((newest - whole[i]) % length) * n + i]
+        arrived = command[i] if whole[i] == 0 else line[((newest - whole[i]) % length) * n + i]
+        out[i] = drive_voltage(arrived + outside[i, COMMAND], joints[i])
 
 
 class TransportDelay(LeafSystem):
@@ -63,6 +70,7 @@ class TransportDelay(LeafSystem):
 
     Ports:
         in `command` (n): recorded or commanded voltage [V].
+        in `outside` (10 n): what a law adds to the command that has arrived, or open.
         out `voltage_delayed` (n): at the amplifiers, positive towards chamber A, limited; its mean over the
             running step [V].
         out `voltage_arriving` (n): the sample that arrives within the step that begins now [V], for what is
@@ -79,8 +87,11 @@ class TransportDelay(LeafSystem):
         self._length = int(self._whole.max()) + 2
         self.command = self.DeclareVectorInputPort("command", n)
         self._none = np.zeros(n)
+        self.outside = Outside(self, n)
         # one group: each that an update asks for costs as much as its work
-        self._line = self.DeclareDiscreteState(np.zeros(self._length * n + 1))
+        self._line = self.DeclareDiscreteState(
+            np.append(np.tile(joints["command"]["neutral"], self._length), 0.0)
+        )
         self._out = self.DeclareDiscreteState(np.zeros(n))
         self.DeclarePeriodicDiscreteUpdateEvent(step, 0.0, self._update)
         self.voltage = self.DeclareStateOutputPort("voltage_delayed", self._out)
@@ -89,7 +100,7 @@ class TransportDelay(LeafSystem):
             "voltage_arriving",
             n,
             self._calc_arriving,
-            prerequisites_of_calc={self.discrete_state_ticket(self._line)}
+            prerequisites_of_calc={self.discrete_state_ticket(self._line), self.outside.port.ticket()}
             | ({self.command.ticket()} if self._at_once else set()),
         )
 
@@ -99,6 +110,7 @@ class TransportDelay(LeafSystem):
             self.command.Eval(context),
             self._whole,
             self._rest,
+            self.outside.eval(context),
             values.get_mutable_value(self._line),
             values.get_mutable_value(self._out),
         )
@@ -108,6 +120,7 @@ class TransportDelay(LeafSystem):
             self._joints,
             self.command.Eval(context) if self._at_once else self._none,
             self._whole,
+            self.outside.eval(context),
             context.get_discrete_state().get_value(self._line),
             output.get_mutable_value(),
         )

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.identification.experiment import Experiment, experiments_of
+from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig, load_rig
-from hydrolek_drake.rollout.probes import PROBES
 
 
 @pytest.fixture(scope="session")

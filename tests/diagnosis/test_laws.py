@@ -20,7 +20,7 @@ from hydrolek_drake.diagnosis.words import where_sentence
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
-from hydrolek_drake.rollout.law import Seen, law_value
+from hydrolek_drake.physics.law import Seen, law_value
 
 HOSE = 8e-13
 """Capacity of a hose on side A [m^3/Pa]: 5 to 10 times that of the bench's oil."""

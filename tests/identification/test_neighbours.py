@@ -10,9 +10,9 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.experiment import experiments_of
 from hydrolek_drake.identification.neighbours import drawn_flow, effects_of_others, motion, rows_at
 from hydrolek_drake.kinematics.arms import load_of_joint
+from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.rollout.probes import PROBES
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import make_station
 

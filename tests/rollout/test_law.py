@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.laws import TERMS, Term, law_record, law_records, span_of
+from hydrolek_drake.physics.law import Seen, law_value
+from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.rollout.law import Seen, law_value
 from hydrolek_drake.rollout.one_point import stroke_and_lever
-from hydrolek_drake.rollout.probes import PROBES
 from hydrolek_drake.rollout.rollout import Signals, roll_out
 
 TIMES = np.arange(0.0, 6.0, 0.01)

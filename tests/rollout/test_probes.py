@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.rollout.probes import PROBES
 from hydrolek_drake.rollout.rollout import roll_out
 
 TIMES = np.arange(0.0, 4.0, 0.01)

@@ -165,43 +165,45 @@ def test_divergence_is_told_with_a_remedy():
 # --- ports, feedthrough, interruption ------------------------------------------------------------------------
 
 N = 14
+OUTSIDE = {"outside": 10 * N}  # what a law for physics in no list adds; open where a rig has none
 ENDS = 18  # ten linear cylinders push two links each, but those of joint 1 stand on the fixed base
 PORTS = {
     "operator_computer": ({"signal_commanded": N}, {"channel_voltage": 32}),
     "field_point": ({"channel_voltage": 32}, {"command": N}),
-    "transport_delay": ({"command": N}, {"voltage_delayed": N, "voltage_arriving": N}),
-    "proportional_amplifier": ({"voltage_delayed": N}, {"coil_current": 2 * N}),
+    "transport_delay": ({"command": N, **OUTSIDE}, {"voltage_delayed": N, "voltage_arriving": N}),
+    "proportional_amplifier": ({"voltage_delayed": N, **OUTSIDE}, {"coil_current": 2 * N}),
     "solenoid_spool": ({"coil_current": 2 * N}, {"spool_position": N}),
     "four_way_valve": (
-        {"spool_position": N, "pressure": 2 * N, "supply_pressure": 1},
+        {"spool_position": N, "pressure": 2 * N, "supply_pressure": 1, **OUTSIDE},
         {"oil_flow": 3 * N},
     ),
-    "supply": ({"oil_flow": 3 * N, "pressure_available": 1}, {"supply_pressure": 1}),
-    "actuator": ({"oil_flow": 3 * N, "rod_motion": 2 * N}, {"pressure": 2 * N, "rod_force": N}),
+    "supply": ({"oil_flow": 3 * N, "pressure_available": 1, **OUTSIDE}, {"supply_pressure": 1}),
+    "actuator": ({"oil_flow": 3 * N, "rod_motion": 2 * N, **OUTSIDE}, {"pressure": 2 * N, "rod_force": N}),
     "linkage": (
         {"plant_state": 2 * N, "side_motion": 2 * N, "rod_force": N},
         {"joint_motion": 2 * N, "rod_motion": 2 * N, "moment": N, "mount_force": 3 * ENDS},
     ),
     "mounts": ({"command": 3 * ENDS, "body_poses": 0}, {"spatial_forces": 0}),
-    "load": ({"plant_state": 2 * N, "moment": N}, {"joint_torque": N}),
+    "load": ({"plant_state": 2 * N, "moment": N, **OUTSIDE}, {"joint_torque": N}),
     "potentiometer": (
-        {"motion": 2 * N},
+        {"motion": 2 * N, **OUTSIDE},
         {"position_measured": N, "position_ideal": N, "potentiometer_voltage": N},
     ),
 }
 FEEDS_THROUGH = {
     "operator_computer": {("signal_commanded", "channel_voltage")},
     "field_point": {("channel_voltage", "command")},
-    "transport_delay": set(),
-    "proportional_amplifier": {("voltage_delayed", "coil_current")},
+    "transport_delay": {("outside", "voltage_arriving")},
+    "proportional_amplifier": {("voltage_delayed", "coil_current"), ("outside", "coil_current")},
     "solenoid_spool": set(),
     "four_way_valve": {
         ("spool_position", "oil_flow"),
         ("pressure", "oil_flow"),
         ("supply_pressure", "oil_flow"),
+        ("outside", "oil_flow"),
     },
-    "supply": {("pressure_available", "supply_pressure")},
-    "actuator": {("rod_motion", "rod_force")},
+    "supply": {("pressure_available", "supply_pressure"), ("outside", "supply_pressure")},
+    "actuator": {("rod_motion", "rod_force"), ("outside", "rod_force")},
     "linkage": {
         ("plant_state", "joint_motion"),
         ("plant_state", "rod_motion"),
@@ -211,11 +213,14 @@ FEEDS_THROUGH = {
         ("rod_force", "mount_force"),
     },
     "mounts": {("command", "spatial_forces"), ("body_poses", "spatial_forces")},
-    "load": {("plant_state", "joint_torque"), ("moment", "joint_torque")},
+    "load": {("plant_state", "joint_torque"), ("moment", "joint_torque"), ("outside", "joint_torque")},
     "potentiometer": {
         ("motion", "position_measured"),
         ("motion", "position_ideal"),
         ("motion", "potentiometer_voltage"),
+        ("outside", "position_measured"),
+        ("outside", "position_ideal"),
+        ("outside", "potentiometer_voltage"),
     },
 }
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-from hydrolek_drake.rollout.probes import PROBES, Probe, added
+from hydrolek_drake.physics.probes import CYLINDER, LOAD, Probe, added
 
 TIMES = ("1", "t/T", "(t/T)^2")
 PLACES = ("1", "z", "z^2", "(1 - z^2)", "((1 + z)/2)^2", "((1 - z)/2)^2")
@@ -35,8 +35,12 @@ LAW = np.dtype(
 )  # fmt: skip
 """One row for each term."""
 
-_CYLINDER = float(PROBES.index("cylinder"))
-_LOAD = float(PROBES.index("load"))
+MOST_TERMS = 6
+"""So many terms a rig may hold for a joint."""
+
+TERM_NAMES = tuple(f"term_{number}" for number in range(1, MOST_TERMS + 1))
+LAW_RECORD = np.dtype([(name, LAW) for name in TERM_NAMES])
+"""The law of a joint in its record; a term without amplitude is none."""
 
 
 class Seen(NamedTuple):
@@ -50,6 +54,13 @@ class Seen(NamedTuple):
     p_a: float  # pressure on side A [Pa]
     p_b: float  # pressure on side B [Pa]
     x: float  # of the spool [m]
+
+
+def law_of(joint: np.ndarray) -> np.ndarray | None:
+    """The law that a joint's record holds, its terms as rows of `LAW`; None if it has none. # (1,) -> (k,)."""
+    terms = np.ascontiguousarray(joint["law"]).view(LAW)
+    there = (terms["sine"] != 0.0) | (terms["cosine"] != 0.0)
+    return terms[there] if there.any() else None
 
 
 @njit
@@ -156,11 +167,7 @@ def braking_slope(laws: np.ndarray | None, lever: float, seen: Seen) -> float:
     slope = 0.0
     for row in range(len(laws)):
         law = laws[row]
-        if (
-            (law.probe != _CYLINDER and law.probe != _LOAD)
-            or law.speed_shape == 0.0
-            or law.speed_shape == 3.0
-        ):
+        if (law.probe != CYLINDER and law.probe != LOAD) or law.speed_shape == 0.0 or law.speed_shape == 3.0:
             continue
         v = seen.v if law.at_rod > 0.0 else seen.w
         secant = 1.0 / law.speed

@@ -1,6 +1,7 @@
-"""Inputs to a rollout from outside the model, all zero otherwise.
+"""Inputs to a joint from outside the model, all zero otherwise.
 
-Unknown ones, one a stage, with which a diagnosis asks where physics is missing; and what other joints do.
+Unknown ones, one a stage, with which a diagnosis asks where physics is missing and which a law gives (`law`); and
+what other joints do.
 """
 
 from typing import NamedTuple
@@ -25,14 +26,23 @@ class Probe(NamedTuple):
 
 
 PROBES = Probe._fields
+COMMAND, AMPLIFIER, VALVE, SUPPLY, CYLINDER, LOAD, SENSOR, FLOW, CAPACITY_A, CAPACITY_B = range(len(PROBES))
+"""Their places."""
+
 NO_PROBE = np.zeros((0, len(PROBES)))
+
+
+@njit
+def no_probe() -> Probe:
+    """Nothing from outside."""
+    return Probe(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit
 def probe_at(time: float, begin: float, spacing: float, values: np.ndarray) -> Probe:
     """Probes at a time, on straight lines between samples of uniform spacing."""
     if len(values) == 0:
-        return Probe(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return no_probe()
     place = min(max((time - begin) / spacing, 0.0), len(values) - 1.0)
     i = min(int(place), len(values) - 2)
     f = place - i
