@@ -31,8 +31,9 @@ def enlarged_rig(rig: Rig, hypothesis: Hypothesis, law: FoundLaw | None, joint: 
     if law is None:
         return enlarged
     rows = records_of(law.law, law.span, law.values)
-    source = f"{SOURCE}; of the first recording: another one begins elsewhere" if law.law.periodic else SOURCE
-    terms = terms_of(rows, (law.law.input.unit, law.span.at(law.law.input.probe).unit), source)
+    source = f"{SOURCE}; its phase is the first recording's" if law.law.periodic else SOURCE
+    units = (law.law.input.unit, law.span.at(law.law.input.probe).unit)
+    terms = terms_of(rows, units, source, "reach of these recordings")
     return replace(enlarged, laws={**rig.laws, joint: (*rig.laws.get(joint, ()), *terms)})
 
 

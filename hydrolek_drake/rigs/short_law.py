@@ -9,6 +9,7 @@ law:
     ...
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -40,15 +41,32 @@ _SHAPES = {"time": "time", "place": "place", "speed": "speed_shape", "other": "o
 _SEEN = ("joint", "rod")
 
 SCALES = (
-    Parameter("frequency", "Hz", "of a periodic term", 0.0, lowest=0.0),
-    Parameter("low", "m|rad", "position at which z is -1"),
-    Parameter("high", "m|rad", "position at which z is 1"),
-    Parameter("speed", "m/s|rad/s", "by which v is divided", positive=True),
-    Parameter("slow", "m/s|rad/s", "below which sign(v) is smoothed", positive=True),
-    Parameter("seconds", "s", "T in t/T", positive=True),
-    Parameter("opening", "m", "by which the spool's position is divided", positive=True),
-    Parameter("pressure", "Pa", "by which pressures are divided", positive=True),
+    Parameter("low", "m|rad", "position at which z is -1", 0.0),
+    Parameter("high", "m|rad", "position at which z is 1", 1.0),
+    Parameter("speed", "m/s|rad/s", "by which v is divided", 1.0, positive=True),
+    Parameter("slow", "m/s|rad/s", "below which sign(v) is smoothed", 1.0, positive=True),
+    Parameter("seconds", "s", "T in t/T", 1.0, positive=True),
+    Parameter("opening", "m", "by which the spool's position is divided", 1.0, positive=True),
+    Parameter("pressure", "Pa", "by which pressures are divided", 1.0, positive=True),
 )
+"""What the variables of a term are told in; it states those of its factors."""
+
+FREQUENCY = Parameter("frequency", "Hz", "of a periodic term", 0.0, lowest=0.0)
+
+
+def needed(factors: Mapping[str, str]) -> tuple[str, ...]:
+    """Names of `SCALES` that the factors of a term need."""
+    speed, other = factors.get("speed", "1"), factors.get("other", "1")
+    found = {
+        "low": factors.get("place", "1") != "1",
+        "high": factors.get("place", "1") != "1",
+        "speed": speed not in ("1", "sign(v)"),
+        "slow": speed == "sign(v)",
+        "seconds": factors.get("time", "1") != "1",
+        "opening": "x" in other,
+        "pressure": "p" in other,
+    }
+    return tuple(name for name, is_needed in found.items() if is_needed)
 
 
 @dataclass(frozen=True)
@@ -59,7 +77,7 @@ class LawTerm:
         enters: the input that it gives.
         factors: of `FACTORS`, those that are not 1.
         seen: whose position and speed it depends on, rod or joint.
-        numbers: amplitudes and what its variables are told in, by their names in `physics.law.LAW`.
+        numbers: amplitudes, frequency and what its variables are told in, by their names in `physics.law.LAW`.
     """
 
     enters: str
@@ -74,6 +92,8 @@ class LawTerm:
         for factor, name in self.factors.items():
             row[_SHAPES[factor]] = FACTORS[factor].index(name)
         row["at_rod"] = _SEEN.index(self.seen)
+        for p in SCALES:
+            row[p.name] = p.neutral
         for name, entry in self.numbers.items():
             row[name] = entry.value
         return row
@@ -84,32 +104,28 @@ class LawTerm:
         return {"enters": self.enters, "factors": dict(self.factors), "seen": self.seen, **numbers}
 
 
-def terms_of(rows: np.ndarray, units: tuple[str, str], source: str) -> tuple[LawTerm, ...]:
+def terms_of(rows: np.ndarray, units: tuple[str, str], source: str, reach: str) -> tuple[LawTerm, ...]:
     """Terms from rows of `physics.law.LAW`.
 
     Args:
         rows: shape (k,).
         units: of what the law gives, and of the position that it sees.
-        source: where the numbers come from.
+        source: where amplitudes and frequency come from.
+        reach: where the numbers come from that its variables are told in.
     """
     given, length = units
-    known = {"sine": given, "cosine": given, "low": length, "high": length}
-    known |= {"speed": f"{length}/s", "slow": f"{length}/s"}
-    known |= {p.name: p.unit for p in SCALES if p.name not in known}
+    moved = {"low": length, "high": length, "speed": f"{length}/s", "slow": f"{length}/s"}
+    told_in = {p.name: moved.get(p.name, p.unit) for p in SCALES}
     terms = []
     for row in rows:
-        factors = {name: FACTORS[name][int(row[_SHAPES[name]])] for name in FACTORS}
-        numbers = {name: Entry(float(row[name]), unit, source) for name, unit in known.items()}
-        if row["frequency"] == 0.0:
-            del numbers["cosine"], numbers["frequency"]
-        terms.append(
-            LawTerm(
-                PROBES[int(row["probe"])],
-                {name: factor for name, factor in factors.items() if factor != "1"},
-                _SEEN[int(row["at_rod"])],
-                numbers,
-            )
-        )
+        chosen = {name: FACTORS[name][int(row[_SHAPES[name]])] for name in FACTORS}
+        factors = {name: factor for name, factor in chosen.items() if factor != "1"}
+        numbers = {"sine": Entry(float(row["sine"]), given, source)}
+        if row["frequency"] > 0.0:
+            numbers["cosine"] = Entry(float(row["cosine"]), given, source)
+            numbers["frequency"] = Entry(float(row["frequency"]), FREQUENCY.unit, source)
+        numbers |= {name: Entry(float(row[name]), told_in[name], reach) for name in needed(factors)}
+        terms.append(LawTerm(PROBES[int(row["probe"])], factors, _SEEN[int(row["at_rod"])], numbers))
     return tuple(terms)
 
 
@@ -129,7 +145,7 @@ def read_law(raw: Any, where: str, path: Path) -> tuple[LawTerm, ...]:
 
 
 def _read_term(raw: Any, where: str, path: Path) -> LawTerm:
-    names = ("enters", "factors", "seen", "sine", "cosine", *(p.name for p in SCALES))
+    names = ("enters", "factors", "seen", "sine", "cosine", "frequency", *(p.name for p in SCALES))
     refuse_unknown(raw, names, f"{path}: {where}")
     enters = _choice(raw.get("enters"), tuple(UNITS), f"{path}: {where}.enters")
     factors = raw.get("factors") or {}
@@ -143,13 +159,14 @@ def _read_term(raw: Any, where: str, path: Path) -> LawTerm:
         Parameter("sine", UNITS[enters], "amplitude, of the sine of a periodic term"),
         Parameter("cosine", UNITS[enters], "amplitude of the cosine of a periodic term", 0.0),
     )
+    must = ("sine", *needed(chosen))
     numbers = {}
-    for p in (*sizes, *SCALES):
+    for p in (*sizes, FREQUENCY, *SCALES):
         if p.name in raw:
             numbers[p.name] = parse_entry(raw[p.name], p, f"{path}: {where}.{p.name}")
-        elif p.neutral is None:
+        elif p.name in must:
             raise InputError(f"{path}: {where}.{p.name} is missing: {p.meaning} [{p.unit}]")
-    if not numbers["low"].value < numbers["high"].value:
+    if "low" in must and not numbers["low"].value < numbers["high"].value:
         raise InputError(f"{path}: {where}.low must be smaller than {where}.high")
     return LawTerm(enters, chosen, seen, numbers)
 

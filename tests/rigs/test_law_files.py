@@ -70,9 +70,23 @@ def test_a_law_is_a_list_of_a_few_terms(tmp_path, law) -> None:
         _rig(tmp_path, law)
 
 
-def test_a_law_without_a_number_names_it(tmp_path) -> None:
-    short = {key: value for key, value in TERM.items() if key != "pressure"}
-    with pytest.raises(
-        InputError, match=r"law\[1\].pressure is missing: by which pressures are divided \[Pa\]"
-    ):
-        _rig(tmp_path, [short])
+@pytest.mark.parametrize(
+    ("factors", "needs"),
+    [
+        ({}, ["sine"]),
+        ({"time": "t/T"}, ["sine", "seconds"]),
+        ({"place": "z^2", "speed": "sign(v)"}, ["sine", "low", "high", "slow"]),
+        ({"speed": "v |v|"}, ["sine", "speed"]),
+        ({"other": "(p_A - p_B)"}, ["sine", "pressure"]),
+        ({"other": "|x|"}, ["sine", "opening"]),
+    ],
+)
+def test_a_term_states_the_numbers_of_its_factors_and_no_others(tmp_path, factors, needs) -> None:
+    few = {"enters": "load", "factors": factors, **{name: TERM[name] for name in needs}}
+    few["sine"] = {"value": 5.0, "unit": "N m", "source": "test"}
+    (term,) = _rig(tmp_path, [few]).laws["joint"]
+    assert set(term.numbers) == set(needs)
+    for name in needs:
+        short = {key: value for key, value in few.items() if key != name}
+        with pytest.raises(InputError, match=rf"law\[1\].{name} is missing: .* \["):
+            _rig(tmp_path, [short])

@@ -44,7 +44,7 @@ def _diagram(rig) -> np.ndarray:
 
 def _with_law(rig, rows, probe):
     length = "m" if rows[0]["at_rod"] else "rad"
-    terms = terms_of(rows, (UNITS[probe].split("|")[0], length), "test")
+    terms = terms_of(rows, (UNITS[probe].split("|")[0], length), "test", "test")
     return replace(rig, laws={rig.joints[0]: terms})
 
 
@@ -111,6 +111,7 @@ def test_a_law_is_written_with_its_rig_and_runs_from_the_file(bench, tmp_path) -
     again = load_rig(path, {})
     assert again.laws == held.laws
     assert again.records().tobytes() == held.records().tobytes()
+    assert set(again.laws["joint"][1].numbers) == {"sine", "cosine", "frequency"}  # what it needs, no more
     assert _roll(again).reading.tobytes() == _roll(held).reading.tobytes() != _roll(rig).reading.tobytes()
     given = roll_out(rig.records(), TIMES, COMMAND, TIMES, longest_step=STEP, law=rows).signals
     assert given.reading.tobytes() == _roll(held).reading.tobytes()
