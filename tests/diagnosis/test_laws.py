@@ -8,8 +8,9 @@ import pytest
 
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.effort import POLISH
+from hydrolek_drake.diagnosis.enlarged import enlarged_rig
 from hydrolek_drake.diagnosis.judged import Judged
-from hydrolek_drake.diagnosis.law_growing import MOST_TERMS
+from hydrolek_drake.diagnosis.law_growing import LONGEST
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, records_of
 from hydrolek_drake.diagnosis.law_search import promising
 from hydrolek_drake.diagnosis.law_terms import _along, gain_along
@@ -21,6 +22,9 @@ from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 from hydrolek_drake.physics.law import Seen, law_value
+from hydrolek_drake.station.simulation import command_source, initial_context
+from hydrolek_drake.station.simulation import run as run_diagram
+from hydrolek_drake.station.station import make_station
 
 HOSE = 8e-13
 """Capacity of a hose on side A [m^3/Pa]: 5 to 10 times that of the bench's oil."""
@@ -98,6 +102,21 @@ def test_a_hose_that_expands_is_found_at_the_fluid(bench, recorded) -> None:
     told = SimpleNamespace(bench=workbench, best=judged, law=found, held_out=held_out, step=workbench.fine)
     shown = held_out[0].residuals(after(told, held_out[0]))
     assert np.sqrt(np.mean(shown**2)) == pytest.approx(found.held_out_over_noise, rel=0.02)
+    _its_rig_predicts_as_it_does(bench, workbench, judged, found, held_out[0])
+
+
+def _its_rig_predicts_as_it_does(bench, workbench, judged, found, held_out) -> None:
+    """The rig with the law, written and read, in the rollout and in the Drake Diagram."""
+    enlarged = enlarged_rig(bench, judged.hypothesis, found, "joint")
+    with_law, plain = (held_out.simulate(rig.records(), workbench.fine).signals for rig in (enlarged, bench))
+    over_noise = np.sqrt(np.mean(held_out.residuals(with_law) ** 2))
+    assert over_noise == pytest.approx(found.held_out_over_noise, rel=0.02)
+    volts = command_source(held_out.command_times, held_out.command[:, None])
+    station = make_station(enlarged, command=volts)
+    seconds = float(held_out.time[-1])
+    done = run_diagram(station, seconds, context=initial_context(station, np.array([with_law.position[0]])))
+    off = done.signals["reading"][: held_out.time.size, 0] - with_law.reading
+    assert np.abs(off).max() < 0.05 * np.abs(plain.reading - with_law.reading).max()
 
 
 def test_a_friction_over_the_stroke_is_found_at_the_rod_as_a_law_of_several_terms(bench, recorded) -> None:
@@ -123,7 +142,7 @@ def test_a_friction_over_the_stroke_is_found_at_the_rod_as_a_law_of_several_term
     assert judged.over_noise > 2.0
     assert found is not None and found.law.input.stage == "cylinder"
     assert set(found.rivals) <= {"load"}  # which may rub as the rod does
-    assert 1 < len(found.law.terms) <= MOST_TERMS
+    assert 1 < len(found.law.terms) <= LONGEST
     assert found.held_out_over_noise < 1.1
 
     def friction(u: float) -> float:

@@ -72,6 +72,10 @@ def test_physics_in_no_list_is_recognised_at_its_stage(diagnosed) -> None:
     report = json.loads((diagnosed("practice_14") / "report.json").read_text())
     assert report["verdict"] == "unlisted_physics"
     assert [place["stage"] for place in report["locations"]] == ["supply"]
+    # the law stands in the rig with the phase of the first recording, which replay then follows
+    rig = load_rig(diagnosed("practice_14") / "rig_fitted.yaml", {})
+    angle = compare(replay(rig, read_recording(DATA / "practice_14" / "train.csv", rig.columns)))[0]
+    assert angle.rms * 57.29578 == pytest.approx(report["fit"]["with_effects"]["train_rms"], rel=0.05)
 
 
 def test_the_report_keeps_the_contract(diagnosed) -> None:
