@@ -17,7 +17,7 @@ from hydrolek_drake.diagnosis.effort import BEAM, GLANCE_S, LOOK, POLISH
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, moments_of
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import PULLED_STEPS, PULLED_TOLERANCE
-from hydrolek_drake.identification.problem import PULL_S
+from hydrolek_drake.identification.problem import PULL_S, PULLS_S
 
 TRIED_PULLED = 12
 """So many of the first fits are tried with pulled rollouts too."""
@@ -72,20 +72,24 @@ def fit_pulled(
     step: float,
     experiments: Sequence[Experiment],
 ) -> Hypothesis:
-    """A fit with pulled rollouts, from the start at which they fit best."""
-    problem = bench.problem(effects, step, experiments, PULL_S)
+    """Fits with pulled rollouts, tightly and then less so (`PULLS_S`), from the start at which they fit best."""
+    problem = bench.problem(effects, step, experiments, PULLS_S[0])
     units = [problem.parameters.unit(start) for start in starts]
     errors = [float(np.sum(problem.residuals(unit) ** 2)) for unit in units]
-    return bench.fit(
-        effects,
-        starts[int(np.argmin(errors))],
-        step,
-        PULLED_STEPS,
-        tolerance=PULLED_TOLERANCE,
-        experiments=experiments,
-        pull_time=PULL_S,
-        alone=True,
-    )
+    values = starts[int(np.argmin(errors))]
+    for pull_time in PULLS_S:
+        fitted = bench.fit(
+            effects,
+            values,
+            step,
+            PULLED_STEPS,
+            tolerance=PULLED_TOLERANCE,
+            experiments=experiments,
+            pull_time=pull_time,
+            alone=True,
+        )
+        values = fitted.values
+    return fitted
 
 
 def starts_of(effects: Sequence[Candidate]) -> list[dict[str, float]]:

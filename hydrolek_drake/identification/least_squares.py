@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from scipy.optimize import least_squares
 
-from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.problem import PULLS_S, Problem
 
 EDGE = 1e-6
 """Starts are pulled so far inside the cube: the trust-region method walks in the interior."""
@@ -180,8 +180,8 @@ def fit_from_afar(problem: Problem, start: np.ndarray, *, loss: str = "linear", 
     """Least squares from a start far from the optimum, first with pulled rollouts.
 
     The residuals of a free rollout pile up what went wrong before, and least squares ends in the next hollow. Pulled
-    rollouts forget within `PULL_S`, as the prediction errors of an observer do (Ljung, System Identification, 1999,
-    chapter 7), and lead near; free ones then see what drifts slowly, too.
+    rollouts forget, as the prediction errors of an observer do (Ljung, System Identification, 1999, chapter 7), first
+    at once and then within `PULLS_S`, and lead near; free ones then see what drifts slowly, too.
 
     Args:
         problem: residuals and Jacobian.
@@ -189,11 +189,14 @@ def fit_from_afar(problem: Problem, start: np.ndarray, *, loss: str = "linear", 
         loss: one of `LOSSES`.
         most_steps: with free rollouts.
     """
-    pulled = problem.pulled()
-    near = fit_from(pulled, start, loss=loss, most_steps=PULLED_STEPS, tolerance=PULLED_TOLERANCE)
-    problem.evaluations += pulled.evaluations
-    fit = fit_from(problem, near.unit, loss=loss, most_steps=most_steps)
-    return replace(fit, evaluations=fit.evaluations + near.evaluations)
+    evaluations = 0
+    for pull_time in PULLS_S:
+        pulled = problem.pulled(pull_time)
+        near = fit_from(pulled, start, loss=loss, most_steps=PULLED_STEPS, tolerance=PULLED_TOLERANCE)
+        start, evaluations = near.unit, evaluations + near.evaluations
+    problem.evaluations += evaluations
+    fit = fit_from(problem, start, loss=loss, most_steps=most_steps)
+    return replace(fit, evaluations=fit.evaluations + evaluations)
 
 
 def multi_start(

@@ -21,6 +21,11 @@ PULL_S = 0.1
 """Time constant with which rollouts are pulled to what was measured where free ones get stuck: longer than a valve
 takes to open and a chamber to fill, and far shorter than a move, over which errors pile up."""
 
+PULLS_S = (0.03, PULL_S)
+"""Time constants of fits that begin far off, one after the other. Within the first hardly anything piles up: what is
+left of it is nearly the error of the rates themselves, over which the squared residuals have few hollows (an equation
+error; Ljung, System Identification, 1999, chapter 7). The second one sees what is slower."""
+
 DIVERGED = 1e7
 """Residual, in units of noise, where a diverged simulation has no value: worse than any that ends."""
 
@@ -65,10 +70,10 @@ class Problem:
         self.counted = sum(experiment.counted for experiment in self.experiments)
         self.unsure = sum(experiment.unsure for experiment in self.experiments)
 
-    def pulled(self) -> "Problem":
-        """The same with rollouts that are pulled to what was measured."""
+    def pulled(self, pull_time: float) -> "Problem":
+        """The same with rollouts that are pulled to what was measured, with a time constant [s]."""
         other = copy.copy(self)
-        other.pull_time, other.evaluations = PULL_S, 0
+        other.pull_time, other.evaluations = pull_time, 0
         other._anchor = None
         return other
 
