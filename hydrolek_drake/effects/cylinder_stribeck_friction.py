@@ -29,7 +29,7 @@ EFFECT = Effect(
     search={
         "coulomb_N": Search("force", 0.4, (0.01, 0.05)),
         "stribeck_N": Search("force", 0.4, (0.01, 0.05)),
-        "stribeck_velocity_m_per_s": Search("rod_speed", 2.0, (0.03, 0.15, 0.6), lowest=0.005, log=True),
+        "stribeck_velocity_m_per_s": Search("rod_speed", 2.0, (0.03, 0.15), lowest=0.005, log=True),
     },
     source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083, Stribeck curve",
     confused_with={

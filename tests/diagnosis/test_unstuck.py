@@ -6,7 +6,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.effort import COARSE, GLANCE, LOOK
-from hydrolek_drake.diagnosis.unsticking import led_on, starts_of, unstuck
+from hydrolek_drake.diagnosis.unsticking import fit_pulled, led_on, starts_of, unstuck
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -55,3 +55,16 @@ def test_differences_from_wide_to_narrow_lead_out_of_a_hollow_near_the_noise(ben
     assert min(h.fit.over_noise for h in stuck) > 1.3
     assert led.fit.over_noise < 1.05  # of 1200 values chance moves it by 2 %
     assert _found(led) == {name: pytest.approx(value, rel=0.2) for name, value in MIDDLE.items()}
+
+
+def test_rollouts_pulled_tightly_at_first_lead_to_a_friction_from_far_off(bench, sticking) -> None:
+    """Twenty times the friction that the search begins with, fading over speeds that the rod hardly leaves."""
+    planted = {"coulomb_N": 2000.0, "stribeck_N": 4000.0, "stribeck_velocity_m_per_s": 0.02}
+    experiments, stribeck = sticking(planted, largest_V=4.0, pressure_noise_Pa=2e4)
+    with ThreadPoolExecutor(1) as pool:
+        workbench = Workbench(bench, free_parameters(bench), experiments, pool)
+        starts = starts_of((stribeck,))[:2]
+        pulled = [fit_pulled(workbench, (stribeck,), [s], workbench.fine, experiments) for s in starts]
+        for led in (workbench.refit(fit, workbench.fine, LOOK) for fit in pulled):
+            assert led.fit.over_noise < 1.05
+            assert _found(led) == {name: pytest.approx(value, rel=0.1) for name, value in planted.items()}
