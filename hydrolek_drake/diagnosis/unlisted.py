@@ -16,11 +16,12 @@ import numpy as np
 from hydrolek_drake.diagnosis.effort import COARSE
 from hydrolek_drake.diagnosis.gains import GAIN_NEEDED
 from hydrolek_drake.diagnosis.judged import Judged, flatter
+from hydrolek_drake.diagnosis.law_counterpart import counterpart
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
 from hydrolek_drake.diagnosis.law_growing import grown
-from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, left_in_all
+from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, left_in_all, records_of
 from hydrolek_drake.diagnosis.law_search import promising
-from hydrolek_drake.diagnosis.laws import Span, inputs_of, span_of
+from hydrolek_drake.diagnosis.laws import Input, Span, inputs_of, span_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiment import Experiment
@@ -73,6 +74,7 @@ def find_law(
         lambda item: fitted(bench, left, item[0], held_out, span, item[1][1:], finer), ranked
     )
     ended = bench.side_by_side(lambda found: grown(bench, left, found, held_out, finer), _ahead(ended))
+    ended += _other_side(bench, left, ended, held_out, inputs, finer)
     least = min(found.held_out_over_noise for found in ended)
     if not least < BETTER * named.over_noise:
         return None
@@ -93,6 +95,28 @@ def _ahead(ended: Sequence[FoundLaw]) -> list[FoundLaw]:
     for found in near:
         best.setdefault(found.law.input.probe, found)
     return list(best.values())
+
+
+def _other_side(
+    bench: Workbench,
+    left: Hypothesis,
+    ended: Sequence[FoundLaw],
+    held_out: Sequence[Experiment],
+    inputs: Sequence[Input],
+    step: float,
+) -> list[FoundLaw]:
+    """Of the law that predicts best its counterpart beyond the linkage, which may have grown by other terms."""
+    best = min(ended, key=lambda found: found.held_out_over_noise)
+    parameters = bench.parameters(left.effects)
+    records = parameters.records(parameters.unit(best.parameters))
+    law = records_of(best.law, best.span, best.values)
+    signals = [e.simulate(records, step, law=law).signals for e in bench.training]
+    other = counterpart(best, inputs, signals, records[bench.training[0].index])
+    if other is None or any((f.law.input, f.law.terms) == (other[0].input, other[0].terms) for f in ended):
+        return []
+    begin = (best.parameters, other[1])
+    there = fitted(bench, left, other[0], held_out, best.span, begin, step)
+    return [grown(bench, left, there, held_out, step)]
 
 
 def likeliest(alike: Sequence[FoundLaw], in_all: Sequence[float], counted: int) -> FoundLaw:

@@ -5,9 +5,11 @@ A call of an equation alone compiles it anew in every run; these are compiled on
 
 from typing import Any
 
+import numpy as np
 from numba import njit
 
 from hydrolek_drake.physics import linkage, valve
+from hydrolek_drake.physics.law import Seen, law_value
 
 
 @njit(cache=True)
@@ -21,3 +23,13 @@ def inlet_conductance(p_supply: float, p_a: float, p_b: float, joint: Any) -> fl
 def stroke_and_lever(angle: float, joint: Any) -> tuple[float, float]:
     """Stroke [m] and lever [m] of a joint's linkage at an angle [rad]; see `linkage.stroke_and_lever`."""
     return linkage.stroke_and_lever(angle, joint)
+
+
+@njit(cache=True)
+def law_along(law: Any, seen: np.ndarray) -> np.ndarray:
+    """A term of a law (a record of `physics.law.LAW`) at many moments, `Seen` as rows. # (n, 8) -> (n,)."""
+    values = np.empty(len(seen))
+    for i in range(len(seen)):
+        t, q, w, stroke, v, p_a, p_b, x = seen[i]
+        values[i] = law_value(law, Seen(t, q, w, stroke, v, p_a, p_b, x))
+    return values

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.effects import EFFECTS
+from hydrolek_drake.physics.law import LAW, MOST_TERMS
 from hydrolek_drake.physics.records import JOINT, STAGES, flat, position_of
 from hydrolek_drake.units import si_factor
 
@@ -34,5 +35,7 @@ def test_a_flat_record_shares_memory_and_position_of_finds_its_numbers():
     assert records["effects"]["load_payload"]["mass_kg"].tolist() == [0.0, 3.0]
     assert vectors.shape == (
         2,
-        sum(len(s.dtype().names) for s in STAGES.values()) + sum(len(e.parameters) for e in EFFECTS.values()),
+        sum(len(s.dtype().names) for s in STAGES.values())
+        + sum(len(e.parameters) for e in EFFECTS.values())
+        + MOST_TERMS * len(LAW.names),
     )
