@@ -1,7 +1,7 @@
 """One search with its judgement, and when to search again: with parts of the held-out data, or with other weights."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hydrolek_drake.diagnosis.balance import told, weighed, weights_by
 from hydrolek_drake.diagnosis.candidates import Candidate
@@ -11,8 +11,9 @@ from hydrolek_drake.diagnosis.evidence import even, judge
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.hollows import deepest, strayed
 from hydrolek_drake.diagnosis.judged import Judged
-from hydrolek_drake.diagnosis.search import NEARER, search, search_on
+from hydrolek_drake.diagnosis.search import search, search_on
 from hydrolek_drake.diagnosis.splitting import mixed
+from hydrolek_drake.diagnosis.weighing import NEARER, weighted_by
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
 
@@ -75,13 +76,13 @@ def _attempted(
         bench.resume()
     say("holding the models against data that none of them was fitted to")
     best = found.best
-    weighted = tuple(bench.weighted_by(best, held_out))
+    weighted = tuple(weighted_by(bench, best, held_out))
     if not interrupted:
         even(bench, found, weighted)
     if found.best is not best:
         best = found.best
-        weighted = tuple(bench.weighted_by(best, held_out))
-    bench.training = tuple(bench.weighted_by(best, bench.training))
+        weighted = tuple(weighted_by(bench, best, held_out))
+    bench.training = tuple(weighted_by(bench, best, bench.training))
     judged = tuple(judge(bench, found, weighted))
     return Known(bench, found, weighted, judged, conclude(judged), interrupted)
 
@@ -152,7 +153,8 @@ def by_more_data(known: Known, candidates: Sequence[Candidate], say: Callable[[s
         return None
     say("the held-out recording shows more than the training data: fitting parts of both")
     both, kept = mixed(known.bench.training, known.held_out)
-    return _whole(attempt(known.bench.with_training(both), candidates, kept, say))
+    second = _whole(attempt(known.bench.with_training(both), candidates, kept, say))
+    return replace(second, conclusion=conclude(second.judged, accounted=True))
 
 
 def by_both(known: Known, candidates: Sequence[Candidate], say: Callable[[str], None]) -> Known | None:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from hydrolek_drake.diagnosis.effort import AT_NOISE, COARSE, FAR, LOOK, POLISH
 from hydrolek_drake.diagnosis.unsticking import fit_pulled
+from hydrolek_drake.diagnosis.weighing import weighted_by
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
 MOST_ROUNDS = 8
@@ -24,11 +25,11 @@ def fit_baseline(bench: Workbench) -> Hypothesis:
     """The nominal model, fitted to the training data, which are weighted by what it leaves.
 
     Args:
-        bench: its training data are replaced, see `Workbench.weighted_by`.
+        bench: its training data are replaced, see `weighing.weighted_by`.
     """
     starts = _starts(bench)
     free = _fitted_freely(bench, starts)
-    bench.training = tuple(bench.weighted_by(free, bench.training))
+    bench.training = tuple(weighted_by(bench, free, bench.training))
     free = bench.refit(free, bench.fine, POLISH if free.fit.over_noise < FAR else 1)
     if free.fit.over_noise <= AT_NOISE:
         return free

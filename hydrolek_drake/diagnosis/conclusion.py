@@ -43,12 +43,18 @@ class Conclusion:
     groups: tuple[tuple[str, ...], ...]
 
 
-def conclude(judged: Sequence[Judged]) -> Conclusion:
-    """The verdict that judged hypotheses allow, the most probable first."""
+def conclude(judged: Sequence[Judged], *, accounted: bool = False) -> Conclusion:
+    """The verdict that judged hypotheses allow, the most probable first.
+
+    Args:
+        judged: hypotheses.
+        accounted: whether a model also explains held-out data that its parameters' uncertainty accounts for. Where a
+            joint stuck by a hair's breadth, values that the training data do not tell from the fitted ones decide.
+    """
     best = judged[0]
     paths = {path for j in judged for path in j.hypothesis.ids}
     probability = {path: probability_of(path, judged) for path in paths}
-    explained = _explains(best)
+    explained = _explains(best, accounted=accounted)
     groups = _groups(best, judged)
     if not explained:
         return Conclusion("unlisted_physics", best, probability, groups if best.hypothesis.effects else ())
@@ -58,8 +64,9 @@ def conclude(judged: Sequence[Judged]) -> Conclusion:
     return Conclusion(verdict, best, probability, groups)
 
 
-def _explains(judged: Judged) -> bool:
-    return judged.hypothesis.fit.over_noise <= EXPLAINED and judged.over_noise <= EXPLAINED_AHEAD
+def _explains(judged: Judged, *, accounted: bool) -> bool:
+    ahead = judged.over_noise <= EXPLAINED_AHEAD or (accounted and judged.unaccounted <= EXPLAINED)
+    return judged.hypothesis.fit.over_noise <= EXPLAINED and ahead
 
 
 def _groups(best: Judged, judged: Sequence[Judged]) -> tuple[tuple[str, ...], ...]:

@@ -10,8 +10,11 @@ error of the step must stay far below what is to be explained."""
 NEARLY = 1.5
 """A third effect is looked for only if two leave at most this many times the noise: it would be a small one."""
 
-AT_NOISE = 1.03
-"""A model within 3 % of the noise: the estimate of the noise itself is good to 1 to 2 %."""
+NOISE_KNOWN = 0.015
+"""Relative uncertainty of the noise level, which is estimated from the recording."""
+
+AT_NOISE = 1.0 + NOISE_KNOWN
+"""A model that leaves so many times the noise or less leaves nothing that could be told from noise."""
 
 GLANCE_S = 20.0
 """First fits see so many seconds of a recording: errors that grow with time are smaller, and so is the work."""

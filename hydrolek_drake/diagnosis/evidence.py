@@ -20,7 +20,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.effort import AT_NOISE, NEARLY, POLISH
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED
+from hydrolek_drake.diagnosis.effort import NEAR, NEARLY, POLISH
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import GAIN_NEEDED, cost_of, gain_needed
 from hydrolek_drake.diagnosis.judged import SMALL, Judged, dispersion, with_probabilities
@@ -86,7 +87,7 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
         chosen,
     )
     # farther from the noise, what no model explains outweighs what is left to gain
-    if min(h.fit.over_noise for h in refitted) < AT_NOISE:
+    if min(h.fit.over_noise for h in refitted) < NEAR:
         refitted = _finished(bench, refitted)
     paying = [h for h in refitted if pays(h, refitted)]
     judged = bench.side_by_side(lambda h: _predicted(bench, h, held_out, counted, finer), paying)
@@ -118,7 +119,7 @@ def _predicted(
     residuals = problem.residuals(unit)
     plain = Judged(hypothesis, residuals, counted)
     far_off = plain.over_noise > SMALL
-    if far_off and hypothesis.fit.over_noise > AT_NOISE:
+    if far_off and hypothesis.fit.over_noise > EXPLAINED:
         return plain
     jacobian = problem.jacobian(unit, residuals, bench.movable(hypothesis.effects, problem.parameters))
     bench.evaluations += problem.evaluations

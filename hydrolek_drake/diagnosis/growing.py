@@ -82,7 +82,7 @@ def grow(
         if AT_NOISE < over < NEAR:
             pairs += _pairs(parent, scored)
             _add(every, bench, parent, scored, all_of_them=True)
-    if not trials:
+    if not trials and not every:
         return Grown([], {})
     if over < NEAR:
         return Grown(_near(bench, list(trials.values()), pairs, list(every.values()), step), {})
@@ -183,7 +183,7 @@ def _near(
         lambda trial: bench.fit(trial.effects, trial.likeliest, step, POLISH),
         [*by_left, *others, *pairs],
     )
-    if every and min(h.fit.over_noise for h in fits) > AT_NOISE:
+    if every and all(h.fit.over_noise > AT_NOISE for h in fits):
         again = [trial for trial in trials if trial in by_gain or trial.effects[-1].effect.sudden]
         fits += bench.side_by_side(lambda trial: anew(bench, trial, step), again)
         smooth = [trial for trial in every if not trial.effects[-1].effect.sudden]

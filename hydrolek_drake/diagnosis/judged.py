@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.effort import NOISE_KNOWN
 from hydrolek_drake.diagnosis.gains import FIDELITY, cost_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis
 
@@ -14,9 +15,6 @@ EFFECT_COST = 4.5
 
 PARAMETER_COST = 2.0
 """Log-odds against each further parameter, so that a special case is preferred to what contains it."""
-
-NOISE_KNOWN = 0.015
-"""Relative uncertainty of the noise level, which is estimated from the recording."""
 
 SMALL = 3.0
 """Held-out residuals above so many times the noise are no small deviation from a model that is right: they speak

@@ -14,7 +14,7 @@ from typing import Any
 import yaml
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
-from hydrolek_drake.diagnosis.judged import NOISE_KNOWN
+from hydrolek_drake.diagnosis.effort import NOISE_KNOWN
 
 
 @cache

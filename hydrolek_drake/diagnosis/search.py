@@ -16,13 +16,13 @@ from hydrolek_drake.diagnosis.effort import (
     MOST_EFFECTS,
     NEAR,
     NEARLY,
-    POLISH,
 )
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import gain_needed
 from hydrolek_drake.diagnosis.growing import grow
 from hydrolek_drake.diagnosis.improving import exchanged, lead_on, prune, searched_further, widen
 from hydrolek_drake.diagnosis.score import scores_of
+from hydrolek_drake.diagnosis.weighing import weigh_anew
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
 MATERIAL_GAIN = 0.3
@@ -36,9 +36,6 @@ which others promise more."""
 FIRST_SHARE = 0.1
 """A first effect must take this share of the squared residuals of a nominal model that is far from the noise, or no
 second one is looked for: of two effects, one alone takes much of what both do."""
-
-NEARER = 0.5
-"""A model that leaves this share of what the one left by which the data are weighed tells their noise better."""
 
 
 def search(
@@ -79,7 +76,7 @@ def search_on(
         say: told what is being done.
     """
     found.keep(elsewhere)
-    _weigh_anew(bench, found)
+    weigh_anew(bench, found)
     prune(bench, found, candidates)
     found.left = scores_of(bench, found.best, candidates, bench.fine)
     found.rounds = 1
@@ -117,12 +114,12 @@ def _grown(
         found.keep(hypothesis)
     prune(bench, found, candidates)
     candidates = searched_further(bench, found, candidates, say)
-    _weigh_anew(bench, found)
+    weigh_anew(bench, found)
     pruned = found.best
     if pruned.fit.over_noise > AT_NOISE:
         widen(bench, found, pruned, candidates)
         lead_on(bench, found)
-    if found.best.ids != pruned.ids:  # in its place an effect may have become needless
+    if found.best is not pruned:  # in its place an effect may have become needless
         prune(bench, found, candidates)
     found.left = scores_of(bench, found.best, candidates, bench.fine)
     if found.best.fit.over_noise < NEAR:
@@ -135,36 +132,16 @@ def _grown(
     return candidates, near[:BEAM]
 
 
-def _weigh_anew(bench: Workbench, found: Search) -> None:
-    """Weigh the training data by the best model, and fit again with these weights what is near it.
-
-    What a model far from the noise leaves moves fast, and some of it passes for noise. And what is known of other
-    joints that move at the same time is a share of what they do: beside a model in which they do more, such as a supply
-    that they share, more is unknown.
-    """
-    best = found.best
-    together = any(experiment.others is not None for experiment in bench.training)
-    if not together and best.fit.over_noise > NEARER * found.weighed_at:
-        return
-    bench.training = tuple(bench.weighted_by(best, bench.training))
-    near = [h for h in found.hypotheses.values() if h.fit.objective < HOPELESS * best.fit.objective]
-    chosen = {h.ids: h for h in (found.baseline, best, *near)}
-    again = bench.side_by_side(
-        lambda h: bench.refit(h, bench.fine, POLISH if h.fit.over_noise < FAR else 1), list(chosen.values())
-    )
-    found.given_up.update(found.hypotheses)
-    found.hypotheses.clear()
-    for fitted in again:
-        found.keep(fitted)
-    found.weighed_at = found.best.fit.over_noise
-
-
 def _words(count: int) -> str:
     return {1: "one effect", 2: "two effects"}.get(count, f"{count} effects")
 
 
 def _worth_going_on(found: Search, material: float) -> bool:
-    """Whether anything is left over, and some effect promises to take a part of it."""
+    """Whether anything is left over, and some effect promises to take a part of it.
+
+    Near the noise, but not at it, a model may have bent its numbers so far that nothing promises anything beside it;
+    from the rig's own numbers an effect may still do better (`growing`).
+    """
     best = found.best
     before = found.extended.get(best.ids)
     if before is not None and before - best.fit.objective < gain_needed(best.fit):
@@ -180,4 +157,4 @@ def _worth_going_on(found: Search, material: float) -> bool:
     promised = found.left[0].gain
     if len(best.effects) >= 2 and best.fit.over_noise > NEARLY and promised < material * best.fit.objective:
         return False
-    return promised > gain_needed(best.fit)
+    return promised > gain_needed(best.fit) or AT_NOISE < best.fit.over_noise < NEAR

@@ -4,18 +4,16 @@ import math
 import threading
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor, wait
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.identification.channel import faithful
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit, fit_from
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.identification.problem import DIFFERENCE, Problem
 from hydrolek_drake.physics import supply
-from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.rigs import Rig
 
 SPREAD = 1.0 / math.sqrt(12.0)
@@ -24,11 +22,6 @@ SPREAD = 1.0 / math.sqrt(12.0)
 Used as a weak prior about the rig's own values: what a recording does not tell stays where the rig has it,
 instead of wandering off to make up for physics that is missing.
 """
-
-OTHERS_UNKNOWN = 0.1
-"""What other joints do to one is known to this share: their areas and masses are the rig's own, unfitted, and their
-speeds come from smoothed angles."""
-
 
 STEP_SHARE = 0.5
 """A coarse step may be wrong by this share of what is to be explained: a quarter of the squared residuals."""
@@ -267,38 +260,3 @@ class Workbench:
                 break
             most *= 0.5
         return max(most, 1.0) * self.fine
-
-    def weighted_by(self, hypothesis: Hypothesis, experiments: Sequence[Experiment]) -> list[Experiment]:
-        """The same experiments with noise, model error and response to the start as they show beside this model.
-
-        A recorded signal's own movement passes for noise where it is fast; most of it is gone in the residual.
-        The error of the integration is told from a second rollout with half the step: the method is of second
-        order, so the coarser one is wrong by 4/3 of their difference. What joints that move at the same time do
-        is known to `OTHERS_UNKNOWN`.
-        """
-        problem = self.problem(hypothesis.effects, self.fine, experiments)
-        records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
-        better = []
-        for experiment in experiments:
-            coarse = experiment.simulate(records, self.fine).signals
-            fine = experiment.simulate(records, 0.5 * self.fine).signals
-            alone = None
-            if experiment.others is not None:
-                alone = replace(experiment, others=None).simulate(records, 0.5 * self.fine).signals
-            channels = []
-            for channel in experiment.channels:
-                model = getattr(fine, channel.model)
-                level = noise_level(channel.measured - model)
-                error = 4.0 / 3.0 * np.abs(getattr(coarse, channel.model) - model)
-                if alone is not None:
-                    error = np.hypot(error, OTHERS_UNKNOWN * (model - getattr(alone, channel.model)))
-                channels.append(
-                    replace(
-                        channel,
-                        noise=min(channel.noise, max(level, faithful(channel.measured))),
-                        model_error=np.nan_to_num(error),
-                    )
-                )
-            response = experiment.responding(records, 0.5 * self.fine, fine)
-            better.append(replace(experiment, channels=tuple(channels), start_response=response))
-        return better

@@ -10,7 +10,7 @@ from hydrolek_drake.diagnosis.effort import FAR, POLISH
 from hydrolek_drake.diagnosis.evidence import OUT_OF_REACH, _contenders
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.judged import Judged
-from hydrolek_drake.diagnosis.search import _weigh_anew
+from hydrolek_drake.diagnosis.weighing import weigh_anew
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.natural_scales import natural_scales
@@ -58,9 +58,9 @@ def test_beside_a_model_that_leaves_half_the_noise_is_told_anew(bench, recorded)
         found.weighed_at = found.baseline.fit.over_noise
         found.keep(work.fit((drift,), {**found.baseline.values, **drift.starts[0]}, work.fine, POLISH))
         before = work.training
-        _weigh_anew(work, found)
+        weigh_anew(work, found)
         weighed = work.training
-        _weigh_anew(work, found)
+        weigh_anew(work, found)
     assert found.baseline.fit.over_noise > FAR
     assert weighed is not before
     assert work.training is weighed  # once is enough, as long as nothing better is found

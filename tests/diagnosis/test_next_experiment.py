@@ -11,6 +11,7 @@ from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.effort import GLANCE
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.next_experiment import propose
+from hydrolek_drake.diagnosis.weighing import weighted_by
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import experiments_of
 from hydrolek_drake.identification.natural_scales import natural_scales
@@ -39,7 +40,7 @@ def alike():
     with ThreadPoolExecutor(2) as pool:
         bench = Workbench(rig, free_parameters(rig), training, pool)
         nominal = bench.fit((), {}, bench.fine, GLANCE)
-        bench.training = tuple(bench.weighted_by(nominal, training))
+        bench.training = tuple(weighted_by(bench, nominal, training))
         chosen = [next(c for c in candidates if c.id == id_) for id_ in RIVALS]
         fits = [bench.fit((c,), {**nominal.values, **c.starts[0]}, bench.fine, 1) for c in chosen]
         yield bench, fits

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from hydrolek_drake.diagnosis.judged import NOISE_KNOWN
+from hydrolek_drake.diagnosis.effort import NOISE_KNOWN
 from hydrolek_drake.diagnosis.reliability import kind_of, reliability, reliability_data
 
 LEAK, AIR = "joints.j.effects.leak.size", "joints.j.effects.air.size"

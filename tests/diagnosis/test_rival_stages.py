@@ -5,8 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from hydrolek_drake.diagnosis.effort import NOISE_KNOWN
 from hydrolek_drake.diagnosis.gains import GAIN_NEEDED
-from hydrolek_drake.diagnosis.judged import NOISE_KNOWN, flatter
+from hydrolek_drake.diagnosis.judged import flatter
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
 from hydrolek_drake.diagnosis.laws import Input, Term
 from hydrolek_drake.diagnosis.unlisted import likeliest

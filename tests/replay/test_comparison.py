@@ -30,6 +30,34 @@ def test_rounding_without_noise_counts_as_noise():
     assert noise_level(step * np.round(0.1 * TIME / step)) == pytest.approx(step / np.sqrt(12.0))
 
 
+def test_noise_is_told_from_the_windows_in_which_a_joint_does_not_stick_and_slip():
+    slipping = np.where(np.sin(0.8 * TIME) > 0.0, 0.3 * np.abs((7.0 * TIME) % 2.0 - 1.0), 0.0)
+    noisy = MOVEMENT + slipping + np.random.default_rng(4).normal(0.0, 0.05, TIME.size)
+    third = np.diff(noisy, n=3)
+    assert np.sqrt(np.mean(third**2) / 20.0) > 1.2 * 0.05  # over the whole recording it looks larger
+    # a tenth of a hundred windows of 17 degrees of freedom: 5 %, twice
+    assert noise_level(noisy) == pytest.approx(0.05, rel=0.1)
+
+
+def test_an_encoder_that_stands_still_half_of_the_time_says_nothing_of_noise_there():
+    step, noise = 0.05, 0.01
+    moved = np.where(TIME < 20.0, 5.0, 5.0 + 2.0 * (TIME - 20.0)) + np.random.default_rng(5).normal(
+        0.0, noise, TIME.size
+    )
+    rounded = step * np.round(moved / step)
+    assert noise_level(rounded) == pytest.approx(np.hypot(noise, step / np.sqrt(12.0)), rel=0.1)
+
+
+@pytest.mark.parametrize("samples", [500, 1000, 4000])
+def test_white_noise_is_not_taken_for_movement(samples):
+    """All of it counts, so that the level scatters by less than the windows that happen to move least do."""
+    rng = np.random.default_rng(samples)
+    levels = np.array([noise_level(rng.normal(size=samples)) for _ in range(300)])
+    trimmed = 0.997  # beyond 3.5 deviations of a first estimate
+    assert levels.mean() == pytest.approx(trimmed, abs=0.01)
+    assert levels.std() < 1.6 * np.sqrt(0.5 * 2.31 / samples)  # differences that overlap tell less
+
+
 def test_noise_passes_over_missing_values():
     noisy = MOVEMENT + np.random.default_rng(2).normal(0.0, 0.05, TIME.size)
     noisy[np.random.default_rng(3).random(TIME.size) < 0.1] = np.nan

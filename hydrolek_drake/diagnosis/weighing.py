@@ -1,0 +1,87 @@
+"""How much each measured value counts: weights from the noise and the model error that show beside a model."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.effort import FAR, HOPELESS, POLISH
+from hydrolek_drake.diagnosis.found import Search
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.channel import faithful
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.replay.noise import noise_level
+
+OTHERS_UNKNOWN = 0.1
+"""What other joints do to one is known to this share: their areas and masses are the rig's own, unfitted, and their
+speeds come from smoothed angles."""
+
+NEARER = 0.5
+"""A model that leaves this share of what the one left by which the data are weighed tells their noise better."""
+
+
+def weighted_by(
+    bench: Workbench, hypothesis: Hypothesis, experiments: Sequence[Experiment]
+) -> list[Experiment]:
+    """The same experiments with noise, model error and response to the start as they show beside this model.
+
+    A recorded signal's own movement passes for noise where it is fast; most of it is gone in the residual.
+    The error of the integration is told from a second rollout with half the step: the method is of second
+    order, so the coarser one is wrong by 4/3 of their difference. What joints that move at the same time do
+    is known to `OTHERS_UNKNOWN`.
+    """
+    problem = bench.problem(hypothesis.effects, bench.fine, experiments)
+    records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
+    better = []
+    for experiment in experiments:
+        coarse = experiment.simulate(records, bench.fine).signals
+        fine = experiment.simulate(records, 0.5 * bench.fine).signals
+        alone = None
+        if experiment.others is not None:
+            alone = replace(experiment, others=None).simulate(records, 0.5 * bench.fine).signals
+        channels = []
+        for channel in experiment.channels:
+            model = getattr(fine, channel.model)
+            level = noise_level(channel.measured - model)
+            error = 4.0 / 3.0 * np.abs(getattr(coarse, channel.model) - model)
+            if alone is not None:
+                error = np.hypot(error, OTHERS_UNKNOWN * (model - getattr(alone, channel.model)))
+            channels.append(
+                replace(
+                    channel,
+                    noise=min(channel.noise, max(level, faithful(channel.measured))),
+                    model_error=np.nan_to_num(error),
+                )
+            )
+        response = experiment.responding(records, 0.5 * bench.fine, fine)
+        better.append(replace(experiment, channels=tuple(channels), start_response=response))
+    return better
+
+
+def weigh_anew(bench: Workbench, found: Search) -> None:
+    """Weigh the training data by the best model, and fit again with these weights what is near it.
+
+    What a model far from the noise leaves moves fast, and some of it passes for noise. And what is known of other
+    joints that move at the same time is a share of what they do: beside a model in which they do more, such as a supply
+    that they share, more is unknown.
+    """
+    together = any(experiment.others is not None for experiment in bench.training)
+    if not together and found.best.fit.over_noise > NEARER * found.weighed_at:
+        return
+    bench.training = tuple(weighted_by(bench, found.best, bench.training))
+    _fit_again(bench, found)
+
+
+def _fit_again(bench: Workbench, found: Search) -> None:
+    """Fit again what is near the best model, and give up the rest."""
+    best = found.best
+    near = [h for h in found.hypotheses.values() if h.fit.objective < HOPELESS * best.fit.objective]
+    chosen = {h.ids: h for h in (found.baseline, best, *near)}
+    again = bench.side_by_side(
+        lambda h: bench.refit(h, bench.fine, POLISH if h.fit.over_noise < FAR else 1), list(chosen.values())
+    )
+    found.given_up.update(found.hypotheses)
+    found.hypotheses.clear()
+    for fitted in again:
+        found.keep(fitted)
+    found.weighed_at = found.best.fit.over_noise
