@@ -20,8 +20,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.conclusion import EXPLAINED
-from hydrolek_drake.diagnosis.effort import NEAR, NEARLY, POLISH
+from hydrolek_drake.diagnosis.effort import AT_NOISE, NEAR, NEARLY, POLISH
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import GAIN_NEEDED, cost_of, gain_needed
 from hydrolek_drake.diagnosis.judged import SMALL, Judged, dispersion, with_probabilities
@@ -119,7 +118,7 @@ def _predicted(
     residuals = problem.residuals(unit)
     plain = Judged(hypothesis, residuals, counted)
     far_off = plain.over_noise > SMALL
-    if far_off and hypothesis.fit.over_noise > EXPLAINED:
+    if far_off and hypothesis.fit.over_noise > AT_NOISE:
         return plain
     jacobian = problem.jacobian(unit, residuals, bench.movable(hypothesis.effects, problem.parameters))
     bench.evaluations += problem.evaluations
