@@ -184,11 +184,12 @@ def _near(
         [*by_left, *others, *pairs],
     )
     if every and all(h.fit.over_noise > AT_NOISE for h in fits):
-        again = [trial for trial in trials if trial in by_gain or trial.effects[-1].effect.sudden]
-        fits += bench.side_by_side(lambda trial: anew(bench, trial, step), again)
         smooth = [trial for trial in every if not trial.effects[-1].effect.sudden]
         pulled = _in_order(bench.side_by_side(lambda trial: anew_pulled(bench, trial, step), smooth))
         fits += bench.side_by_side(lambda h: bench.refit(h, step, LOOK, alone=True), pulled[:FOLLOWED])
+    if every and all(h.fit.over_noise > AT_NOISE for h in fits):
+        again = [trial for trial in trials if trial in by_gain or trial.effects[-1].effect.sudden]
+        fits += bench.side_by_side(lambda trial: anew(bench, trial, step), again)
     fits = _in_order(fits)
     return _in_order([timed(bench, fits[0], step), *fits[1:]])
 

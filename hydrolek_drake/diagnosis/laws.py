@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.effects.scales import Scales
-from hydrolek_drake.physics.law import LAW, OTHERS, PLACES, SPEEDS, TIMES
+from hydrolek_drake.physics.law import LAW, NEAR, OTHERS, PLACES, SPEEDS, TIMES
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rollout.one_point import stroke_and_lever
 from hydrolek_drake.rollout.rollout import Signals
@@ -118,6 +118,7 @@ TERMS = (
     Term(_FORCES, place="(1 - z^2)", speed="sign(v)"),
     Term(_FORCES, place="((1 + z)/2)^2", speed="sign(v)"),
     Term(_FORCES, place="((1 - z)/2)^2", speed="sign(v)"),
+    *(Term(_FORCES, place=near, speed="sign(v)") for near in NEAR),
     Term(_FORCES, place="z", speed="v"),
     Term(("valve", "fluid", *_MOVED), other="p_A"),
     Term(("valve", "fluid", *_MOVED), other="p_B"),

@@ -81,7 +81,18 @@ def find_law(
     alike = [found for found in ended if found.held_out_over_noise <= ALIKE * least]
     in_all = [left_in_all(found.fit, found.held_out_over_noise, held_out) for found in alike]
     counted = alike[0].fit.counted + sum(experiment.counted for experiment in held_out)
-    return likeliest(alike, in_all, counted)
+    return _finished(bench, left, likeliest(alike, in_all, counted), held_out, finer)
+
+
+def _finished(
+    bench: Workbench, left: Hypothesis, law: FoundLaw, held_out: Sequence[Experiment], step: float
+) -> FoundLaw:
+    """The law fitted on with the rig's own step, if it was fitted with a coarser one and predicts better so."""
+    if step <= bench.fine:
+        return law
+    finer = fitted(bench, left, law.law, held_out, law.span, (law.parameters, law.values), bench.fine)
+    better = finer.held_out_over_noise < law.held_out_over_noise
+    return replace(finer, rivals=law.rivals) if better else law
 
 
 def _ahead(ended: Sequence[FoundLaw]) -> list[FoundLaw]:

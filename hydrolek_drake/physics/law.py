@@ -16,11 +16,19 @@ from numba import njit
 from hydrolek_drake.physics.probes import CYLINDER, LOAD, Probe, added
 
 TIMES = ("1", "t/T", "(t/T)^2")
-PLACES = ("1", "z", "z^2", "(1 - z^2)", "((1 + z)/2)^2", "((1 - z)/2)^2")
+NEAR_WIDTH = 0.5
+NEAR_AT = tuple(0.25 * number for number in range(-3, 4))
+NEAR = tuple(f"near({at:g})" for at in NEAR_AT)
+"""At one place of the movement alone: half a wave of cosine squared around it, nothing beyond `NEAR_WIDTH`. Every
+second one together with its neighbours adds up to 1 between them (Hann windows)."""
+
+PLACES = ("1", "z", "z^2", "(1 - z^2)", "((1 + z)/2)^2", "((1 - z)/2)^2", *NEAR)
+_FIRST_NEAR = len(PLACES) - len(NEAR)
 SPEEDS = ("1", "sign(v)", "v", "|v|", "v |v|")
 OTHERS = ("1", "p_A", "p_B", "(p_A - p_B)", "x", "|x|")
-"""t: time since switching on, T: `seconds`, z: stroke or position, -1 at `low` and 1 at `high`, v: speed over
-`speed`, sign(v): tanh(v over `slow`), p: pressure over `pressure`, x: spool over `opening`."""
+"""t: time since switching on, T: `seconds`, z: stroke or position, -1 at `low` and 1 at `high`; near(c):
+cos(pi/2 (z - c) / `NEAR_WIDTH`)^2 where z is nearer to c than that, else 0; v: speed over `speed`, sign(v): tanh(v
+over `slow`), p: pressure over `pressure`, x: spool over `opening`."""
 
 LAW = np.dtype(
     [
@@ -82,7 +90,12 @@ def place_factor(shape: float, z: float) -> float:
         return 1.0 - z * z
     if shape == 4.0:
         return (0.5 * (1.0 + z)) ** 2
-    return (0.5 * (1.0 - z)) ** 2 if shape == 5.0 else 1.0
+    if shape == 5.0:
+        return (0.5 * (1.0 - z)) ** 2
+    if shape >= _FIRST_NEAR:
+        off = (z - NEAR_AT[int(shape) - _FIRST_NEAR]) / NEAR_WIDTH
+        return math.cos(0.5 * math.pi * off) ** 2 if abs(off) < 1.0 else 0.0
+    return 1.0
 
 
 @njit

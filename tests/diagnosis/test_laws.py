@@ -10,6 +10,7 @@ from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.effort import POLISH
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig
 from hydrolek_drake.diagnosis.judged import Judged
+from hydrolek_drake.diagnosis.law_fit import fitted
 from hydrolek_drake.diagnosis.law_growing import LONGEST
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, records_of
 from hydrolek_drake.diagnosis.law_search import promising
@@ -156,6 +157,42 @@ def test_a_friction_over_the_stroke_is_found_at_the_rod_as_a_law_of_several_term
         assert friction(u) == pytest.approx(dry + tight * u**2, abs=0.15 * (dry + tight))
 
 
+def test_a_friction_at_one_place_of_the_stroke_is_found_there(bench, recorded) -> None:
+    """A scored bore: between two of the places that terms have, and wider than either."""
+    place, size = 0.375, 1200.0
+    neighbours = (Term((), place="near(0.25)", speed="sign(v)"), Term((), place="near(0.5)", speed="sign(v)"))
+
+    plain = recorded(bench, bench, seed=1)[0].simulate(bench.records()).signals
+    span = span_of([plain], bench.records()[0], 12.0, "rad")
+    scored = law_records("cylinder", span, neighbours, (-0.5 * size, -0.5 * size))
+    peak = span.rod.low + 0.5 * (1.0 + place) * (span.rod.high - span.rod.low)
+
+    kept = {"pressure_noise_Pa": 2e4, "law": lambda _: scored}
+    training, held_out = (recorded(bench, bench, seed=seed, **kept) for seed in (1, 2))
+    sought, judged, found = _sought(bench, training, held_out)
+    assert judged.over_noise > 2.0
+    assert found is not None and found.law.input.stage == "cylinder"
+    begin = ({}, np.array([-0.5 * size, -0.5 * size]))
+    with ThreadPoolExecutor(2) as pool:
+        again = Workbench(bench, free_parameters(bench), sought.training, pool)
+        right = fitted(
+            again,
+            judged.hypothesis,
+            Law(found.law.input, neighbours, 0.0, 0.0, ()),
+            held_out,
+            span,
+            begin,
+            again.fine,
+        )
+    assert found.held_out_over_noise < 1.1 * right.held_out_over_noise
+    reach = found.span.rod
+    strokes = np.linspace(reach.low, reach.high, 41)
+    laws = records_of(found.law, found.span, found.values)
+    moving = [Seen(0.0, 0.0, 0.0, stroke, reach.speed, 0.0, 0.0, 0.0) for stroke in strokes]
+    friction = np.array([-sum(law_value(row, seen) for row in laws) for seen in moving])
+    assert strokes[np.argmax(friction)] == pytest.approx(peak, abs=0.125 * (reach.high - reach.low))
+
+
 def test_a_law_says_what_its_letters_mean(bench) -> None:
     run = SimpleNamespace(
         position=np.radians([10.0, 40.0]), velocity=np.array([0.0, 0.5]), spool=np.array([0.0, 1e-3])
@@ -176,5 +213,10 @@ def test_a_law_says_what_its_letters_mean(bench) -> None:
     assert told(Term((), speed="v |v|"), Term(()), values=(-3.0, -2.0)) == (
         "moment added at the joint = -3 N m * v |v| - 2 N m",
         " Here v is the joint's speed over 28.6 deg/s.",
+    )
+    assert told(Term((), place="near(0.25)", speed="sign(v)"), values=(-7.0,)) == (
+        "moment added at the joint = -7 N m * near(0.25) sign(v)",
+        " Here z is the position, -1 at 10 deg and 1 at 40 deg; near(c) is 1 where z = c and falls to 0 over 0.5 to "
+        "either side; v is the joint's speed.",
     )
     assert told(Term(()), values=(5.0,)) == ("moment added at the joint = 5 N m", "")
