@@ -165,8 +165,9 @@ def _near(
 ) -> list[Hypothesis]:
     """Fits beside a model that is right but for something small: Gauss-Newton steps from it go straight there.
 
-    Where they do not reach the noise, it has bent its parameters: what promises most is fitted anew from the rig's own,
-    and so is everything with pulled rollouts, after which the best of these go on.
+    Where they do not reach the noise, it has bent its parameters: everything is fitted anew from the rig's own, with
+    pulled rollouts, after which the best of these go on; where that does not reach it either, what promises most, and
+    what is sudden, also with free ones.
 
     Args:
         bench: data and fits.
