@@ -6,6 +6,8 @@ what the other way did; so the model without it is fitted from there too.
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import POLISH
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -34,6 +36,9 @@ def slightly_worse(
 ) -> list[Hypothesis]:
     """Every known hypothesis that a contender contains and hardly surpasses, fitted from where that one ended.
 
+    And every one that leaves less there, as it stands, than where it ended itself: then it was another place that made
+    the difference, and not the effect.
+
     Args:
         bench: fits.
         contenders: hypotheses that may win.
@@ -44,7 +49,10 @@ def slightly_worse(
         least = contender.fit.objective
         for other in known.values():
             start = start_of_lesser(contender, other, bench.nominal)
-            if start is None or not least < other.fit.objective <= (1.0 + SLIGHT) * least:
+            if start is None or not least < other.fit.objective:
+                continue
+            slight = other.fit.objective <= (1.0 + SLIGHT) * least
+            if not slight and _left(bench, other, start) >= other.fit.objective:
                 continue
             if other.ids not in work or least < work[other.ids][0].fit.objective:
                 work[other.ids] = (contender, other, start)
@@ -52,6 +60,15 @@ def slightly_worse(
         lambda item: bench.fit(item[1].effects, item[2], min(item[0].step, item[1].step), POLISH),
         list(work.values()),
     )
+
+
+def _left(bench: Workbench, hypothesis: Hypothesis, values: dict[str, float]) -> float:
+    """What would be minimised for a hypothesis, at other values of its parameters."""
+    problem = bench.problem(hypothesis.effects, hypothesis.step)
+    unit = problem.parameters.unit(values)
+    both = np.concatenate([problem.residuals(unit), problem.prior_residuals(unit)])
+    bench.evaluations += problem.evaluations
+    return float(both @ both)
 
 
 def start_of_lesser(

@@ -76,12 +76,22 @@ def test_a_model_that_ended_elsewhere_is_fitted_from_where_a_wider_one_ended(ben
             stuck = replace(right, values=away, fit=replace(right.fit, residuals=left, off_prior=off))
             return slightly_worse(work, [wider], {h.ids: h for h in (wider, stuck)})
 
-        (again,) = left_behind(0.5 * SLIGHT)
-        assert again.ids == right.ids
-        assert again.values[coulomb.size_path] == pytest.approx(COULOMB, rel=0.02)
-        assert again.fit.objective - wider.fit.objective < gain_needed(wider.fit)
-        assert left_behind(2.0 * SLIGHT) == []  # that is the effect's own share
+        for share in (0.5 * SLIGHT, 4.0 * SLIGHT):
+            (again,) = left_behind(share)
+            assert again.ids == right.ids
+            assert again.values[coulomb.size_path] == pytest.approx(COULOMB, rel=0.02)
+            assert again.fit.objective - wider.fit.objective < gain_needed(wider.fit)
         assert left_behind(-0.01) == []  # what is better already needs no other start
+
+
+def test_a_model_that_lacks_an_effect_is_not_fitted_from_where_a_wider_one_ended(bench, recorded) -> None:
+    path = "effects.cylinder.stribeck_friction"
+    machine = bench.with_values({f"{path}.{name}": value for name, value in STRIBECK.items()})
+    with _searched(bench, recorded(machine, bench)) as (work, _, stribeck, coulomb):
+        lacking = work.fit((coulomb,), coulomb.starts[0], work.fine, POLISH)
+        wider = work.fit((stribeck,), stribeck.starts[0], work.fine, POLISH)
+        assert lacking.fit.objective > (1.0 + SLIGHT) * wider.fit.objective
+        assert slightly_worse(work, [wider], {h.ids: h for h in (wider, lacking)}) == []
 
 
 DELAY, OWN_DELAY = 0.08, "joints.joint.command.delay"
