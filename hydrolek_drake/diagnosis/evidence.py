@@ -88,6 +88,10 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
     # farther from the noise, what no model explains outweighs what is left to gain
     if min(h.fit.over_noise for h in refitted) < NEAR:
         refitted = _finished(bench, refitted)
+    latest = {h.ids: h for h in refitted}
+    # the finer step may have led one of two nested models to another place
+    latest |= {h.ids: h for h in slightly_worse(bench, refitted, latest, slight=0.0)}
+    refitted = list(latest.values())
     paying = [h for h in refitted if pays(h, refitted)]
     judged = bench.side_by_side(lambda h: _predicted(bench, h, held_out, counted, finer), paying)
     return with_probabilities([j for j in judged if predicts(j, judged)])

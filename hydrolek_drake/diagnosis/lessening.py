@@ -32,7 +32,10 @@ def lessened(bench: Workbench, hypothesis: Hypothesis, candidates: Sequence[Cand
 
 
 def slightly_worse(
-    bench: Workbench, contenders: Sequence[Hypothesis], known: Mapping[frozenset[str], Hypothesis]
+    bench: Workbench,
+    contenders: Sequence[Hypothesis],
+    known: Mapping[frozenset[str], Hypothesis],
+    slight: float = SLIGHT,
 ) -> list[Hypothesis]:
     """Every known hypothesis that a contender contains and hardly surpasses, fitted from where that one ended.
 
@@ -43,6 +46,7 @@ def slightly_worse(
         bench: fits.
         contenders: hypotheses that may win.
         known: all that were fitted, by their keys.
+        slight: share of the squared residuals up to which it is hardly surpassed.
     """
     work: dict[frozenset[str], tuple[Hypothesis, Hypothesis, dict[str, float]]] = {}
     for contender in contenders:
@@ -51,8 +55,8 @@ def slightly_worse(
             start = start_of_lesser(contender, other, bench.nominal)
             if start is None or not least < other.fit.objective:
                 continue
-            slight = other.fit.objective <= (1.0 + SLIGHT) * least
-            if not slight and _left(bench, other, start) >= other.fit.objective:
+            hardly = other.fit.objective <= (1.0 + slight) * least
+            if not hardly and _left(bench, other, start) >= other.fit.objective:
                 continue
             if other.ids not in work or least < work[other.ids][0].fit.objective:
                 work[other.ids] = (contender, other, start)

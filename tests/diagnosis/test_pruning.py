@@ -69,15 +69,15 @@ def test_a_model_that_ended_elsewhere_is_fitted_from_where_a_wider_one_ended(ben
         wider = work.fit((stribeck,), stribeck.starts[0], work.fine, POLISH)
         right = work.fit((coulomb,), coulomb.starts[0], work.fine, POLISH)
 
-        def left_behind(share: float) -> list[Hypothesis]:
+        def left_behind(share: float, slight: float = SLIGHT) -> list[Hypothesis]:
             scale = math.sqrt((1.0 + share) * wider.fit.objective / right.fit.objective)
             left, off = scale * right.fit.residuals, scale * right.fit.off_prior
             away = {**right.values, coulomb.size_path: 1.3 * COULOMB}
             stuck = replace(right, values=away, fit=replace(right.fit, residuals=left, off_prior=off))
-            return slightly_worse(work, [wider], {h.ids: h for h in (wider, stuck)})
+            return slightly_worse(work, [wider], {h.ids: h for h in (wider, stuck)}, slight)
 
-        for share in (0.5 * SLIGHT, 4.0 * SLIGHT):
-            (again,) = left_behind(share)
+        for share, slight in ((0.5 * SLIGHT, SLIGHT), (0.5 * SLIGHT, 0.0), (4.0 * SLIGHT, SLIGHT)):
+            (again,) = left_behind(share, slight)
             assert again.ids == right.ids
             assert again.values[coulomb.size_path] == pytest.approx(COULOMB, rel=0.02)
             assert again.fit.objective - wider.fit.objective < gain_needed(wider.fit)
