@@ -76,7 +76,7 @@ def test_a_model_that_ended_elsewhere_is_fitted_from_where_a_wider_one_ended(ben
             stuck = replace(right, values=away, fit=replace(right.fit, residuals=left, off_prior=off))
             return slightly_worse(work, [wider], {h.ids: h for h in (wider, stuck)}, slight)
 
-        for share, slight in ((0.5 * SLIGHT, SLIGHT), (0.5 * SLIGHT, 0.0), (4.0 * SLIGHT, SLIGHT)):
+        for share, slight in ((0.5 * SLIGHT, SLIGHT), (4.0 * SLIGHT, SLIGHT), (4.0 * SLIGHT, 0.0)):
             (again,) = left_behind(share, slight)
             assert again.ids == right.ids
             assert again.values[coulomb.size_path] == pytest.approx(COULOMB, rel=0.02)
