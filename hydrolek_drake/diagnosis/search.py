@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import (
+    ABOVE_NOISE,
     AT_NOISE,
     BEAM,
     FAR,
@@ -139,7 +140,7 @@ def _words(count: int) -> str:
 def _worth_going_on(found: Search, material: float) -> bool:
     """Whether anything is left over, and some effect promises to take a part of it.
 
-    Near the noise, but not at it, a model may have bent its numbers so far that nothing promises anything beside it;
+    Near the noise, but above it, a model may have bent its numbers so far that nothing promises anything beside it;
     from the rig's own numbers an effect may still do better (`growing`).
     """
     best = found.best
@@ -157,4 +158,4 @@ def _worth_going_on(found: Search, material: float) -> bool:
     promised = found.left[0].gain
     if len(best.effects) >= 2 and best.fit.over_noise > NEARLY and promised < material * best.fit.objective:
         return False
-    return promised > gain_needed(best.fit) or AT_NOISE < best.fit.over_noise < NEAR
+    return promised > gain_needed(best.fit) or ABOVE_NOISE < best.fit.over_noise < NEAR

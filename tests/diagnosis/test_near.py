@@ -8,7 +8,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import candidates_of
-from hydrolek_drake.diagnosis.effort import AT_NOISE, LOOK, NEAR
+from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, AT_NOISE, LOOK, NEAR
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.growing import grow
 from hydrolek_drake.diagnosis.score import Score, scores_of
@@ -54,8 +54,8 @@ def test_an_effect_that_promises_nothing_is_tried_where_no_other_reaches_the_noi
     ("over_noise", "goes_on"),
     [
         (1.0, False),
-        (0.99 * AT_NOISE, False),
-        (1.01 * AT_NOISE, True),
+        (0.99 * ABOVE_NOISE, False),
+        (1.01 * ABOVE_NOISE, True),
         (0.99 * NEAR, True),
         (1.01 * NEAR, False),
     ],
