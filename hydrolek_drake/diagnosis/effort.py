@@ -17,7 +17,7 @@ AT_NOISE = 1.0 + NOISE_KNOWN
 """A model that leaves so many times the noise or less leaves nothing that could be told from noise."""
 
 ABOVE_NOISE = 1.0 + 2.0 * NOISE_KNOWN
-"""Where no effect promises anything, a model that leaves so much or less is not taken to lack one: most do not."""
+"""Where no effect promises anything, a model is taken to lack one only if it leaves more than this."""
 
 GLANCE_S = 20.0
 """First fits see so many seconds of a recording: errors that grow with time are smaller, and so is the work."""
