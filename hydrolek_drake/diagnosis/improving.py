@@ -14,7 +14,7 @@ from hydrolek_drake.diagnosis.effort import (
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import gain_needed
 from hydrolek_drake.diagnosis.lessening import lessened
-from hydrolek_drake.diagnosis.ranges import at_the_end, replaced, widened
+from hydrolek_drake.diagnosis.ranges import at_the_end, gain_beyond, replaced, widened
 from hydrolek_drake.diagnosis.score import scores_of
 from hydrolek_drake.diagnosis.unsticking import different, fit_pulled, led_on, own_values, started_again
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -45,11 +45,14 @@ def searched_further(
 ) -> Sequence[Candidate]:
     """The candidates, with wider ranges for effects of the best model that ended at the end of theirs, see `ranges`.
 
-    The best model is fitted again with them; others that have such an effect are forgotten.
+    The best model is fitted again with them; others that have such an effect are forgotten. At the noise a parameter
+    may only be at an end because the data do not tell it, so there it must promise something beyond.
     """
     for _ in range(MOST_WIDENED):
         best = found.best
-        narrow = at_the_end(best) if best.fit.over_noise > AT_NOISE else []
+        narrow = at_the_end(best)
+        if best.fit.over_noise <= AT_NOISE:
+            narrow = [c for c in narrow if gain_beyond(best, c) > gain_needed(best.fit)]
         if not narrow:
             break
         say(f"searching further for {' and '.join(c.effect.title for c in narrow)}: its range was too narrow")

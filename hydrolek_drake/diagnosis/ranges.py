@@ -9,8 +9,10 @@ friction fades, at either end.
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.diagnosis.score import AT_BOUND
+from hydrolek_drake.diagnosis.score import AT_BOUND, Across
 from hydrolek_drake.diagnosis.workbench import Hypothesis
 from hydrolek_drake.identification.parameter_set import Free
 
@@ -32,6 +34,36 @@ def widened(candidate: Candidate, values: Mapping[str, float]) -> Candidate:
     """
     free = tuple(_further(candidate, f, values[f.path]) for f in candidate.free)
     return replace(candidate, free=free)
+
+
+def gain_beyond(hypothesis: Hypothesis, candidate: Candidate) -> float:
+    """Fall of the squared residuals that parameters at an end of an effect's range promise beyond it.
+
+    With the residuals r and a parameter's column j of the Jacobian, both across the columns of those that can still
+    move, the best step is -(j . r) / (j . j) and its gain (j . r)^2 / (j . j), as in `score`; none if it leads inside.
+
+    Args:
+        hypothesis: a fitted model.
+        candidate: one of its effects.
+
+    Returns:
+        The largest of its parameters' gains, in units of the noise squared.
+    """
+    fit = hypothesis.fit
+    across = Across(fit)
+    rest = across(np.concatenate([fit.residuals, fit.off_prior]))
+    gain = 0.0
+    for free, wider in zip(candidate.free, widened(candidate, hypothesis.values).free, strict=True):
+        if wider == free:
+            continue
+        place = list(hypothesis.values).index(free.path)
+        column = across(fit.with_prior[:, place])
+        along = -float(column @ rest)
+        outward = along * (fit.unit[place] - 0.5) > 0.0
+        power = float(column @ column)
+        if outward and power > 0.0:
+            gain = max(gain, along * along / power)
+    return gain
 
 
 def replaced(candidates: Sequence[Candidate], new: Candidate) -> tuple[Candidate, ...]:

@@ -74,16 +74,41 @@ def test_a_range_is_not_widened_beyond_what_can_be_or_what_the_rig_states(
     assert widened(air, _ended(air, air_fraction=1.0)) == air
 
 
-def test_more_of_an_effect_than_a_worn_machine_has_is_found_alone(bench, recorded, candidates) -> None:
-    air = candidates["fluid.entrained_air"]
-    much = 1.6 * air.size.upper
-    training = recorded(bench.with_values({AIR: much}), bench, largest_V=7.0, pressure_noise_Pa=2e4)
+def _searched(bench, recorded, candidates, much: float, pressure_noise_Pa: float) -> tuple[Search, int]:
+    """Searched for air and friction where there is air; what was found and how often a range was widened."""
+    training = recorded(
+        bench.with_values({AIR: much}), bench, largest_V=7.0, pressure_noise_Pa=pressure_noise_Pa
+    )
     told: list[str] = []
     with ThreadPoolExecutor(2) as pool:
         workbench = Workbench(bench, free_parameters(bench), training, pool)
         found = Search()
-        search(workbench, [air, candidates["cylinder.coulomb_friction"]], found, told.append)
+        either = [candidates["fluid.entrained_air"], candidates["cylinder.coulomb_friction"]]
+        search(workbench, either, found, told.append)
+    return found, sum("its range was too narrow" in line for line in told)
+
+
+def test_more_of_an_effect_than_a_worn_machine_has_is_found_alone(bench, recorded, candidates) -> None:
+    air = candidates["fluid.entrained_air"]
+    much = 1.6 * air.size.upper
+    found, widenings = _searched(bench, recorded, candidates, much, pressure_noise_Pa=2e4)
     assert found.best.ids == {air.size_path}
     assert found.best.fit.over_noise < 1.05
     assert found.best.values[air.size_path] == pytest.approx(much, rel=0.1)
-    assert sum("its range was too narrow" in line for line in told) == 1
+    assert widenings == 1
+
+
+def test_at_the_noise_a_range_is_widened_where_more_promises_something(bench, recorded, candidates) -> None:
+    air = candidates["fluid.entrained_air"]
+    much = 1.03 * air.size.upper  # with the noise below, the end of the range leaves 1.2 % above it
+    found, widenings = _searched(bench, recorded, candidates, much, pressure_noise_Pa=3e5)
+    assert found.best.ids == {air.size_path}
+    assert found.best.values[air.size_path] == pytest.approx(much, rel=0.01)
+    assert widenings == 1
+
+
+def test_at_the_noise_a_range_is_left_alone_where_more_promises_nothing(bench, recorded, candidates) -> None:
+    air = candidates["fluid.entrained_air"]
+    found, widenings = _searched(bench, recorded, candidates, 0.99 * air.size.upper, pressure_noise_Pa=3e5)
+    assert found.best.ids == {air.size_path}
+    assert widenings == 0
