@@ -73,6 +73,10 @@ class Case:
     shows: dict[str, float] = field(default_factory=dict)
 
 
+Draft = tuple[Build, str, str, list[str], list[str]]
+"""Machine, kind, level, names of listed effects and of physics in no list."""
+
+
 def draw_cases(rigs: Sequence[Rig], count: int, seed: int) -> list[Case]:
     """Cases in random order, so that the first ones are a fair sample of all.
 
@@ -83,23 +87,38 @@ def draw_cases(rigs: Sequence[Rig], count: int, seed: int) -> list[Case]:
     """
     rng = np.random.default_rng(seed)
     builds = [build_of(rig) for rig in rigs]
+    drafts = drafted(builds, count, rng, np.random.default_rng((seed, len(builds))))
+    return [_case(n, *draft, rng) for n, draft in enumerate(drafts, start=1)]
+
+
+def drafted(
+    builds: Sequence[Build], count: int, rng: np.random.Generator, rng_builds: np.random.Generator
+) -> list[Draft]:
+    """What is concealed in which machine, in random order; sizes and commands are drawn later.
+
+    Args:
+        builds: taken in turn.
+        count: how many.
+        rng: of kinds and effects.
+        rng_builds: of the order of the builds.
+    """
     kinds = [kind for kind, share in KINDS for _ in range(max(round(share * count), 1))][:count]
     kinds += ["single"] * (count - len(kinds))
     listed = _in_turn(list(dict.fromkeys(name for build in builds for name in build.listed)), rng)
     unlisted = _in_turn(list(builds[0].unlisted), rng)
     levels = _in_turn(list(SHOWS), rng)
-    turns = _in_turn(builds, np.random.default_rng((seed, len(builds))))
-    drafts = []
+    turns = _in_turn(builds, rng_builds)
+    drafts: list[Draft] = []
     for kind in kinds:
         build = next(turns)
         possible = (name for name in listed if name in build.listed)
         names = [next(possible) for _ in range({"single": 1, "double": 2}.get(kind, 0))]
-        if len(set(names)) < len(names) or FRICTIONS <= set(names):
+        while len(set(names)) < len(names) or FRICTIONS <= set(names):
             names[1] = next(possible)
         level = "" if kind == "healthy" else next(levels) if kind == "single" else "middle"
         drafts.append((build, kind, level, names, [next(unlisted)] if kind == "unlisted" else []))
     rng.shuffle(drafts)
-    return [_case(n, *draft, rng) for n, draft in enumerate(drafts, start=1)]
+    return drafts
 
 
 def _in_turn(items: Sequence[Any], rng: np.random.Generator) -> Iterator[Any]:

@@ -1,6 +1,7 @@
 """Cases are drawn alike from a seed, labels are hashed, and scores count what they say."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,10 +9,12 @@ import pytest
 from hydrolek_drake.challenge.build import ARM_JOINTS, BENCH, build_of, rig_names
 from hydrolek_drake.challenge.calibration import calibration_png
 from hydrolek_drake.challenge.cases import (
+    FRICTIONS,
     TRAIN_S,
     _in_turn,
     _shown,
     digest,
+    drafted,
     draw_cases,
     labels_of,
     read_case,
@@ -230,3 +233,21 @@ def test_friction_where_the_bore_is_scored_acts_there_alone() -> None:
     plain = build.play(build.nominal, volts).reading
     assert np.array_equal(build.play(elsewhere, volts).reading, plain)
     assert np.max(np.abs(build.play(reached, volts).reading - plain)) > 10.0 * build.noise
+
+
+def test_every_double_conceals_two_different_effects_that_can_be_told_apart() -> None:
+    full = build_of(load_rig("joint_bench"))
+    few = replace(full, listed={name: full.listed[name] for name in (*sorted(FRICTIONS), "base.compliance")})
+    for seed in range(20):  # of so few, one that was drawn just now often comes again
+        builds = [full, few][seed % 2 :]
+        drafts = drafted(builds, 60, np.random.default_rng(seed), np.random.default_rng((seed, 2)))
+        assert len(drafts) == 60
+        for build, kind, _level, names, unlisted in drafts:
+            assert (len(names), len(unlisted)) == {
+                "single": (1, 0),
+                "double": (2, 0),
+                "unlisted": (0, 1),
+            }.get(kind, (0, 0))
+            assert len(set(names)) == len(names)
+            assert not set(names) >= FRICTIONS
+            assert set(names) <= set(build.listed)
