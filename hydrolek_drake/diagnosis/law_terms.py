@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.diagnosis.laws import TERMS, Input, Span, Term, law_record
-from hydrolek_drake.diagnosis.score import Across
+from hydrolek_drake.diagnosis.score import Across, gain_of
 from hydrolek_drake.diagnosis.workbench import Workbench
 
 TRIED = 1e-3
@@ -74,7 +74,7 @@ def terms_scored(
         for size in (sign * s for s in SIZES for sign in (1.0, -1.0)):
             change = moved(size)
             remaining = float(np.sum((rest + change) ** 2))
-            gain = max(gain, _along(change, rest))
+            gain = max(gain, gain_of(change, rest))
             if remaining < least:
                 least, start = remaining, size
         found.append((term, gain, start))
@@ -93,11 +93,3 @@ def gain_along(columns: np.ndarray, rest: np.ndarray) -> tuple[float, tuple[floa
     fitted = columns / norms @ multiples
     amplitudes = np.clip(TRIED * multiples / norms, -0.9, 0.9)
     return float(fitted @ fitted), tuple(amplitudes.tolist())
-
-
-def _along(change: np.ndarray, rest: np.ndarray) -> float:
-    """Fall of the squared residuals if a change takes its best positive multiple; of one that diverged nothing."""
-    if not np.isfinite(change).all():
-        return 0.0
-    power, along = float(change @ change), -float(change @ rest)
-    return along * along / power if along > 0.0 and power > 0.0 else 0.0

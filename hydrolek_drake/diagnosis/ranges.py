@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.diagnosis.score import AT_BOUND, Across
+from hydrolek_drake.diagnosis.score import AT_BOUND, Across, gain_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis
 from hydrolek_drake.identification.parameter_set import Free
 
@@ -39,8 +39,8 @@ def widened(candidate: Candidate, values: Mapping[str, float]) -> Candidate:
 def gain_beyond(hypothesis: Hypothesis, candidate: Candidate) -> float:
     """Fall of the squared residuals that parameters at an end of an effect's range promise beyond it.
 
-    With the residuals r and a parameter's column j of the Jacobian, both across the columns of those that can still
-    move, the best step is -(j . r) / (j . j) and its gain (j . r)^2 / (j . j), as in `score`; none if it leads inside.
+    The gain of `score`, with the parameter's column of the Jacobian, outwards, as the change; none if the best step
+    leads inside.
 
     Args:
         hypothesis: a fitted model.
@@ -57,12 +57,8 @@ def gain_beyond(hypothesis: Hypothesis, candidate: Candidate) -> float:
         if wider == free:
             continue
         place = list(hypothesis.values).index(free.path)
-        column = across(fit.with_prior[:, place])
-        along = -float(column @ rest)
-        outward = along * (fit.unit[place] - 0.5) > 0.0
-        power = float(column @ column)
-        if outward and power > 0.0:
-            gain = max(gain, along * along / power)
+        outwards = np.sign(fit.unit[place] - 0.5) * fit.with_prior[:, place]
+        gain = max(gain, gain_of(across(outwards), rest))
     return gain
 
 

@@ -121,8 +121,7 @@ def _score(
             power = float(e @ e)
             if power <= 0.0:
                 continue
-            along = -float(e @ left)
-            gain = along * along / power if along > 0.0 else 0.0
+            gain = gain_of(e, left)
             at = tuple(begin[free.path] for free in candidate.moments)
             gain_at[at] = max(gain_at[at], gain)
             remaining = float(np.sum((left + e) ** 2))
@@ -137,6 +136,19 @@ def _score(
     ordered = sorted(gain_at, key=lambda at: -gain_at[at]) if paths else []
     moments = tuple(dict(zip(paths, at, strict=True)) for at in ordered)
     return Score(candidate, best_gain, start, moments, best_left, visible, best_change, left)
+
+
+def gain_of(change: np.ndarray, rest: np.ndarray) -> float:
+    """Fall of the squared residuals if a change takes its best positive multiple; of one that diverged nothing.
+
+    Args:
+        change: of the residuals, across the fitted parameters' columns. # (values,)
+        rest: what the model leaves, across these columns. # (values,)
+    """
+    if not np.isfinite(change).all():
+        return 0.0
+    power, along = float(change @ change), -float(change @ rest)
+    return along * along / power if along > 0.0 and power > 0.0 else 0.0
 
 
 def gain_of_pair(first: Score, second: Score) -> float:

@@ -14,9 +14,10 @@ from hydrolek_drake.diagnosis.law_fit import fitted
 from hydrolek_drake.diagnosis.law_growing import LONGEST
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, records_of
 from hydrolek_drake.diagnosis.law_search import promising
-from hydrolek_drake.diagnosis.law_terms import _along, gain_along
+from hydrolek_drake.diagnosis.law_terms import gain_along
 from hydrolek_drake.diagnosis.laws import Input, Term, inputs_of, law_record, law_records, span_of
 from hydrolek_drake.diagnosis.panels import after
+from hydrolek_drake.diagnosis.score import gain_of
 from hydrolek_drake.diagnosis.unlisted import find_law
 from hydrolek_drake.diagnosis.words import where_sentence
 from hydrolek_drake.diagnosis.workbench import Workbench
@@ -68,11 +69,11 @@ def test_a_ripple_is_found_between_the_frequencies_that_are_scanned(bench, recor
 def test_a_law_with_which_the_rollout_diverged_promises_nothing() -> None:
     rest, good = np.array([1.0, -2.0, 2.0]), np.array([-0.5, 1.0, -1.0])
     assert gain_along(good[:, None], rest)[0] == pytest.approx(9.0)
-    assert _along(good, rest) == pytest.approx(9.0)
+    assert gain_of(good, rest) == pytest.approx(9.0)
     for bad in (np.nan, np.inf):
         away = np.array([-0.5, bad, bad])
         assert gain_along(np.stack([good, away], axis=1), rest) == (0.0, (0.0, 0.0))
-        assert _along(away, rest) == 0.0
+        assert gain_of(away, rest) == 0.0
 
 
 def _sought(bench, training, held_out):

@@ -6,8 +6,10 @@ from dataclasses import replace
 import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
+from hydrolek_drake.diagnosis.effort import LOOK
 from hydrolek_drake.diagnosis.found import Search
-from hydrolek_drake.diagnosis.ranges import WIDER, widened
+from hydrolek_drake.diagnosis.gains import gain_needed
+from hydrolek_drake.diagnosis.ranges import WIDER, at_the_end, gain_beyond, widened
 from hydrolek_drake.diagnosis.search import search
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
@@ -109,6 +111,26 @@ def test_at_the_noise_a_range_is_widened_where_more_promises_something(bench, re
 
 def test_at_the_noise_a_range_is_left_alone_where_more_promises_nothing(bench, recorded, candidates) -> None:
     air = candidates["fluid.entrained_air"]
-    found, widenings = _searched(bench, recorded, candidates, 0.99 * air.size.upper, pressure_noise_Pa=3e5)
+    much = (
+        1.01 * air.size.upper
+    )  # told from the end of the range by no more than what one more effect must bring
+    found, widenings = _searched(bench, recorded, candidates, much, pressure_noise_Pa=3e5)
     assert found.best.ids == {air.size_path}
+    assert at_the_end(found.best) == [air]
+    assert 0.0 < gain_beyond(found.best, air) < gain_needed(found.best.fit)
     assert widenings == 0
+
+
+def test_what_is_promised_beyond_a_range_is_what_a_wider_one_gains(bench, recorded, candidates) -> None:
+    air = candidates["fluid.entrained_air"]
+    much = 1.03 * air.size.upper
+    training = recorded(bench.with_values({AIR: much}), bench, largest_V=7.0, pressure_noise_Pa=3e5)
+    with ThreadPoolExecutor(2) as pool:
+        workbench = Workbench(bench, free_parameters(bench), training, pool)
+        narrow = workbench.fit([air], {air.size_path: 0.9 * air.size.upper}, workbench.fine, LOOK)
+        wide = workbench.fit([widened(air, narrow.values)], narrow.values, workbench.fine, LOOK)
+    assert at_the_end(narrow) == [air]
+    assert at_the_end(wide) == []
+    fell = narrow.fit.objective - wide.fit.objective
+    assert gain_beyond(narrow, air) == pytest.approx(fell, rel=0.2)
+    assert gain_beyond(wide, wide.effects[0]) == 0.0
