@@ -19,7 +19,6 @@ from hydrolek_drake.diagnosis.words import (
     unit_at,
     where_sentence,
 )
-from hydrolek_drake.identification.channel import Channel
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.replay.display import display_factor, display_unit
 
@@ -189,12 +188,8 @@ def position_rms(experiments: tuple[Experiment, ...], residuals: np.ndarray) -> 
             place += experiment.time.size
             if index == 0:
                 squared += float(np.sum((part * channel.deviation) ** 2))
-                count += _counted(experiment, channel)
+                count += experiment.counted_of(channel)
     return math.sqrt(squared / max(count, 1))
-
-
-def _counted(experiment: Experiment, channel: Channel) -> int:
-    return int((experiment.used & np.isfinite(channel.measured)).sum())
 
 
 def _mean_noise(experiments: tuple[Experiment, ...], key: str) -> float:

@@ -7,12 +7,16 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
+from hydrolek_drake.diagnosis.effort import LOOK
 from hydrolek_drake.diagnosis.first_fits import Trial, sudden
 from hydrolek_drake.diagnosis.growing import _near
+from hydrolek_drake.diagnosis.unsticking import fit_pulled
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
+
+PLAY = "joints.joint.effects.linkage.backlash.gap_rad"
 
 FADED = 1e-3
 """Of a size, at which nothing must be left of an effect that fades with it, but for a tenth."""
@@ -121,3 +125,17 @@ def test_effects_whose_tried_sizes_were_too_large_are_followed_by_what_they_prom
     trials = [Trial(e, float(i), [{e[0].size_path: 1e-4}], [float(i)]) for i, e in enumerate(each)]
     tried = {h.effects[0].size_path for h in _near(_Bench(), trials, [], [], 1.0)}
     assert {each[0][0].size_path, each[-1][0].size_path} <= tried and len(tried) < 12
+
+
+@pytest.mark.parametrize("share", [0.01, 0.15])
+def test_a_play_is_found_whether_small_or_a_good_part_of_the_travel(share, bench, recorded):
+    travel = np.ptp(recorded(bench, bench)[0].channels[0].measured)
+    worn = bench.with_values({PLAY: share * travel})
+    experiments = recorded(worn, bench, pressure_noise_Pa=2e4)
+    with ThreadPoolExecutor(1) as pool:
+        workbench = Workbench(bench, free_parameters(bench), experiments, pool)
+        scales = natural_scales(bench, "joint", experiments)
+        play = next(c for c in candidates_of(bench, "joint", scales) if c.size_path == PLAY)
+        pulled = fit_pulled(workbench, (play,), play.starts, workbench.fine, experiments)
+        found = workbench.refit(pulled, workbench.fine, LOOK)
+    assert found.values[PLAY] == pytest.approx(share * travel, rel=0.1)
