@@ -109,8 +109,8 @@ class SetpointServer:
 
     def close(self) -> None:
         """Close the valves, the client's connection and the port."""
-        self._closing = True
         with self._lock:
+            self._closing = True
             self._shut("the link was closed")
             client = self._client
         for each in (client, self._listener):
@@ -173,6 +173,8 @@ class SetpointServer:
         deflection = decode_rate(line) if line.startswith(RATE.encode()) else None
         angles = decode(line) if deflection is None else None
         with self._lock:
+            if self._closing:  # a message that was under way opens nothing any more
+                raise InputError("the link was closed")
             self._last = time.monotonic()
             if deflection is not None:
                 self._deflection, self._open, self._reason = deflection, True, ""

@@ -1,6 +1,7 @@
 """The link: set points through, and every way to lose it closes the valves."""
 
 import socket
+import threading
 import time
 
 import numpy as np
@@ -54,6 +55,29 @@ def test_stop_closes_the_valves_and_set_points_open_them_again(server):
     client.send(home_posture())
     assert server.command()[1]
     client.close()
+
+
+def test_a_message_that_was_under_way_when_the_link_was_closed_opens_nothing(server, monkeypatch):
+    came, go_on = threading.Event(), threading.Event()
+    take, answers = server._take, []
+
+    def slow(line):
+        came.set()
+        assert go_on.wait(3.0)
+        try:
+            take(line)
+        finally:
+            answers.append(server.command()[1:])
+        return b""
+
+    monkeypatch.setattr(server, "_take", slow)
+    with socket.create_connection(("127.0.0.1", server.port)) as client:
+        client.sendall(encode(home_posture()))
+        assert came.wait(3.0)
+        server.close()
+        go_on.set()
+        _until(lambda: answers)
+    assert answers == [(False, "the link was closed")]
 
 
 def test_a_client_that_leaves_closes_the_valves(server):
