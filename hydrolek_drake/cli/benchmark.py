@@ -13,15 +13,14 @@ def benchmark(
     seed: Annotated[int, typer.Option(help="of the random voltages")] = 1,
 ) -> None:
     """Measure how fast the executions are against real time and each other, and how exact the rollout is."""
-    from rich.console import Console
     from rich.table import Table
 
     from hydrolek_drake.benchmark.measure import measure
-    from hydrolek_drake.cli.output import console
+    from hydrolek_drake.cli.output import console, progress
 
-    output, progress = console(), Console(stderr=True)
-    with progress.status("measuring") as status:
-        figures = measure(seed, repeats, lambda what: status.update(f"measuring: {what}"))
+    output = console()
+    with progress("measuring") as tell:
+        figures = measure(seed, repeats, lambda what: tell(f"measuring: {what}"))
     table = Table("execution", "times real time", "lowest to highest", "runs", "rollout is faster by")
     for speed in figures["speeds"]:
         ratio = figures["ratios"].get(f"rollout over {speed['name']}")

@@ -34,15 +34,13 @@ def challenge(
     """
     from concurrent.futures import ThreadPoolExecutor
 
-    from rich.console import Console
-
     from hydrolek_drake.challenge.build import BENCH, rig_names
     from hydrolek_drake.challenge.calibration import calibration_png
     from hydrolek_drake.challenge.cases import digest, draw_cases, labels_of, read_case, record
     from hydrolek_drake.challenge.confusion import confusion_markdown
     from hydrolek_drake.challenge.scoring import markdown, score, summaries, summaries_markdown
     from hydrolek_drake.challenge.visibility import visibility_markdown
-    from hydrolek_drake.cli.output import console
+    from hydrolek_drake.cli.output import console, progress
     from hydrolek_drake.diagnosis.diagnosis import diagnose
     from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
     from hydrolek_drake.diagnosis.report_json import as_json
@@ -54,24 +52,25 @@ def challenge(
     for name, value in (("--cases", cases), ("--workers", workers), ("--first", first)):
         if value is not None and value < 1:
             raise InputError(f"{name} {value}: at least 1 is needed")
-    output, progress = console(), Console(stderr=True)
+    output = console()
     drawn_of = rig_names(rig)
     prepare_folder(out)
     rigs = {name: load_rig(name, {}) for name in dict.fromkeys(drawn_of)}
     sample = f"{cases}_{seed}" if rig == BENCH else f"{rig}_{cases}_{seed}"
     kept = out / f"labels_{sample}.json"
-    with progress.status("drawing machines (sizes are found by simulation) ..."):
+    with progress("starting") as tell:
         if kept.exists():
             labels = kept.read_text()
         else:
+            tell("drawing machines (sizes are found by simulation) ...")
             labels = labels_of(draw_cases([rigs[name] for name in drawn_of], cases, seed))
             write_whole(kept, labels)
     output.print(f"sha256 of the labels: {digest(labels)}")
     told: list[dict[str, Any]] = json.loads(labels)[:first]
     results = []
-    with progress.status("") as status, ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
+    with progress("starting") as tell, ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
         for number, label in enumerate(told, start=1):
-            status.update(f"case {number} of {len(told)} ...")
+            tell(f"case {number} of {len(told)} ...")
             folder = out / f"{label['name']}_{sample}"
             report = folder / "report.json"
             if not report.exists():
@@ -85,7 +84,9 @@ def challenge(
                 if INTERRUPTED in done.reasons:
                     raise KeyboardInterrupt
                 write_whole(report, json.dumps(as_json(done), indent=1))
-            results.append(score(label, json.loads(report.read_text())))
+            answered = json.loads(report.read_text())
+            tell(f"case {number} of {len(told)}: {answered['verdict']}")
+            results.append(score(label, answered))
     told_by = summaries(results)
     write_whole(out / "summary.json", json.dumps({"summary": told_by, "cases": results}, indent=1))
     write_whole(out / "summary.md", summaries_markdown(told_by))

@@ -51,9 +51,7 @@ def bench(
     seed: Annotated[int, typer.Option(help="of the sensors' noise on the full machine")] = 1,
 ) -> None:
     """Every controller on step, sine and grasp, measured as in appendix G, beside the thesis's tables."""
-    from rich.console import Console
-
-    from hydrolek_drake.cli.output import console
+    from hydrolek_drake.cli.output import console, progress
     from hydrolek_drake.control.bench import bench_on_machine, bench_on_models, check_names
     from hydrolek_drake.control.bench_tables import ranking_rows, sentence
     from hydrolek_drake.control.catalogue import CONTROLLERS
@@ -71,14 +69,8 @@ def bench(
     machine = load_rig(rig, parse_settings(set_)) if plant is Plant.full else None
     if out is not None:
         prepare_folder(out)
-    output, status = console(), Console(stderr=True)
-    with status.status("starting (the first time, the physics is compiled: some 20 s)") as shown:
-
-        def tell(text: str) -> None:
-            shown.update(text)
-            if not status.is_terminal:
-                status.print(text, markup=False)
-
+    output = console()
+    with progress("starting (the first time, the physics is compiled: some 20 s)") as tell:
         if machine is None:
             done = bench_on_models(names, sequences, progress=tell)
         else:

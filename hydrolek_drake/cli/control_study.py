@@ -24,9 +24,8 @@ def judge(
 ) -> None:
     """30 deg steps in both directions with other postures, loads, dead-zones, and on deviating machines."""
     import numpy as np
-    from rich.console import Console
 
-    from hydrolek_drake.cli.output import console
+    from hydrolek_drake.cli.output import console, progress
     from hydrolek_drake.control.bench import check_names
     from hydrolek_drake.control.catalogue import CONTROLLERS, build_law, rig_setting
     from hydrolek_drake.control.conditions import Condition, conditions_data, judged_conditions
@@ -39,7 +38,7 @@ def judge(
     _check_joints(joints)
     generator = np.random.default_rng(seed)
     half = Condition(load_kg=0.5 * float(conditions_data()["load"]["value"]))
-    with Console(stderr=True).status("step tests of every joint") as status:
+    with progress("step tests of every joint") as tell:
         settings = {name: rig_setting(load_rig(f"hydrolek_{name}"), name) for name in joints}
         step = load_rig(f"hydrolek_{joints[0]}").value("integration.longest_step")
         cases = make_cases(joints, judged_conditions(), step)
@@ -47,7 +46,7 @@ def judge(
         found = {}
         for name in names:
             for learned in (False, True):
-                status.update(f"{name}, {'third' if learned else 'first'} step, {len(cases)} cases")
+                tell(f"{name}, {'third' if learned else 'first'} step, {len(cases)} cases")
                 found[name, learned] = judge_all(
                     lambda which, name=name: build_law(name, settings[which], noisy=True),  # type: ignore[misc]
                     cases,

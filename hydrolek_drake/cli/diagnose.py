@@ -38,9 +38,7 @@ def diagnose(
     """Find out what physics a rig's model leaves out, from recordings of the machine."""
     from concurrent.futures import ThreadPoolExecutor
 
-    from rich.console import Console
-
-    from hydrolek_drake.cli.output import console
+    from hydrolek_drake.cli.output import console, progress
     from hydrolek_drake.diagnosis.diagnosis import diagnose as run_diagnosis
     from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
     from hydrolek_drake.diagnosis.report import write_report
@@ -55,19 +53,17 @@ def diagnose(
     for path in given:
         if given.count(path) > 1:
             raise InputError(f"recording {path} is given twice; held-out data must be other data")
-    output, progress = console(), Console(stderr=True)
+    output = console()
     loaded = load_rig(rig, parse_settings(set_))
     train = [read_recording(path, loaded.columns) for path in recordings]
     held = [read_recording(path, loaded.columns) for path in holdout or []]
     if out is not None:
         prepare_folder(out)
     count = workers or os.cpu_count() or 1
-    with progress.status("starting") as status, ThreadPoolExecutor(count) as pool:
-        done = run_diagnosis(
-            loaded, train, held, pool, say=lambda text: status.update(f"{text} ..."), between=between
-        )
+    with progress("starting") as tell, ThreadPoolExecutor(count) as pool:
+        done = run_diagnosis(loaded, train, held, pool, say=lambda text: tell(f"{text} ..."), between=between)
         if out is not None:
-            status.update("writing the report ...")
+            tell("writing the report ...")
             page = write_report(done, out)
     for line in summary(done):
         output.print(line, soft_wrap=True)

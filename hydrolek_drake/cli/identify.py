@@ -45,10 +45,9 @@ def sdp(
 ) -> None:
     """State-dependent-parameter models (thesis chapter 6) from open-loop step tests."""
     import numpy as np
-    from rich.console import Console
     from rich.table import Table
 
-    from hydrolek_drake.cli.output import console
+    from hydrolek_drake.cli.output import console, progress
     from hydrolek_drake.identification.sdp.campaign import (
         recorded_joints,
         simulated_joint,
@@ -63,10 +62,10 @@ def sdp(
     if not recordings and rig is None:
         raise InputError("identify sdp: give recordings of step tests, or --rig RIG to simulate them")
     loaded = None if rig is None else load_rig(rig, parse_settings(set_))
-    output, progress = console(), Console(stderr=True)
+    output = console()
     rng = np.random.default_rng(seed)
     results: list[tuple[SdpIdentification, list[ValidationRun]]] = []
-    with progress.status("reading" if recordings else "simulating step tests") as status:
+    with progress("reading" if recordings else "simulating step tests") as tell:
         if recordings:
             columns = {} if loaded is None else loaded.columns
             read = [read_recording(path, columns) for path in recordings]
@@ -75,11 +74,11 @@ def sdp(
         else:
             assert loaded is not None
             for name in joint or loaded.joints:
-                status.update(f"step tests of {name}")
+                tell(f"step tests of {name}")
                 machine, tests, found = simulated_joint(loaded, name, rng, moving, fine)
                 if out is not None:
                     write_campaign(tests, name, out)
-                status.update(f"validation of {name}: six runs of five minutes")
+                tell(f"validation of {name}: six runs of five minutes")
                 results.append((found, validate(found.model, machine.angle, rng)))
     table = Table("joint", *(f"alpha{i}" for i in range(1, 7)), "delay [s]", "s_n", "s_p", "a1")
     for found, _ in results:
