@@ -6,6 +6,9 @@ from hydrolek_drake.identification.least_squares import Fit
 GAIN_NEEDED = 12.0
 """Smallest gain (fall of the squared residuals) that is followed up: 3.5 standard deviations of one size."""
 
+PROMISING = 0.5
+"""An effect is tried if it promises this share of what it must bring: the sizes at which it was tried may be wrong."""
+
 FIDELITY = 0.004
 """Fall of the squared residuals, as a share of the values, below which an effect is not told from what every
 model leaves out: 0.2 % of the noise's rms."""

@@ -19,7 +19,7 @@ from hydrolek_drake.diagnosis.effort import (
     POLISH,
 )
 from hydrolek_drake.diagnosis.first_fits import Trial, anew, anew_pulled, glance, own_values
-from hydrolek_drake.diagnosis.gains import gain_needed
+from hydrolek_drake.diagnosis.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.moments import timed
 from hydrolek_drake.diagnosis.score import Score, gain_of_pair, scores_of
 from hydrolek_drake.diagnosis.unsticking import unstuck
@@ -98,10 +98,11 @@ def _add(
     all_of_them: bool,
 ) -> None:
     """Add what may be tried beside a model to what is tried already: what promises something, or everything."""
+    promising = PROMISING * gain_needed(parent.fit)
     for score in scored:
         if redundant(parent.effects, score.candidate):
             continue
-        if not (all_of_them or score.candidate.effect.sudden) and score.gain < 0.5 * gain_needed(parent.fit):
+        if not (all_of_them or score.candidate.effect.sudden) and score.gain < promising:
             continue
         effects = (*parent.effects, score.candidate)
         trial = trials.setdefault(key_of(effects), Trial(effects))

@@ -12,12 +12,12 @@ from hydrolek_drake.diagnosis.effort import (
     POLISH,
 )
 from hydrolek_drake.diagnosis.found import Search
-from hydrolek_drake.diagnosis.gains import gain_needed
+from hydrolek_drake.diagnosis.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.lessening import lessened
 from hydrolek_drake.diagnosis.ranges import at_the_end, gain_beyond, replaced, widened
-from hydrolek_drake.diagnosis.score import scores_of
+from hydrolek_drake.diagnosis.score import score_in_place, scores_of
 from hydrolek_drake.diagnosis.unsticking import different, fit_pulled, led_on, own_values, started_again
-from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
 
 EXCHANGED = 3
 """So many effects are tried in the place of each one of a model to which none may be added."""
@@ -111,6 +111,25 @@ def widen(bench: Workbench, found: Search, hypothesis: Hypothesis, candidates: S
     for near in sorted(pulled, key=lambda h: h.fit.objective):
         ahead.setdefault(near.ids, near)
     for fitted in bench.side_by_side(lambda h: bench.refit(h, bench.fine, LOOK), list(ahead.values())):
+        found.keep(fitted)
+
+
+def widen_where_promised(bench: Workbench, found: Search, candidates: Sequence[Candidate]) -> None:
+    """Fit the best hypothesis near the noise again with what contains one of its effects, where that promises much.
+
+    From there least squares with free rollouts goes straight on. If the best one has the wider effect already, that is
+    fitted again from its special case: other fits may have ended where it does hardly more than that one.
+    """
+    best = found.best
+    work: list[tuple[tuple[Candidate, ...], dict[str, float]]] = []
+    for hypothesis in list(found.hypotheses.values()):
+        for effect, wider, effects in widenings(hypothesis.effects, candidates):
+            if hypothesis is not best and key_of(effects) != best.ids:
+                continue
+            score = score_in_place(bench, hypothesis, effect, wider, bench.fine)
+            if score.gain > PROMISING * gain_needed(hypothesis.fit):
+                work.append((effects, {**hypothesis.values, **score.start}))
+    for fitted in bench.side_by_side(lambda item: bench.fit(item[0], item[1], bench.fine, LOOK), work):
         found.keep(fitted)
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.diagnosis.unsticking import different
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.least_squares import Fit
 
@@ -83,32 +84,51 @@ def scores_of(
     own = {candidate.size_path for candidate in hypothesis.effects}
     across = Across(hypothesis.fit)
     free = [candidate for candidate in candidates if candidate.size_path not in own]
-    here = np.concatenate([bench.residuals(hypothesis, bench.training, step), hypothesis.fit.off_prior])
-    scored = bench.side_by_side(lambda c: _score(bench, hypothesis, c, step, across, here), free)
+    here = _left_by(bench, hypothesis, step)
+    scored = bench.side_by_side(
+        lambda c: _score(bench, hypothesis, (*hypothesis.effects, c), c.starts, step, across, here), free
+    )
     return sorted(scored, key=lambda score: -score.gain)
+
+
+def score_in_place(
+    bench: Workbench, hypothesis: Hypothesis, effect: Candidate, wider: Candidate, step: float
+) -> Score:
+    """Score what contains one of a model's effects in that effect's place; what both have stays as it was fitted."""
+    carried = wider.taken_over(effect, hypothesis.values)
+    starts = different([{**start, **carried} for start in wider.starts])
+    effects = (*hypothesis.without(effect), wider)
+    return _score(
+        bench, hypothesis, effects, starts, step, Across(hypothesis.fit), _left_by(bench, hypothesis, step)
+    )
+
+
+def _left_by(bench: Workbench, hypothesis: Hypothesis, step: float) -> np.ndarray:
+    """What a model leaves of the training data and of its prior. # (values + parameters,)."""
+    return np.concatenate([bench.residuals(hypothesis, bench.training, step), hypothesis.fit.off_prior])
 
 
 def _score(
     bench: Workbench,
     hypothesis: Hypothesis,
-    candidate: Candidate,
+    effects: tuple[Candidate, ...],
+    starts: Sequence[dict[str, float]],
     step: float,
     across: Across,
     here: np.ndarray,
 ) -> Score:
+    """Score the last one of these effects from each start, against what the hypothesis leaves."""
     bench.alive()
-    effects = (*hypothesis.effects, candidate)
+    candidate = effects[-1]
     problem = bench.problem(effects, step)
     left = across(here)
     best_gain, best_left = 0.0, float("inf")
     best_change = np.zeros_like(left)
-    start = candidate.starts[0]
+    start = starts[0]
     weakens = candidate.effect.weakens
     visible = 0.0 if weakens else float("inf")
-    gain_at = dict.fromkeys(
-        (tuple(begin[free.path] for free in candidate.moments) for begin in candidate.starts), 0.0
-    )
-    for begin in candidate.starts:
+    gain_at = dict.fromkeys((tuple(begin[free.path] for free in candidate.moments) for begin in starts), 0.0)
+    for begin in starts:
         for shrink in SHRUNK:
             size = begin[candidate.size_path] * (1.0 / shrink if weakens else shrink)
             tried = {**begin, candidate.size_path: size}

@@ -21,7 +21,14 @@ from hydrolek_drake.diagnosis.effort import (
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import gain_needed
 from hydrolek_drake.diagnosis.growing import grow
-from hydrolek_drake.diagnosis.improving import exchanged, lead_on, prune, searched_further, widen
+from hydrolek_drake.diagnosis.improving import (
+    exchanged,
+    lead_on,
+    prune,
+    searched_further,
+    widen,
+    widen_where_promised,
+)
 from hydrolek_drake.diagnosis.score import scores_of
 from hydrolek_drake.diagnosis.weighing import weigh_anew
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -120,6 +127,8 @@ def _grown(
     if pruned.fit.over_noise > AT_NOISE:
         widen(bench, found, pruned, candidates)
         lead_on(bench, found)
+    if found.best.fit.over_noise < NEAR:
+        widen_where_promised(bench, found, candidates)
     if found.best is not pruned:  # in its place an effect may have become needless
         prune(bench, found, candidates)
     found.left = scores_of(bench, found.best, candidates, bench.fine)

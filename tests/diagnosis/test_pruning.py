@@ -8,12 +8,12 @@ from dataclasses import replace
 import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
-from hydrolek_drake.diagnosis.effort import NEARLY, POLISH
+from hydrolek_drake.diagnosis.effort import LOOK, NEAR, NEARLY, POLISH
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import gain_needed
-from hydrolek_drake.diagnosis.improving import exchanged, prune, widen
+from hydrolek_drake.diagnosis.improving import exchanged, prune, widen, widen_where_promised
 from hydrolek_drake.diagnosis.lessening import SLIGHT, lessened, passed_on, slightly_worse, start_of_lesser
-from hydrolek_drake.diagnosis.score import scores_of
+from hydrolek_drake.diagnosis.score import score_in_place, scores_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import Free, free_parameters
@@ -61,6 +61,42 @@ def test_stribeck_friction_is_tried_from_where_coulomb_friction_was_found(bench,
     assert special.fit.objective - wider.fit.objective > gain_needed(special.fit)
     for name, value in STRIBECK.items():
         assert wider.values[f"{stribeck.path}.{name}"] == pytest.approx(value, rel=0.1)
+
+
+@pytest.mark.parametrize("stribeck_N", [0.0, 250.0])
+def test_near_the_noise_what_contains_an_effect_is_fitted_where_it_promises_something(
+    bench, recorded, stribeck_N
+) -> None:
+    """Coulomb friction explains nearly all; the rest is seen beside it, with the friction that was found."""
+    own = {**STRIBECK, "stribeck_N": stribeck_N}
+    machine = bench.with_values(
+        {f"effects.cylinder.stribeck_friction.{name}": value for name, value in own.items()}
+    )
+    with _searched(bench, recorded(machine, bench)) as (work, candidates, stribeck, coulomb):
+        found = Search()
+        found.keep(work.fit((coulomb,), coulomb.starts[0], work.fine, LOOK))
+        special = found.best
+        score = score_in_place(work, special, coulomb, stribeck, work.fine)
+        widen_where_promised(work, found, candidates)
+        wider = found.best
+        half = math.sqrt(0.5 * (1.0 + special.fit.objective / wider.fit.objective))
+        residuals, off = half * wider.fit.residuals, half * wider.fit.off_prior
+        stuck = replace(wider, fit=replace(wider.fit, residuals=residuals, off_prior=off))
+        again = Search()
+        again.keep(special)
+        again.keep(stuck)
+        assert again.best is stuck or wider is special
+        widen_where_promised(work, again, candidates)
+    assert again.best.fit.objective == pytest.approx(wider.fit.objective, rel=1e-9)
+    assert special.fit.over_noise < NEAR
+    assert score.start[f"{stribeck.path}.coulomb_N"] == special.values[coulomb.size_path]
+    if stribeck_N == 0.0:
+        assert score.gain < gain_needed(special.fit)
+        assert found.best is special
+    else:
+        assert score.gain > gain_needed(special.fit)
+        assert special.fit.objective - found.best.fit.objective > gain_needed(special.fit)
+        assert found.best.values[f"{stribeck.path}.coulomb_N"] == pytest.approx(600.0, rel=0.1)
 
 
 def test_a_model_that_ended_elsewhere_is_fitted_from_where_a_wider_one_ended(bench, recorded) -> None:
