@@ -81,6 +81,9 @@ def test_before_the_console_answers_only_stop_can_be_pressed_and_it_is_not_forgo
         button.get_attribute("id") for button in page.query_selector_all("header button, .row button:enabled")
     ]
     assert enabled == ["stop"]
+    told_at_once = ["[name=task]", "[name=fill]", "#low_contrast", "#high_contrast", "#sensitivity"]
+    for what in told_at_once:  # a choice made now would be lost
+        assert page.query_selector(what) and not page.query_selector(f"{what}:enabled")
     page.evaluate("socket.close()")
     page.wait_for_selector("#note.bad:has-text('Connection lost')")
     page.click("#stop")
