@@ -2,11 +2,14 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from hydrolek_drake.diagnosis.law_problem import SCAN_S, FoundLaw, Law, LawProblem
 from hydrolek_drake.diagnosis.laws import Span
+from hydrolek_drake.diagnosis.ranges import WIDER
+from hydrolek_drake.diagnosis.score import AT_BOUND
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit, fit_from
@@ -63,6 +66,9 @@ def fitted(
 ) -> FoundLaw:
     """Fit a law together with the parameters of a model, from where a glance ended.
 
+    Where an amplitude ends at what is large for this machine, the fit goes on with a wider scale, as for the ranges
+    of known effects (`ranges`).
+
     Args:
         bench: training data and rig.
         left: the model that leaves the mismatch.
@@ -78,6 +84,13 @@ def fitted(
     start = problem.start(parameters.unit(begin[0]), begin[1])
     fit = fit_from(problem, start, most_steps=STEPS, tolerance=1e-4, stop=bench.interrupted)
     count = len(parameters)
+    if at_the_end(law, fit.unit):
+        bench.evaluations += problem.evaluations
+        law = replace(law, input=replace(law.input, scale=WIDER * law.input.scale))
+        reached = problem.law_values(fit.unit)
+        problem = LawProblem(parameters, bench.training, step, law, span)
+        start = problem.start(fit.unit[:count], reached)
+        fit = fit_from(problem, start, most_steps=STEPS, tolerance=1e-4, stop=bench.interrupted)
     values = problem.law_values(fit.unit)
     without = bench.training[0].simulate(parameters.records(fit.unit[:count]), step).signals
     difference = problem.signals(fit.unit)[0].reading - without.reading
@@ -85,6 +98,17 @@ def fitted(
     bench.evaluations += problem.evaluations
     nominal = parameters.values(fit.unit[:count])
     return FoundLaw(law, values, nominal, fit, over, difference, span, ahead)
+
+
+def at_the_end(law: Law, unit: np.ndarray) -> bool:
+    """Whether an amplitude of a fitted law lies at an end of its input's scale.
+
+    Args:
+        law: that was fitted.
+        unit: where, in the unit cube; a law's own parameters come last.
+    """
+    own = unit[-law.size :][: 2 if law.periodic else law.size]
+    return bool((np.abs(own - 0.5) > 0.5 - AT_BOUND).any())
 
 
 def _ahead(

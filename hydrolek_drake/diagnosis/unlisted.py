@@ -123,7 +123,10 @@ def _other_side(
     law = records_of(best.law, best.span, best.values)
     signals = [e.simulate(records, step, law=law).signals for e in bench.training]
     other = counterpart(best, inputs, signals, records[bench.training[0].index])
-    if other is None or any((f.law.input, f.law.terms) == (other[0].input, other[0].terms) for f in ended):
+    if other is None:
+        return []
+    same = (other[0].input.probe, other[0].terms)
+    if any((f.law.input.probe, f.law.terms) == same for f in ended):
         return []
     begin = (best.parameters, other[1])
     there = fitted(bench, left, other[0], held_out, best.span, begin, step)

@@ -66,6 +66,28 @@ def test_a_ripple_is_found_between_the_frequencies_that_are_scanned(bench, recor
     assert np.hypot(*ripple.amplitudes) * ripple.input.scale == pytest.approx(RIPPLE, rel=0.5)
 
 
+def test_a_ripple_beyond_what_is_searched_at_first_is_fitted_all_the_same(bench, recorded) -> None:
+    kept = {"largest_V": 7.0, "pressure_noise_Pa": 2e4, "unknown_Hz": RIPPLE_HZ}
+    supply = bench.value("supply.pressure")
+    large = 0.4 * supply
+    training, held_out = (recorded(bench, bench, seed=s, unknown=("supply", large), **kept) for s in (1, 2))
+    with ThreadPoolExecutor(2) as pool:
+        workbench = Workbench(bench, free_parameters(bench), training, pool)
+        nominal = fit_baseline(workbench)
+        inputs = inputs_of(natural_scales(bench, "joint", training), supply, 10.0, "rad")
+        narrow = next(given for given in inputs if given.stage == "supply")
+        law = Law(narrow, (), RIPPLE_HZ, 0.0, (0.9, 0.0))
+        span = span_of(
+            [e.simulate(bench.records()).signals for e in training], bench.records()[0], 12.0, "rad"
+        )
+        begin = ({}, np.array([0.9 * narrow.scale, 0.0, RIPPLE_HZ]))
+        found = fitted(workbench, nominal, law, held_out, span, begin, workbench.fine)
+    assert narrow.scale < 0.9 * large
+    assert found.amplitudes[0] == pytest.approx(large, rel=0.02)
+    assert found.fit.over_noise < 1.1
+    assert found.held_out_over_noise < 1.1
+
+
 def test_a_law_with_which_the_rollout_diverged_promises_nothing() -> None:
     rest, good = np.array([1.0, -2.0, 2.0]), np.array([-0.5, 1.0, -1.0])
     assert gain_along(good[:, None], rest)[0] == pytest.approx(9.0)
