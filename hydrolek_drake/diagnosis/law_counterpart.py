@@ -36,9 +36,11 @@ def counterpart(
     seen, lever = (np.concatenate(parts) for parts in zip(*(_seen(s, record) for s in signals), strict=True))
     over = lever if law.input.stage == "cylinder" else 1.0 / lever
     wanted = over * sum(law_along(row, seen) for row in records_of(law, found.span, found.values))
-    columns = [law_along(law_record(other.probe, found.span, term, 1.0)[0], seen) for term in law.terms]
+    terms = law.at(found.values).terms
+    columns = [law_along(law_record(other.probe, found.span, term, 1.0)[0], seen) for term in terms]
     amplitudes, *_ = np.linalg.lstsq(np.stack(columns, axis=1), wanted, rcond=None)
-    return replace(law, input=other), amplitudes
+    there = replace(law, input=other)
+    return there, np.concatenate([amplitudes, found.values[law.sizes :]])
 
 
 def _seen(run: Signals, record: np.void) -> tuple[np.ndarray, np.ndarray]:

@@ -42,17 +42,17 @@ def glance(
     ended = []
     for values in (left.values, own):
         unit = parameters.unit(values)
-        amplitudes = law.input.scale * np.array(law.amplitudes)
+        own_values = law.begun(law.input.scale * np.array(law.amplitudes))
         for seconds in (SCAN_S, GLANCE_S) if law.periodic else (GLANCE_S,):
             part = [experiment.until(seconds) for experiment in bench.training]
             problem = LawProblem(parameters, part, step, law, span)
-            start = problem.start(unit, amplitudes)
+            start = problem.start(unit, own_values)
             fit = fit_from(problem, start, most_steps=GLANCE, tolerance=1e-3, stop=bench.interrupted)
-            unit, amplitudes = fit.unit[: len(parameters)], problem.law_values(fit.unit)
+            unit, own_values = fit.unit[: len(parameters)], problem.law_values(fit.unit)
             bench.evaluations += problem.evaluations
-        ended.append((fit.objective, unit, amplitudes))
-    objective, unit, amplitudes = min(ended, key=lambda end: end[0])
-    return objective, parameters.values(unit), amplitudes
+        ended.append((fit.objective, unit, own_values))
+    objective, unit, own_values = min(ended, key=lambda end: end[0])
+    return objective, parameters.values(unit), own_values
 
 
 def fitted(
@@ -107,7 +107,7 @@ def at_the_end(law: Law, unit: np.ndarray) -> bool:
         law: that was fitted.
         unit: where, in the unit cube; a law's own parameters come last.
     """
-    own = unit[-law.size :][: 2 if law.periodic else law.size]
+    own = unit[-law.size :][: law.sizes]
     return bool((np.abs(own - 0.5) > 0.5 - AT_BOUND).any())
 
 

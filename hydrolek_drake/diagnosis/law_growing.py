@@ -82,12 +82,13 @@ def _with_one_more(
     free = [term for term in TERMS if term not in law.law.terms]
     scored = sorted(terms_scored(bench, model, law.law.input, free), key=lambda s: -s[1])
     scale = law.law.input.scale
-    begun = [
-        (
-            replace(law.law, terms=(*law.law.terms, term), gain=gain),
-            (law.parameters, np.append(law.values, scale * start)),
-        )
+    sizes, where = law.values[: law.law.sizes], law.law.at(law.values).terms
+    further = [
+        (replace(law.law, terms=(*where, term), gain=gain), np.append(sizes, scale * start))
         for term, gain, start in scored[:FOLLOWED]
         if gain > GAIN_NEEDED
     ]
-    return [fitted(bench, left, more, held_out, law.span, begin, step) for more, begin in begun]
+    return [
+        fitted(bench, left, more, held_out, law.span, (law.parameters, more.begun(amplitudes)), step)
+        for more, amplitudes in further
+    ]

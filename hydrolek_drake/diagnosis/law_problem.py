@@ -2,21 +2,34 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.laws import CONSTANT, Input, Span, Term, law_record, law_records
+from hydrolek_drake.diagnosis.laws import (
+    CONSTANT,
+    FIRST_REACH,
+    Input,
+    Span,
+    Term,
+    law_record,
+    law_records,
+)
 from hydrolek_drake.diagnosis.workbench import SPREAD
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.physics.law import NEAR
+from hydrolek_drake.replay.display import shown
 from hydrolek_drake.rollout.rollout import Signals
 
 SCAN_S = 12.0
 """Frequencies are first looked for in so many seconds."""
 
+
+WIDEST = 4.0
+"""What acts near a place reaches so many times as far as where its fit begins at most, and as much less at least."""
 
 FRICTIONS = ("sign(v)", "v", "v |v|")
 """Factors of a term that changes its sign with the speed."""
@@ -51,9 +64,35 @@ class Law:
         return bool(self.terms) and all(term.speed in FRICTIONS for term in self.terms)
 
     @property
+    def placed(self) -> tuple[int, ...]:
+        """Which of its terms act near a place, which is fitted with its reach."""
+        return tuple(number for number, term in enumerate(self.terms) if term.place == NEAR)
+
+    @property
+    def sizes(self) -> int:
+        """How many of its parameters are amplitudes."""
+        return 2 if self.periodic else len(self.terms)
+
+    @property
     def size(self) -> int:
-        """How many parameters it has."""
-        return 3 if self.periodic else len(self.terms)
+        """How many parameters it has: amplitudes, then a frequency, or centre and reach of every placed term."""
+        return 3 if self.periodic else self.sizes + 2 * len(self.placed)
+
+    def at(self, values: np.ndarray) -> "Law":
+        """The law with its placed terms where they were fitted."""
+        if not self.placed:
+            return self
+        terms = list(self.terms)
+        for number, (centre, reach) in zip(self.placed, values[self.sizes :].reshape(-1, 2), strict=True):
+            terms[number] = replace(terms[number], centre=float(centre), reach=float(reach))
+        return replace(self, terms=tuple(terms))
+
+    def begun(self, sizes: np.ndarray) -> np.ndarray:
+        """All its values, from its amplitudes (SI) alone and where it begins."""
+        if self.periodic:
+            return np.append(sizes, self.frequency)
+        places = [(self.terms[n].centre, self.terms[n].reach) for n in self.placed]
+        return np.concatenate([sizes, np.ravel(places)])
 
 
 @dataclass(frozen=True)
@@ -62,7 +101,8 @@ class FoundLaw:
 
     Attributes:
         law: stage and form.
-        values: amplitudes (SI), or sine and cosine amplitudes and frequency [Hz].
+        values: amplitudes (SI), then centre and reach of every placed term (as in `laws.Term`); or sine and cosine
+            amplitudes and frequency [Hz].
         parameters: full path -> nominal parameters fitted with it.
         fit: on the training data.
         held_out_over_noise: root mean square on held-out data over the noise.
@@ -85,7 +125,21 @@ class FoundLaw:
     @property
     def amplitudes(self) -> list[float]:
         """Sizes of the input (SI): of every term with its sign, or the largest of a periodic one."""
-        return [math.hypot(*self.values[:2])] if self.law.periodic else self.values.tolist()
+        sizes = self.values[: self.law.sizes]
+        return [math.hypot(*sizes)] if self.law.periodic else sizes.tolist()
+
+    @property
+    def names(self) -> list[str]:
+        """Of its terms, with the places near which they act."""
+        reach = self.span.at(self.law.input.probe)
+
+        def told(term: Term) -> str:
+            if term.place != NEAR:
+                return term.name
+            where = (reach.position(term.centre), reach.distance(term.reach))
+            return term.name.replace(NEAR, f"near({', '.join(shown(each, reach.unit) for each in where)})")
+
+        return [told(term) for term in self.law.at(self.values).terms]
 
     def equation(self) -> str:
         """The law as an equation."""
@@ -95,8 +149,8 @@ class FoundLaw:
             phase = math.atan2(self.values[1], self.values[0])
             return f"{self.law.input.symbol} = {sizes[0]} * sin(2 pi {self.values[2]:.4g} Hz t + {phase:.2f})"
         products = [
-            size if term.name == CONSTANT else f"{size} * {term.name}"
-            for size, term in zip(sizes, self.law.terms, strict=True)
+            size if name == CONSTANT else f"{size} * {name}"
+            for size, name in zip(sizes, self.names, strict=True)
         ]
         return f"{self.law.input.symbol} = {' + '.join(products).replace('+ -', '- ')}"
 
@@ -113,7 +167,7 @@ def records_of(law: Law, span: Span, values: np.ndarray) -> np.ndarray:
     """A law with its values (SI) as the rollout takes it. # (k,) of `physics.law.LAW`."""
     if law.periodic:
         return law_record(law.input.probe, span, None, *values.tolist())
-    return law_records(law.input.probe, span, law.terms, values.tolist())
+    return law_records(law.input.probe, span, law.at(values).terms, values[: law.sizes].tolist())
 
 
 class LawProblem(Problem):
@@ -137,21 +191,26 @@ class LawProblem(Problem):
         self._prior_weight = np.concatenate([self._prior_weight, np.zeros(law.size)])
 
     def law_values(self, unit: np.ndarray) -> np.ndarray:
-        """Amplitudes (SI) and frequency [Hz] at a place in the unit cube."""
-        own = unit[self._nominal :]
-        values = (2.0 * own - 1.0) * self.law.input.scale
+        """A law's values (as of `FoundLaw`) at a place in the unit cube."""
+        values = 2.0 * unit[self._nominal :] - 1.0
+        sizes, places = values[: self.law.sizes], values[self.law.sizes :]
+        sizes *= self.law.input.scale
         if self.law.periodic:
-            values[2] = self.law.frequency + (own[2] - 0.5) / SCAN_S
+            values[2] = self.law.frequency + 0.5 * values[2] / SCAN_S
+        else:
+            places[1::2] = FIRST_REACH * WIDEST ** places[1::2]
         return values
 
-    def start(self, nominal: np.ndarray, amplitudes: np.ndarray) -> np.ndarray:
-        """Unit vector for nominal parameters and amplitudes (SI), with the frequency [Hz] if one is known better."""
-        sizes = amplitudes[: 2 if self.law.periodic else self.law.size]
-        own = np.clip(0.5 + 0.5 * sizes / self.law.input.scale, 0.0, 1.0)
+    def start(self, nominal: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """Unit vector for nominal parameters and a law's values, the inverse of `law_values`."""
+        own = values.astype(float)
+        sizes, places = own[: self.law.sizes], own[self.law.sizes :]
+        sizes /= self.law.input.scale
         if self.law.periodic:
-            known = amplitudes[2] if len(amplitudes) > 2 else self.law.frequency
-            own = np.array([*own, 0.5 + (known - self.law.frequency) * SCAN_S])
-        return np.concatenate([nominal, own])
+            own[2] = 2.0 * (own[2] - self.law.frequency) * SCAN_S
+        else:
+            places[1::2] = np.log(places[1::2] / FIRST_REACH) / math.log(WIDEST)
+        return np.concatenate([nominal, np.clip(0.5 + 0.5 * own, 0.0, 1.0)])
 
     def signals(self, unit: np.ndarray) -> list[Signals]:
         """What the model with the law does in every experiment."""

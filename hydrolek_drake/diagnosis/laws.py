@@ -83,6 +83,8 @@ class Term:
         place: of `PLACES`.
         speed: of `SPEEDS`.
         other: of `OTHERS`.
+        centre: near which place of the movement, -1 at its low end and 1 at its high one; where a fit begins.
+        reach: how far to either side, half of the movement being 1.
     """
 
     stages: tuple[str, ...]
@@ -90,6 +92,8 @@ class Term:
     place: str = "1"
     speed: str = "1"
     other: str = "1"
+    centre: float = 0.0
+    reach: float = 0.0
 
     @property
     def name(self) -> str:
@@ -102,6 +106,9 @@ _FORCES = ("cylinder", "load")
 _MOVED = (*_FORCES, "sensor")
 _FLOWS = ("supply", "valve")
 _ALL = ("command", "amplifier", "supply", "valve", "fluid", "cylinder", "load", "sensor")
+
+FIRST_REACH = 0.5
+"""Of a term near a place, where its fit begins."""
 
 TERMS = (
     Term(_ALL),
@@ -118,7 +125,7 @@ TERMS = (
     Term(_FORCES, place="(1 - z^2)", speed="sign(v)"),
     Term(_FORCES, place="((1 + z)/2)^2", speed="sign(v)"),
     Term(_FORCES, place="((1 - z)/2)^2", speed="sign(v)"),
-    *(Term(_FORCES, place=near, speed="sign(v)") for near in NEAR),
+    *(Term(_FORCES, place=NEAR, speed="sign(v)", centre=0.25 * n, reach=FIRST_REACH) for n in range(-3, 4)),
     Term(_FORCES, place="z", speed="v"),
     Term(("valve", "fluid", *_MOVED), other="p_A"),
     Term(("valve", "fluid", *_MOVED), other="p_B"),
@@ -145,6 +152,14 @@ class Reach:
     low: float
     high: float
     unit: str
+
+    def position(self, z: float) -> float:
+        """Where z is, which is -1 at the low end and 1 at the high one [rad or m]."""
+        return self.low + self.distance(1.0 + z)
+
+    def distance(self, z: float) -> float:
+        """How long a piece of z is [rad or m]."""
+        return 0.5 * z * (self.high - self.low)
 
 
 @dataclass(frozen=True)
@@ -244,6 +259,9 @@ def law_record(
     record["at_rod"] = float(reach is span.rod)
     for name in ("low", "high", "speed", "slow"):
         record[name] = getattr(reach, name)
+    near = term if term is not None and term.place == NEAR else None
+    record["centre"] = reach.position(near.centre) if near is not None else 0.0
+    record["reach"] = reach.distance(near.reach) if near is not None else 1.0
     for name in ("seconds", "opening", "pressure"):
         record[name] = getattr(span, name)
     return record

@@ -86,7 +86,7 @@ def _law_json(diagnosis: Diagnosis, law: FoundLaw) -> dict[str, Any]:
         key = "amplitude" if number == 1 else f"amplitude_{number}"
         parameters[key] = {"value": size, "unit": known.unit}
         if not law.law.periodic:
-            parameters[key]["of"] = law.law.terms[number - 1].name
+            parameters[key]["of"] = law.names[number - 1]
     if law.law.periodic:
         parameters["frequency"] = {"value": float(law.values[2]), "unit": "Hz"}
     return {

@@ -6,7 +6,6 @@ from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.told_numbers import with_interval
-from hydrolek_drake.physics.law import NEAR_WIDTH
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.replay.display import shown, three_digits
 from hydrolek_drake.rigs import Rig
@@ -122,8 +121,7 @@ def law_sentence(law: FoundLaw) -> str:
 
 def where_sentence(law: FoundLaw) -> str:
     """What the letters of a law mean; nothing for one that has none."""
-    names = " ".join(term.name for term in law.law.terms)
-    letters = names.replace("near(", "z near(")
+    names = " ".join(law.names)
     reach = law.span.at(law.law.input.probe)
     rod = reach is law.span.rod
     place, low, high = (
@@ -135,12 +133,12 @@ def where_sentence(law: FoundLaw) -> str:
     told = {
         "t/T": f"T = {shown(law.span.seconds, 's')}",
         "z": f"z is the {place}, -1 at {low} and 1 at {high}",
-        "near": f"near(c) is 1 where z = c and falls to 0 over {NEAR_WIDTH:g} to either side",
+        "near": f"near(c, w) is 1 at a {place} of c and falls to 0 over w to either side",
         "v": f"v is the {'rod' if rod else 'joint'}'s speed{over}",
         "p_": f"p_A and p_B are pressures over {shown(law.span.pressure, 'Pa')}",
         "x": f"x is the spool over {shown(law.span.opening, 'm')}",
     }
-    used = [text for letter, text in told.items() if letter in letters]
+    used = [text for letter, text in told.items() if letter in names]
     return f" Here {_listed(used)}." if used else ""
 
 

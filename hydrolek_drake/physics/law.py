@@ -16,18 +16,15 @@ from numba import njit
 from hydrolek_drake.physics.probes import CYLINDER, LOAD, Probe, added
 
 TIMES = ("1", "t/T", "(t/T)^2")
-NEAR_WIDTH = 0.5
-NEAR_AT = tuple(0.25 * number for number in range(-3, 4))
-NEAR = tuple(f"near({at:g})" for at in NEAR_AT)
-"""At one place of the movement alone: half a wave of cosine squared around it, nothing beyond `NEAR_WIDTH`. Every
-second one together with its neighbours adds up to 1 between them (Hann windows)."""
+NEAR = "near"
+"""At one place of the movement alone: half a wave of cosine squared around `centre`, nothing beyond `reach` from it
+(a Hann window; several half their width apart add up to 1 between them)."""
 
-PLACES = ("1", "z", "z^2", "(1 - z^2)", "((1 + z)/2)^2", "((1 - z)/2)^2", *NEAR)
-_FIRST_NEAR = len(PLACES) - len(NEAR)
+PLACES = ("1", "z", "z^2", "(1 - z^2)", "((1 + z)/2)^2", "((1 - z)/2)^2", NEAR)
 SPEEDS = ("1", "sign(v)", "v", "|v|", "v |v|")
 OTHERS = ("1", "p_A", "p_B", "(p_A - p_B)", "x", "|x|")
-"""t: time since switching on, T: `seconds`, z: stroke or position, -1 at `low` and 1 at `high`; near(c):
-cos(pi/2 (z - c) / `NEAR_WIDTH`)^2 where z is nearer to c than that, else 0; v: speed over `speed`, sign(v): tanh(v
+"""t: time since switching on, T: `seconds`, z: stroke or position, -1 at `low` and 1 at `high`; near:
+cos(pi/2 d)^2 with d the distance from `centre` over `reach`, and 0 beyond 1; v: speed over `speed`, sign(v): tanh(v
 over `slow`), p: pressure over `pressure`, x: spool over `opening`."""
 
 LAW = np.dtype(
@@ -37,7 +34,7 @@ LAW = np.dtype(
             "probe", "time", "place", "speed_shape", "other",  # what, and which factors, as places in their lists
             "sine", "cosine", "frequency",  # a, b (SI unit of the probe), f [Hz]
             "at_rod",  # 1 where place and speed are the rod's, 0 where they are the joint's
-            "seconds", "low", "high", "speed", "slow", "opening", "pressure",
+            "seconds", "low", "high", "centre", "reach", "speed", "slow", "opening", "pressure",
         )
     ]
 )  # fmt: skip
@@ -80,8 +77,8 @@ def time_factor(shape: float, t: float) -> float:
 
 
 @njit
-def place_factor(shape: float, z: float) -> float:
-    """A factor of `PLACES`."""
+def place_factor(shape: float, z: float, off: float) -> float:
+    """A factor of `PLACES`, off being how far from a place it is, over the reach."""
     if shape == 1.0:
         return z
     if shape == 2.0:
@@ -92,8 +89,7 @@ def place_factor(shape: float, z: float) -> float:
         return (0.5 * (1.0 + z)) ** 2
     if shape == 5.0:
         return (0.5 * (1.0 - z)) ** 2
-    if shape >= _FIRST_NEAR:
-        off = (z - NEAR_AT[int(shape) - _FIRST_NEAR]) / NEAR_WIDTH
+    if shape == 6.0:
         return math.cos(0.5 * math.pi * off) ** 2 if abs(off) < 1.0 else 0.0
     return 1.0
 
@@ -136,7 +132,7 @@ def _without_speed(law: Any, seen: Seen) -> float:
     return (
         size
         * time_factor(law.time, seen.time / law.seconds)
-        * place_factor(law.place, z)
+        * place_factor(law.place, z, (place - law.centre) / law.reach)
         * other_factor(law.other, seen.p_a / law.pressure, seen.p_b / law.pressure, seen.x / law.opening)
     )
 

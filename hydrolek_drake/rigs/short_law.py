@@ -17,7 +17,17 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.physics.law import LAW, LAW_RECORD, MOST_TERMS, OTHERS, PLACES, SPEEDS, TERM_NAMES, TIMES
+from hydrolek_drake.physics.law import (
+    LAW,
+    LAW_RECORD,
+    MOST_TERMS,
+    NEAR,
+    OTHERS,
+    PLACES,
+    SPEEDS,
+    TERM_NAMES,
+    TIMES,
+)
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rigs.entries import Entry, parse_entry, written_entry
@@ -43,6 +53,8 @@ _SEEN = ("joint", "rod")
 SCALES = (
     Parameter("low", "m|rad", "position at which z is -1", 0.0),
     Parameter("high", "m|rad", "position at which z is 1", 1.0),
+    Parameter("centre", "m|rad", "position near which the term acts", 0.0),
+    Parameter("reach", "m|rad", "so far from it to either side", 1.0, positive=True),
     Parameter("speed", "m/s|rad/s", "by which v is divided", 1.0, positive=True),
     Parameter("slow", "m/s|rad/s", "below which sign(v) is smoothed", 1.0, positive=True),
     Parameter("seconds", "s", "T in t/T", 1.0, positive=True),
@@ -56,10 +68,12 @@ FREQUENCY = Parameter("frequency", "Hz", "of a periodic term", 0.0, lowest=0.0)
 
 def needed(factors: Mapping[str, str]) -> tuple[str, ...]:
     """Names of `SCALES` that the factors of a term need."""
-    speed, other = factors.get("speed", "1"), factors.get("other", "1")
+    place, speed, other = (factors.get(name, "1") for name in ("place", "speed", "other"))
     found = {
-        "low": factors.get("place", "1") != "1",
-        "high": factors.get("place", "1") != "1",
+        "low": place not in ("1", NEAR),
+        "high": place not in ("1", NEAR),
+        "centre": place == NEAR,
+        "reach": place == NEAR,
         "speed": speed not in ("1", "sign(v)"),
         "slow": speed == "sign(v)",
         "seconds": factors.get("time", "1") != "1",
@@ -114,7 +128,8 @@ def terms_of(rows: np.ndarray, units: tuple[str, str], source: str, reach: str) 
         reach: where the numbers come from that its variables are told in.
     """
     given, length = units
-    moved = {"low": length, "high": length, "speed": f"{length}/s", "slow": f"{length}/s"}
+    moved = dict.fromkeys(("low", "high", "centre", "reach"), length)
+    moved |= dict.fromkeys(("speed", "slow"), f"{length}/s")
     told_in = {p.name: moved.get(p.name, p.unit) for p in SCALES}
     terms = []
     for row in rows:

@@ -1,6 +1,7 @@
 """Laws for physics in no list: what they mean, and that a planted one is found at its stage."""
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,7 +11,7 @@ from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.effort import POLISH
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig
 from hydrolek_drake.diagnosis.judged import Judged
-from hydrolek_drake.diagnosis.law_fit import fitted
+from hydrolek_drake.diagnosis.law_fit import fitted, glance
 from hydrolek_drake.diagnosis.law_growing import LONGEST
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, records_of
 from hydrolek_drake.diagnosis.law_search import promising
@@ -23,7 +24,8 @@ from hydrolek_drake.diagnosis.words import where_sentence
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
-from hydrolek_drake.physics.law import Seen, law_value
+from hydrolek_drake.physics.law import NEAR, Seen, law_value
+from hydrolek_drake.replay.display import shown
 from hydrolek_drake.station.simulation import command_source, initial_context
 from hydrolek_drake.station.simulation import run as run_diagram
 from hydrolek_drake.station.station import make_station
@@ -183,7 +185,7 @@ def test_a_friction_over_the_stroke_is_found_at_the_rod_as_a_law_of_several_term
 def test_a_friction_at_one_place_of_the_stroke_is_found_there(bench, recorded) -> None:
     """A scored bore: between two of the places that terms have, and wider than either."""
     place, size = 0.375, 1200.0
-    neighbours = (Term((), place="near(0.25)", speed="sign(v)"), Term((), place="near(0.5)", speed="sign(v)"))
+    neighbours = tuple(Term((), place=NEAR, speed="sign(v)", centre=at, reach=0.5) for at in (0.25, 0.5))
 
     plain = recorded(bench, bench, seed=1)[0].simulate(bench.records()).signals
     span = span_of([plain], bench.records()[0], 12.0, "rad")
@@ -195,13 +197,14 @@ def test_a_friction_at_one_place_of_the_stroke_is_found_there(bench, recorded) -
     sought, judged, found = _sought(bench, training, held_out)
     assert judged.over_noise > 2.0
     assert found is not None and found.law.input.stage == "cylinder"
-    begin = ({}, np.array([-0.5 * size, -0.5 * size]))
+    law = Law(found.law.input, neighbours, 0.0, 0.0, ())
+    begin = ({}, law.begun(np.array([-0.5 * size, -0.5 * size])))
     with ThreadPoolExecutor(2) as pool:
         again = Workbench(bench, free_parameters(bench), sought.training, pool)
         right = fitted(
             again,
             judged.hypothesis,
-            Law(found.law.input, neighbours, 0.0, 0.0, ()),
+            law,
             held_out,
             span,
             begin,
@@ -214,6 +217,36 @@ def test_a_friction_at_one_place_of_the_stroke_is_found_there(bench, recorded) -
     moving = [Seen(0.0, 0.0, 0.0, stroke, reach.speed, 0.0, 0.0, 0.0) for stroke in strokes]
     friction = np.array([-sum(law_value(row, seen) for row in laws) for seen in moving])
     assert strokes[np.argmax(friction)] == pytest.approx(peak, abs=0.125 * (reach.high - reach.low))
+
+
+def test_where_a_bore_is_scored_and_how_far_is_fitted(bench, recorded) -> None:
+    """Between two of the places where a search begins, and narrower than it begins."""
+    size, centre, reach = 1500.0, 0.35, 0.3
+    plain = recorded(bench, bench, seed=1)[0].simulate(bench.records()).signals
+    span = span_of([plain], bench.records()[0], 12.0, "rad")
+    rubbing = Term((), place=NEAR, speed="sign(v)", centre=centre, reach=reach)
+    scored = law_records("cylinder", span, (rubbing,), (-size,))
+    kept = {"pressure_noise_Pa": 2e4, "law": lambda _: scored}
+    training, held_out = (recorded(bench, bench, seed=seed, **kept) for seed in (1, 2))
+    with ThreadPoolExecutor(2) as pool:
+        workbench = Workbench(bench, free_parameters(bench), training, pool)
+        nominal = fit_baseline(workbench)
+        inputs = inputs_of(
+            natural_scales(bench, "joint", training), bench.value("supply.pressure"), 10.0, "rad"
+        )
+        rod = next(given for given in inputs if given.stage == "cylinder")
+        for start in (0.25, 0.5):
+            begun = replace(rubbing, centre=start, reach=0.5)
+            law = Law(rod, (begun,), 0.0, 0.0, (-0.05,))
+            at = glance(workbench, nominal, law, span, 2.0 * workbench.fine)[1:]
+            found = fitted(workbench, nominal, law, held_out, span, at, workbench.fine)
+            assert found.values == pytest.approx([-size, centre, reach], rel=0.05), start
+            assert found.held_out_over_noise < 1.1
+    stroke = span.rod.high - span.rod.low
+    assert found.names == [
+        f"near({shown(span.rod.low + 0.5 * (1.0 + found.values[1]) * stroke, 'm')}, "
+        f"{shown(0.5 * found.values[2] * stroke, 'm')}) sign(v)"
+    ]
 
 
 def test_a_law_says_what_its_letters_mean(bench) -> None:
@@ -237,9 +270,8 @@ def test_a_law_says_what_its_letters_mean(bench) -> None:
         "moment added at the joint = -3 N m * v |v| - 2 N m",
         " Here v is the joint's speed over 28.6 deg/s.",
     )
-    assert told(Term((), place="near(0.25)", speed="sign(v)"), values=(-7.0,)) == (
-        "moment added at the joint = -7 N m * near(0.25) sign(v)",
-        " Here z is the position, -1 at 10 deg and 1 at 40 deg; near(c) is 1 where z = c and falls to 0 over 0.5 to "
-        "either side; v is the joint's speed.",
+    assert told(Term((), place=NEAR, speed="sign(v)"), values=(-7.0, 0.2, 0.5)) == (
+        "moment added at the joint = -7 N m * near(28 deg, 7.5 deg) sign(v)",
+        " Here near(c, w) is 1 at a position of c and falls to 0 over w to either side; v is the joint's speed.",
     )
     assert told(Term(()), values=(5.0,)) == ("moment added at the joint = 5 N m", "")

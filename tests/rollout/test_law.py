@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.laws import TERMS, Term, law_record, law_records, span_of
-from hydrolek_drake.physics.law import NEAR_AT, Seen, law_value
+from hydrolek_drake.physics.law import NEAR, Seen, law_value
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout.one_point import stroke_and_lever
@@ -103,14 +103,18 @@ def test_a_periodic_law_is_a_sine_in_time(span) -> None:
 def test_places_add_up_to_the_whole_movement(span) -> None:
     """Windows of cosine squared half their width apart: 1 wherever two of them meet."""
     low, high = span.joint.low, span.joint.high
-    for places in (NEAR_AT[::2], NEAR_AT[1::2]):
-        terms = [Term((), place=f"near({at:g})") for at in places]
+    for reach in (0.5, 0.2):
+        places = np.arange(-0.75, 0.75, reach)
+        terms = [Term((), place=NEAR, centre=at, reach=reach) for at in places]
         laws = law_records("load", span, terms, [1.0] * len(terms))
         for z in np.linspace(places[0], places[-1], 11):
             seen = Seen(0.0, low + 0.5 * (1.0 + z) * (high - low), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
             assert sum(law_value(row, seen) for row in laws) == pytest.approx(1.0)
     beyond = Seen(0.0, high, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    assert law_value(law_record("load", span, Term((), place="near(0.25)"), 1.0)[0], beyond) == 0.0
+    assert (
+        law_value(law_record("load", span, Term((), place=NEAR, centre=0.25, reach=0.5), 1.0)[0], beyond)
+        == 0.0
+    )
 
 
 def test_every_term_is_of_size_about_one_where_it_was_defined(span) -> None:

@@ -24,7 +24,7 @@ LAWS = {
     "valve": (Term((), other="p_A"), 0.3),
     "supply": (Term((), speed="|v|"), -4e6),
     "cylinder": (Term((), place="((1 + z)/2)^2", speed="sign(v)"), -1500.0),
-    "load": (Term((), place="near(-0.25)", speed="sign(v)"), -200.0),
+    "load": (Term((), place="near", speed="sign(v)", centre=-0.25, reach=0.5), -200.0),
     "sensor": (Term((), place="z^2"), 0.02),
     "capacity_a": (Term((), place="z"), 4e-13),
     "capacity_b": (Term((), other="p_B"), 4e-13),
