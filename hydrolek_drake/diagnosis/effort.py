@@ -20,7 +20,7 @@ ABOVE_NOISE = 1.0 + 2.0 * NOISE_KNOWN
 """Where no effect promises anything, a model is taken to lack one only if it leaves more than this."""
 
 GLANCE_S = 20.0
-"""First fits see so many seconds of a recording: errors that grow with time are smaller, and so is the work."""
+"""First fits see so many seconds at least: errors that grow with time are smaller, and so is the work."""
 
 GLANCE, LOOK, POLISH = 4, 15, 8
 """Trust-region steps of a first fit, of one that is followed up, and of one with the rig's own step."""

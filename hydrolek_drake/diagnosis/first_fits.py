@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.diagnosis.effort import GLANCE, GLANCE_S, LOOK
+from hydrolek_drake.diagnosis.effort import GLANCE, LOOK
 from hydrolek_drake.diagnosis.moments import begun
 from hydrolek_drake.diagnosis.unsticking import LED_STEP, begun_anew, different, fit_pulled, own_values
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -46,7 +46,7 @@ def glance(bench: Workbench, trial: Trial, step: float) -> Hypothesis:
     effects, starts = trial.effects, trial.starts
     if effects[-1].effect.sudden:
         return sudden(bench, effects, starts[0], step)
-    part = [experiment.until(GLANCE_S) for experiment in bench.training]
+    part = bench.beginning()
     near = begun(bench, effects, starts, step)
     moments = {free.path: near[free.path] for free in effects[-1].moments}
     others = different([{**start, **moments} for start in starts])[1:]
@@ -79,7 +79,7 @@ def anew_pulled(bench: Workbench, trial: Trial, step: float) -> Hypothesis:
     A nominal model near the noise may have bent its parameters so far to make up for what is missing that hardly
     anything speaks for the effect from there; with free rollouts the way from the rig's own values is long.
     """
-    part = [experiment.until(GLANCE_S) for experiment in bench.training]
+    part = bench.beginning()
     starts = begun_anew(bench, trial.effects, trial.likeliest)
     return bench.refit(fit_pulled(bench, trial.effects, starts, step, part), step, GLANCE, alone=True)
 
@@ -91,7 +91,7 @@ def sudden(
 
     What it does is no small change of what the model does without it, so that there is no way downhill from there.
     """
-    part = [experiment.until(GLANCE_S) for experiment in bench.training]
+    part = bench.beginning()
     own = own_values(bench, effects, begin)
     starts = [begin, *({**own, **start} for start in effects[-1].starts)]
     finer = min(step, LED_STEP * bench.fine)  # a contact that opens is stiff

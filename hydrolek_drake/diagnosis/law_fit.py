@@ -18,9 +18,6 @@ from hydrolek_drake.identification.parameter_set import ParameterSet
 STEPS, GLANCE = 15, 4
 """Trust-region steps of a fit, and of a first one that tells which law is worth it."""
 
-GLANCE_S = 20.0
-"""First fits see so many seconds."""
-
 PHASES = 12
 """Where a periodic law may stand when a recording begins is first tried at so many places."""
 
@@ -40,11 +37,11 @@ def glance(
     parameters = bench.parameters(left.effects)
     own = {path: value for path, value in left.values.items() if ".effects." in path}
     ended = []
+    scanned = [experiment.until(SCAN_S) for experiment in bench.training]
     for values in (left.values, own):
         unit = parameters.unit(values)
         own_values = law.begun(law.input.scale * np.array(law.amplitudes))
-        for seconds in (SCAN_S, GLANCE_S) if law.periodic else (GLANCE_S,):
-            part = [experiment.until(seconds) for experiment in bench.training]
+        for part in (scanned, bench.beginning()) if law.periodic else (bench.beginning(),):
             problem = LawProblem(parameters, part, step, law, span)
             start = problem.start(unit, own_values)
             fit = fit_from(problem, start, most_steps=GLANCE, tolerance=1e-3, stop=bench.interrupted)

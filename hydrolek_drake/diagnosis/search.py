@@ -7,6 +7,7 @@ that none of them was fitted to (`evidence`).
 from collections.abc import Callable, Sequence
 
 from hydrolek_drake.diagnosis.baseline import fit_baseline
+from hydrolek_drake.diagnosis.beginning import shown_by
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import (
     ABOVE_NOISE,
@@ -61,6 +62,7 @@ def search(
     baseline = fit_baseline(bench)
     found.keep(baseline)
     found.weighed_at = baseline.fit.over_noise
+    bench.first_s = shown_by(baseline.fit.residuals, bench.training)
     say("trying what could explain the rest")
     found.scores = scores_of(bench, baseline, candidates, bench.fine)
     found.left = found.scores

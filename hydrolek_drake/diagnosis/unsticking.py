@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.diagnosis.effort import BEAM, GLANCE_S, LOOK, POLISH
+from hydrolek_drake.diagnosis.effort import BEAM, LOOK, POLISH
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, moments_of
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import PULLED_STEPS, PULLED_TOLERANCE
@@ -44,7 +44,7 @@ def unstuck(bench: Workbench, glances: Sequence[Hypothesis], looks: Sequence[Hyp
     prediction errors of an observer do (Ljung, System Identification, 1999, chapter 7), so that the same fit goes
     its way from far off; what drifts slowly they do not see, and so the free fits stand beside them.
     """
-    part = [experiment.until(GLANCE_S) for experiment in bench.training]
+    part = bench.beginning()
 
     def pulled(glance: Hypothesis) -> Hypothesis:
         joints = bench.joints_of(glance.effects)

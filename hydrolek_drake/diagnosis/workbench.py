@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.diagnosis.effort import GLANCE_S
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit, fit_from
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
@@ -92,11 +93,16 @@ class Workbench:
         self.pool = pool
         self._stopped = threading.Event()
         self.evaluations = 0
+        self.first_s = GLANCE_S
         self._sets: dict[frozenset[Free], ParameterSet] = {}
 
     def with_training(self, training: Sequence[Experiment]) -> "Workbench":
         """Another one for other recordings of the same machine."""
         return Workbench(self.rig, self.nominal, training, self.pool)
+
+    def beginning(self) -> list[Experiment]:
+        """The part of the recordings that first fits see, see `beginning`."""
+        return [experiment.until(self.first_s) for experiment in self.training]
 
     def interrupted(self) -> bool:
         """Whether the user has interrupted."""
