@@ -12,7 +12,7 @@ from hydrolek_drake.diagnosis.ranges import WIDER
 from hydrolek_drake.diagnosis.score import AT_BOUND
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import Fit, fit_from
+from hydrolek_drake.identification.least_squares import Fit, fit_from, fit_from_afar
 from hydrolek_drake.identification.parameter_set import ParameterSet
 
 STEPS, GLANCE = 15, 4
@@ -28,7 +28,8 @@ def glance(
     """A few steps with a law on the first part of the training data.
 
     Begun at the fitted values of the model that leaves the mismatch and at the rig's own, which were not bent to
-    make up for what is missing.
+    make up for what is missing. The latter is far off, so that pulled rollouts go ahead; but for a periodic law, which
+    no constant of the rig could make up for.
 
     Returns:
         Squared residuals, nominal parameters and the law's values (SI), the best of both.
@@ -38,13 +39,13 @@ def glance(
     own = {path: value for path, value in left.values.items() if ".effects." in path}
     ended = []
     scanned = [experiment.until(SCAN_S) for experiment in bench.training]
-    for values in (left.values, own):
+    for values, first_fit in ((left.values, fit_from), (own, fit_from if law.periodic else fit_from_afar)):
         unit = parameters.unit(values)
         own_values = law.begun(law.input.scale * np.array(law.amplitudes))
         for part in (scanned, bench.beginning()) if law.periodic else (bench.beginning(),):
             problem = LawProblem(parameters, part, step, law, span)
             start = problem.start(unit, own_values)
-            fit = fit_from(problem, start, most_steps=GLANCE, tolerance=1e-3, stop=bench.interrupted)
+            fit = first_fit(problem, start, most_steps=GLANCE, tolerance=1e-3, stop=bench.interrupted)
             unit, own_values = fit.unit[: len(parameters)], problem.law_values(fit.unit)
             bench.evaluations += problem.evaluations
         ended.append((fit.objective, unit, own_values))
@@ -60,6 +61,7 @@ def fitted(
     span: Span,
     begin: tuple[dict[str, float], np.ndarray],
     step: float,
+    most_steps: int = STEPS,
 ) -> FoundLaw:
     """Fit a law together with the parameters of a model, from where a glance ended.
 
@@ -74,12 +76,13 @@ def fitted(
         span: what the law's variables are told in.
         begin: nominal parameters and the law's values (SI).
         step: of the integration [s].
+        most_steps: of the trust region; 1 leaves everything where it begins.
     """
     bench.alive()
     parameters = bench.parameters(left.effects)
     problem = LawProblem(parameters, bench.training, step, law, span)
     start = problem.start(parameters.unit(begin[0]), begin[1])
-    fit = fit_from(problem, start, most_steps=STEPS, tolerance=1e-4, stop=bench.interrupted)
+    fit = fit_from(problem, start, most_steps=most_steps, tolerance=1e-4, stop=bench.interrupted)
     count = len(parameters)
     if at_the_end(law, fit.unit):
         bench.evaluations += problem.evaluations
@@ -87,7 +90,7 @@ def fitted(
         reached = problem.law_values(fit.unit)
         problem = LawProblem(parameters, bench.training, step, law, span)
         start = problem.start(fit.unit[:count], reached)
-        fit = fit_from(problem, start, most_steps=STEPS, tolerance=1e-4, stop=bench.interrupted)
+        fit = fit_from(problem, start, most_steps=most_steps, tolerance=1e-4, stop=bench.interrupted)
     values = problem.law_values(fit.unit)
     without = bench.training[0].simulate(parameters.records(fit.unit[:count]), step).signals
     difference = problem.signals(fit.unit)[0].reading - without.reading

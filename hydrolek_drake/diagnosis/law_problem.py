@@ -216,7 +216,10 @@ class LawProblem(Problem):
         """What the model with the law does in every experiment."""
         records = self.parameters.records(unit[: self._nominal])
         law = records_of(self.law, self.span, self.law_values(unit))
-        return [e.simulate(records, self.longest_step, law=law).signals for e in self.experiments]
+        return [
+            e.simulate(records, self.longest_step, pull_time=self.pull_time, law=law).signals
+            for e in self.experiments
+        ]
 
     def residuals(self, unit: np.ndarray) -> np.ndarray:
         """Measured minus model over noise, of all experiments."""

@@ -17,7 +17,7 @@ from hydrolek_drake.diagnosis.effort import COARSE
 from hydrolek_drake.diagnosis.gains import GAIN_NEEDED
 from hydrolek_drake.diagnosis.judged import Judged, flatter
 from hydrolek_drake.diagnosis.law_counterpart import counterpart
-from hydrolek_drake.diagnosis.law_fit import fitted, glance
+from hydrolek_drake.diagnosis.law_fit import STEPS, fitted, glance
 from hydrolek_drake.diagnosis.law_growing import grown
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, left_in_all, records_of
 from hydrolek_drake.diagnosis.law_search import promising
@@ -87,12 +87,15 @@ def find_law(
 def _finished(
     bench: Workbench, left: Hypothesis, law: FoundLaw, held_out: Sequence[Experiment], step: float
 ) -> FoundLaw:
-    """The law fitted on with the rig's own step, if it was fitted with a coarser one and predicts better so."""
+    """The law with the rig's own step: as it was fitted with a coarser one, or fitted on if it then predicts better."""
     if step <= bench.fine:
         return law
-    finer = fitted(bench, left, law.law, held_out, law.span, (law.parameters, law.values), bench.fine)
-    better = finer.held_out_over_noise < law.held_out_over_noise
-    return replace(finer, rivals=law.rivals) if better else law
+    begin = (law.parameters, law.values)
+    as_it_is, finer = (
+        fitted(bench, left, law.law, held_out, law.span, begin, bench.fine, steps) for steps in (1, STEPS)
+    )
+    better = finer.held_out_over_noise < as_it_is.held_out_over_noise
+    return replace(finer if better else as_it_is, rivals=law.rivals)
 
 
 def _ahead(ended: Sequence[FoundLaw]) -> list[FoundLaw]:

@@ -176,7 +176,15 @@ def fit_from(
     )
 
 
-def fit_from_afar(problem: Problem, start: np.ndarray, *, loss: str = "linear", most_steps: int = 50) -> Fit:
+def fit_from_afar(
+    problem: Problem,
+    start: np.ndarray,
+    *,
+    loss: str = "linear",
+    most_steps: int = 50,
+    tolerance: float = 1e-6,
+    stop: Callable[[], bool] | None = None,
+) -> Fit:
     """Least squares from a start far from the optimum, first with pulled rollouts.
 
     The residuals of a free rollout pile up what went wrong before, and least squares ends in the next hollow. Pulled
@@ -188,14 +196,18 @@ def fit_from_afar(problem: Problem, start: np.ndarray, *, loss: str = "linear", 
         start: place in the unit cube. # (n,)
         loss: one of `LOSSES`.
         most_steps: with free rollouts.
+        tolerance: of their fit, as of `fit_from`.
+        stop: as of `fit_from`.
     """
     evaluations = 0
     for pull_time in PULLS_S:
         pulled = problem.pulled(pull_time)
-        near = fit_from(pulled, start, loss=loss, most_steps=PULLED_STEPS, tolerance=PULLED_TOLERANCE)
+        near = fit_from(
+            pulled, start, loss=loss, most_steps=PULLED_STEPS, tolerance=PULLED_TOLERANCE, stop=stop
+        )
         start, evaluations = near.unit, evaluations + near.evaluations
     problem.evaluations += evaluations
-    fit = fit_from(problem, start, loss=loss, most_steps=most_steps)
+    fit = fit_from(problem, start, loss=loss, most_steps=most_steps, tolerance=tolerance, stop=stop)
     return replace(fit, evaluations=fit.evaluations + evaluations)
 
 

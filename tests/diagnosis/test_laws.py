@@ -145,6 +145,27 @@ def _its_rig_predicts_as_it_does(bench, workbench, judged, found, held_out) -> N
     assert np.abs(off).max() < 0.05 * np.abs(plain.reading - with_law.reading).max()
 
 
+def test_a_first_fit_finds_a_law_for_which_the_nominal_model_bent_its_numbers_far(bench, recorded) -> None:
+    """Fifty times the oil's own capacity: from where the nominal model was fitted, and from the rig's own numbers."""
+    large = 5.0 * HOSE
+    training = recorded(bench, bench, largest_V=7.0, pressure_noise_Pa=2e4, unknown=("capacity_a", large))
+    with ThreadPoolExecutor(2) as pool:
+        workbench = Workbench(bench, free_parameters(bench), training, pool)
+        nominal = fit_baseline(workbench)
+        inputs = inputs_of(
+            natural_scales(bench, "joint", training), bench.value("supply.pressure"), 10.0, "rad"
+        )
+        hose = next(given for given in inputs if given.probe == "capacity_a")
+        span = span_of(
+            [e.simulate(bench.records()).signals for e in training], bench.records()[0], 12.0, "rad"
+        )
+        law = Law(hose, (Term(()),), 0.0, 0.0, (0.1 * large / hose.scale,))
+        left, _, values = glance(workbench, nominal, law, span, 2.0 * workbench.fine)
+    assert nominal.fit.over_noise > 50.0
+    assert values == pytest.approx([large], rel=0.02)
+    assert left < 1.1**2 * sum(e.counted for e in training)
+
+
 def test_a_friction_over_the_stroke_is_found_at_the_rod_as_a_law_of_several_terms(bench, recorded) -> None:
     """F = -(400 N + 2500 N u^2) sign(v), with u from 0 to 1 over the cylinder's whole stroke: no single term of z."""
     dry, tight = 400.0, 2500.0
