@@ -8,6 +8,7 @@ import numpy as np
 
 from hydrolek_drake.challenge.build import BENCH
 from hydrolek_drake.challenge.cases import SHOWS
+from hydrolek_drake.diagnosis.effort import ABOVE_NOISE
 
 BINS = (0.0, 0.5, 0.7, 0.9, 0.99, 1.0 + 1e-9)
 """Edges of the probabilities for the calibration."""
@@ -23,6 +24,7 @@ def score(case: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, Any]:
     truth = set(case["effects"])
     named = {e["id"] for e in report["effects"] if not e["id"].startswith("unlisted.")}
     stages = [place["stage"] for place in report["locations"]]
+    baseline = (report["fit"] or {}).get("baseline", {})
     result = {
         "name": case["name"],
         "rig": case.get("rig", BENCH),
@@ -38,7 +40,8 @@ def score(case: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, Any]:
         "probability": min((e["probability"] for e in report["effects"]), default=None),
         "seconds": report["seconds"],
         "holdout_over_noise": (report["fit"] or {}).get("with_effects", {}).get("holdout_over_noise"),
-        "baseline_over_noise": (report["fit"] or {}).get("baseline", {}).get("train_over_noise"),
+        "baseline_over_noise": baseline.get("train_over_noise"),
+        "baseline_holdout_over_noise": baseline.get("holdout_over_noise"),
     }
     if case["kind"] == "healthy":
         result["right"] = report["verdict"] == "none"
@@ -87,6 +90,7 @@ def summary(results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         "false_alarms": _told([not r["right"] for r in of["healthy"]]),
         "visible_singles_right": _told([r["right"] for r in visible]),
         "visible_singles_right_stage": _told([r["right_stage"] for r in visible]),
+        "visible_singles_beyond_a_refit_right": _told([r["right"] for r in visible if _beyond_a_refit(r)]),
         "barely_visible_singles_right": _told([r["right"] for r in of["single"] if r not in visible]),
         "doubles_right": _told([r["right"] for r in of["double"]]),
         "unlisted_recognised": _told([r["right"] for r in of["unlisted"]]),
@@ -130,6 +134,15 @@ def _cell(value: Any) -> str:
 def _shows(result: Mapping[str, Any]) -> bool:
     """Whether effects show as visible ones should; the largest sensible size may not."""
     return all(shown > 0.5 * SHOWS["middle"] for shown in result["shows"].values())
+
+
+def _beyond_a_refit(result: Mapping[str, Any]) -> bool:
+    """Whether the nominal model, refitted, leaves more of either recording than the noise level is uncertain by.
+
+    Of an effect that other nominal numbers stand for just as well, the data hold nothing.
+    """
+    left = (result["baseline_over_noise"], result["baseline_holdout_over_noise"])
+    return any(each is not None and each > ABOVE_NOISE for each in left)
 
 
 def _told(right: Sequence[bool]) -> dict[str, Any]:

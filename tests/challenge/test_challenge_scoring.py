@@ -118,6 +118,19 @@ def test_an_effect_that_its_machine_hardly_shows_counts_as_barely_visible() -> N
     assert told["visible_singles_right"]["of"] == told["barely_visible_singles_right"]["of"] == 1
 
 
+def test_what_a_refitted_nominal_model_explains_is_counted_apart() -> None:
+    """A droop that a valve which opens a little less stands for leaves nothing in the data."""
+    case = _case("single", {"supply.pressure_droop": {}}, ["supply"], shows={"supply.pressure_droop": 6.0})
+    results = []
+    for train, held_out in ((0.99, 1.02), (1.01, 1.05), (2.0, 0.99)):
+        report = _report("none")
+        report["fit"]["baseline"] = {"train_over_noise": train, "holdout_over_noise": held_out}
+        results.append(score(case, report))
+    told = summary(results)
+    assert told["visible_singles_right"]["of"] == 3
+    assert told["visible_singles_beyond_a_refit_right"] == {"count": 0, "of": 2, "share": 0.0}
+
+
 def test_confusion_has_the_right_ones_on_its_diagonal() -> None:
     told = confusions(
         [
