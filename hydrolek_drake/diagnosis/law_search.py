@@ -24,6 +24,10 @@ SPACING = 0.25
 """Frequencies are tried so many cycles over the recording apart. Two half a cycle apart are hardly told from each other
 by their sines alone; but the fitted parameters undo a part of both, and what is left of a peak is narrower."""
 
+SCANNED = ("command", "supply", "load", "sensor")
+"""Inputs at which all frequencies are tried. What shakes at another one shows near the same frequencies at one of
+these: a force at the rod as a moment at the load, and what changes the flow in proportion as the supply does."""
+
 FOLLOWED = 6
 """So many peaks of the first part are looked at with more of the recording, where frequencies lie further apart."""
 
@@ -104,13 +108,24 @@ def promising(
             found.append(Law(given, (), frequency, gain * counted / max(part.counted, 1), amplitudes))
         return found
 
-    def of_frequencies(given: Input) -> list[Law]:
-        spacing = SPACING / SCAN_S
-        scanned = gains(given, short, np.arange(LOWEST / SCAN_S, HIGHEST_HZ, spacing))
-        around = np.arange(-0.5 * spacing, 0.5 * spacing, SPACING / longest)
-        near = [law.frequency + around for law in _peaks(scanned)[:FOLLOWED]]
-        return [max(gains(given, longer, np.concatenate(near)), key=_promised)]
+    spacing = SPACING / SCAN_S
 
+    def scanned(given: Input) -> list[Law]:
+        every = gains(given, short, np.arange(LOWEST / SCAN_S, HIGHEST_HZ, spacing))
+        return _peaks(every)[:FOLLOWED]
+
+    def of_frequencies(given: Input) -> list[Law]:
+        here = at[given.probe] if given.probe in at else gains(given, short, frequencies)
+        around = np.arange(-0.5 * spacing, 0.5 * spacing, SPACING / longest)
+        best = sorted(here, key=_promised)[-FOLLOWED:]
+        near = np.concatenate([law.frequency + around for law in best])
+        return [max(gains(given, longer, near), key=_promised)]
+
+    through = [given for given in inputs if given.probe in SCANNED] or list(inputs)
+    at = {
+        given.probe: peaks for given, peaks in zip(through, bench.side_by_side(scanned, through), strict=True)
+    }
+    frequencies = np.unique([law.frequency for peaks in at.values() for law in peaks])
     work = [(kind, given) for given in inputs for kind in (of_terms, of_frequencies)]
     return [law for laws in bench.side_by_side(lambda item: item[0](item[1]), work) for law in laws]
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.effort import COARSE
+from hydrolek_drake.diagnosis.effort import COARSE, NOISE_KNOWN
 from hydrolek_drake.diagnosis.gains import GAIN_NEEDED
 from hydrolek_drake.diagnosis.judged import Judged, flatter
 from hydrolek_drake.diagnosis.law_counterpart import counterpart
@@ -142,7 +142,9 @@ def likeliest(alike: Sequence[FoundLaw], in_all: Sequence[float], counted: int) 
     Where even the best leaves something systematic, such as the form of a friction that is not quite its own, what is
     hardly more is larger by that excess, see `judged.flatter`.
     A friction at the rod and one at the joint make the same movement and pressures if each may vary over the stroke
-    as it likes, and so do any two forces there where the lever is constant, as of a vane. Of two that do as well, a
+    as it likes, and so do any two forces there where the lever is constant, as of a vane. A short law is not quite the
+    form of either, and how much of what it leaves that is nobody knows better than the noise: frictions on both sides
+    are told apart only if they differ by more than that. Of two that do as well, a
     friction is named at the rod first, where seals are pressed on by the oil, and what pushes or shakes at the load;
     this is an assumption about such machines, and the other stage is told with it.
 
@@ -154,14 +156,24 @@ def likeliest(alike: Sequence[FoundLaw], in_all: Sequence[float], counted: int) 
     ranked = sorted(zip(in_all, range(len(alike)), strict=True))
     least, place = ranked[0]
     hardly = GAIN_NEEDED * flatter(least, counted, len(alike[place].fit.unit))
-    near = [alike[i] for each, i in ranked if each < least + hardly] or [alike[place]]
-    best = near[0]
+    best = alike[place]
+    unsure = max(hardly, 2.0 * NOISE_KNOWN * least)
+    near = [best] + [
+        alike[i]
+        for each, i in ranked[1:]
+        if each < least + (unsure if _rubs(best.law) and _rubs(alike[i].law) else hardly)
+    ]
     if best.law.input.stage in ("cylinder", "load"):
         wanted = "cylinder" if best.law.brakes else "load"
         same = (f for f in near if f.law.input.stage == wanted and f.law.brakes == best.law.brakes)
         best = next(same, best)
     stages = {f.law.input.stage for f in near} - {best.law.input.stage}
     return replace(best, rivals=tuple(sorted(stages)))
+
+
+def _rubs(law: Law) -> bool:
+    """Whether it is a friction at the rod or at the load."""
+    return law.brakes and law.input.stage in ("cylinder", "load")
 
 
 def without_effects(
