@@ -21,7 +21,8 @@ def _hypothesis(values, residuals):
 class _Bench:
     """Rollouts break down with a spring that is too stiff for the step."""
 
-    training = (SimpleNamespace(until=lambda seconds: "part"),)
+    def beginning(self):
+        return ["part"]
 
     def __init__(self):
         self.tried = []

@@ -76,7 +76,9 @@ class _Bench:
     """Only a fit that begins at the rig's own values, with a small play and not too coarse a step, gets anywhere."""
 
     fine = 1.0
-    training = (SimpleNamespace(until=lambda seconds: "part"),)
+
+    def beginning(self):
+        return ["part"]
 
     def joints_of(self, effects):
         return {"j"}
