@@ -14,6 +14,7 @@ from numba import njit
 
 from hydrolek_drake.challenge.arm_numbers import ArmMachine
 from hydrolek_drake.challenge.driving import SAMPLE_S, Driving, Played, controlled, turned_back
+from hydrolek_drake.challenge.faulty_signals import lost, worn
 
 UNPRESSED = 1e-9
 """A weight that would press a play together by less than this share of its gap is rounding: it takes up no side."""
@@ -21,8 +22,9 @@ UNPRESSED = 1e-9
 STEP_S = 2e-5
 """Half of it changes the angle by 1.2e-4 deg at most, with a play by 1.6e-3 deg: see docs/concealed_effects.md."""
 
-SIZE = 11
-"""x, x', P_A, P_B, q, q', flow felt by the supply, cylinder's side and its rate, tilt and its rate."""
+SIZE = 12
+"""x, x', P_A, P_B, q, q', flow felt by the supply, cylinder's side and its rate, tilt and its rate, flow felt by the
+return line."""
 
 
 @njit
@@ -63,27 +65,37 @@ def _softness(g: Any, p: float) -> float:
 
 
 @njit
+def _snagging(g: Any, q: float) -> float:
+    """Moment of hoses that have pulled tight."""
+    return g.snag_nm_per_rad * max(q - g.z_lo - g.snag_at * (g.z_hi - g.z_lo), 0.0)
+
+
+@njit
 def _rates(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) -> None:
     """Rates of the state."""
-    x, xd, p_a, p_b, q, qd, felt, cq, cqd, tilt, tiltd = y
+    x, xd, p_a, p_b, q, qd, felt, cq, cqd, tilt, tiltd, returned = y
     warm_coil = 1.0 - g.fade * (1.0 - math.exp(-t / g.fade_s))
     thin = g.warm * (1.0 - math.exp(-t / g.warm_s))
 
     push = _coil(g, g.k_f_a, g.i_max_a, volts, x, warm_coil) - _coil(
         g, g.k_f_b, g.i_max_b, -volts, -x, warm_coil
     )
-    out[0] = xd
-    out[1] = (push - g.c * xd - g.k * x - g.stiction_n * math.tanh(xd / g.stick_v)) / g.m
-
     to_a = g.area_max_a * _opened(x, g.x_o_a, g.w_a, g.shift_m) * (1.0 + thin)
     to_b = g.area_max_b * _opened(-x, g.x_o_b, g.w_b, -g.shift_m) * (1.0 + thin)
     p_s = max(g.p_s - g.droop * felt, g.p_t) + g.ripple_pa * math.sin(2.0 * math.pi * g.ripple_hz * t)
+    p_t = g.p_t + g.return_pa_s * returned
+    jet_a = to_a * (abs(p_s - p_a) + abs(p_b - p_t))  # each opens an edge from the pump and one to the tank
+    jet_b = to_b * (abs(p_s - p_b) + abs(p_a - p_t))
+    out[0] = xd
+    held = g.c * xd + g.k * x + g.stiction_n * math.tanh(xd / g.stick_v) + g.flow_force * (jet_a - jet_b)
+    out[1] = (push - held) / g.m
     from_pump_a = _orifice(g, to_a, p_s - p_a) + g.null_leak * (p_s - p_a)
     from_pump_b = _orifice(g, to_b, p_s - p_b) + g.null_leak * (p_s - p_b)
-    back_a = _orifice(g, to_b, p_a - g.p_t) + g.null_leak * (p_a - g.p_t)
-    back_b = _orifice(g, to_a, p_b - g.p_t) + g.null_leak * (p_b - g.p_t)
+    back_a = _orifice(g, to_b, p_a - p_t) + g.null_leak * (p_a - p_t)
+    back_b = _orifice(g, to_a, p_b - p_t) + g.null_leak * (p_b - p_t)
     past = g.cross_leak * (p_a - p_b)
     out[6] = (from_pump_a + from_pump_b - felt) / g.flow_s
+    out[11] = (back_a + back_b - returned) / g.flow_s
 
     playing = g.gap_rad > 0.0
     side, sided = (cq, cqd) if playing else (q, qd)
@@ -107,6 +119,7 @@ def _rates(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) -> No
     rest = g.shaking_nm * math.sin(2.0 * math.pi * g.shaking_hz * t) - g.c_j * qd
     rest -= g.weight_moment * math.cos(q + g.weight_phase) + load * g.tool_weight * math.cos(q + g.tool_phase)
     rest -= g.rod * lever * bend * qd * qd
+    rest -= _snagging(g, q)
     if q > g.q_hi:
         rest -= g.k_stop * (q - g.q_hi) + g.c_stop * qd
     elif q < g.q_lo:
@@ -147,10 +160,12 @@ def _play(
     k1, k2, k3, k4, mid = np.zeros(SIZE), np.zeros(SIZE), np.zeros(SIZE), np.zeros(SIZE), np.zeros(SIZE)
     shaft = y[4] - y[9]
     lag = g.t_d + g.delay_s
+    u = 0.0
     for n in range(len(out)):
         t = n * SAMPLE_S
         z = (2.0 * shaft - g.z_lo - g.z_hi) / (g.z_hi - g.z_lo)
-        out[n, 0] = shaft + g.bow_rad * (1.0 - z * z) + g.drift_rad_per_min * t / 60.0
+        bowed = g.bow_rad * (1.0 - z * z) + worn(g, 0.5 * (z + 1.0))
+        out[n, 0] = shaft + bowed + g.drift_rad_per_min * t / 60.0
         out[n, 1] = y[2]
         out[n, 2] = y[3]
         if closed:
@@ -162,8 +177,9 @@ def _play(
         for i in range(inner):
             now = t + i * h
             place = math.floor((now + 0.5 * h - lag) / SAMPLE_S)
-            u = g.polarity * volts[int(place)] if place >= 0 else 0.0
-            u = min(max(u, -g.limit), g.limit)
+            wanted = g.polarity * volts[int(place)] if place >= 0 and not lost(g, now - lag) else 0.0
+            wanted = min(max(wanted, -g.limit), g.limit)
+            u = min(max(wanted, u - g.ramp_v_per_s * h), u + g.ramp_v_per_s * h)
             _rates(g, y, u, now, k1)
             for j in range(SIZE):
                 mid[j] = y[j] + 0.5 * h * k1[j]
@@ -188,6 +204,7 @@ def _at_rest(machine: ArmMachine, start: float) -> np.ndarray:
     load = g.payload_kg if g.payload_s <= 0.0 else 0.0
     moment = g.weight_moment * math.cos(start + g.weight_phase)
     moment += load * g.tool_weight * math.cos(start + g.tool_phase)
+    moment += _snagging(g, start)
     tilt = -moment / g.base_k if g.base_k > 0.0 else 0.0  # the base leans against the load
     side = start
     if g.gap_rad > 0.0 and abs(moment) > UNPRESSED * g.play_k * g.gap_rad:

@@ -1,5 +1,6 @@
 """Numbers of one arm joint's concealed machine: from the rig and the URDF, and its effects."""
 
+import math
 from typing import NamedTuple
 
 from scipy.constants import g as GRAVITY
@@ -118,6 +119,16 @@ class ArmMachine(NamedTuple):
     hose: float = 0.0  # hose on side A, volume v_a hose p / 1 MPa on top
     shaking_nm: float = 0.0  # periodic moment at the joint
     shaking_hz: float = 1.0
+    ramp_v_per_s: float = math.inf  # a card lets the voltage change no faster
+    lost_s: float = 0.0  # the command is lost for so long, once in every lost_every_s
+    lost_every_s: float = 1.0
+    flow_force: float = 0.0  # oil closes the spool, with this share of opening times pressure drop
+    return_pa_s: float = 0.0  # return line, pressure for each m^3/s through it
+    snag_nm_per_rad: float = 0.0  # hoses that pull tight beyond an angle, a share of the travel
+    snag_at: float = 0.5
+    worn_rad: float = 0.0  # potentiometer worn around one angle
+    worn_at: float = 0.5
+    worn_wide: float = 0.1
 
 
 SPREAD = {

@@ -12,8 +12,13 @@ from numba import njit
 
 from hydrolek_drake.challenge.bench_numbers import Machine
 from hydrolek_drake.challenge.driving import SAMPLE_S, Driving, Played, controlled
+from hydrolek_drake.challenge.faulty_signals import lost, worn
 
 STEP_S = 2e-5
+SIZE = 12
+"""x, x', P_A, P_B, q, q', flow felt by the supply, cylinder side and its rate, tilt and its rate, flow felt by the
+return line."""
+
 REACHED_M = 0.15
 """About the longest stroke that the bench reaches: friction that grows with the stroke has its given size there."""
 
@@ -31,26 +36,37 @@ def _cylinder(g: Any, q: float) -> tuple[float, float]:
 
 
 @njit
+def _snagging(g: Any, q: float) -> float:
+    """Moment of hoses that have pulled tight."""
+    return g.snag_nm_per_rad * max(q - g.q_lo - g.snag_at * (g.q_hi - g.q_lo), 0.0)
+
+
+@njit
 def _derivative(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) -> None:
-    """Rates of x, x', P_A, P_B, q, q', flow felt by the supply, cylinder side and its rate, tilt and its rate."""
-    x, xd, p_a, p_b, q, qd, felt, cq, cqd, tilt, tiltd = y
+    """Rates of the state."""
+    x, xd, p_a, p_b, q, qd, felt, cq, cqd, tilt, tiltd, returned = y
     current = g.i_max * (1.0 - g.fade * (1.0 - math.exp(-t / g.fade_s)))
     i_a = current * min(max(volts, 0.0), 10.0) / 10.0
     i_b = current * min(max(-volts, 0.0), 10.0) / 10.0
     force = (
         g.k_f * i_a**2 / (1.0 + g.gap * max(x, 0.0)) ** 2 - g.k_f * i_b**2 / (1.0 + g.gap * max(-x, 0.0)) ** 2
     )
-    out[0] = xd
-    out[1] = (force - g.c * xd - g.k * x - g.stiction_n * math.tanh(xd / g.stick_v)) / g.m
     right = g.area * min(max((x - g.x_o - g.shift_m) / (g.w - g.x_o), 0.0), 1.0)
     left = g.area * min(max((-x - g.x_o + g.shift_m) / (g.w - g.x_o), 0.0), 1.0)
     s_warm = g.warm * (1.0 - math.exp(-t / g.warm_s))
     p_s = g.p_s - g.droop * felt + g.ripple_pa * math.sin(2.0 * math.pi * g.ripple_hz * t)
+    p_t = g.p_t + g.return_pa_s * returned
+    force -= g.flow_force * (
+        right * (abs(p_s - p_a) + abs(p_b - p_t)) - left * (abs(p_s - p_b) + abs(p_a - p_t))
+    )
+    out[0] = xd
+    out[1] = (force - g.c * xd - g.k * x - g.stiction_n * math.tanh(xd / g.stick_v)) / g.m
     pa = _flow(g, right, p_s - p_a, 1.0 + s_warm) + g.null_leak * (p_s - p_a)
-    at = _flow(g, left, p_a - g.p_t, 1.0 + s_warm) + g.null_leak * (p_a - g.p_t)
+    at = _flow(g, left, p_a - p_t, 1.0 + s_warm) + g.null_leak * (p_a - p_t)
     pb = _flow(g, left, p_s - p_b, 1.0 + s_warm) + g.null_leak * (p_s - p_b)
-    bt = _flow(g, right, p_b - g.p_t, 1.0 + s_warm) + g.null_leak * (p_b - g.p_t)
+    bt = _flow(g, right, p_b - p_t, 1.0 + s_warm) + g.null_leak * (p_b - p_t)
     out[6] = (pa + pb - felt) / 0.02
+    out[11] = (at + bt - returned) / 0.02
     playing = g.gap_rad > 0.0
     side, sided = (cq, cqd) if playing else (q, qd)
     if g.base_k > 0.0:
@@ -85,6 +101,7 @@ def _derivative(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) 
         stop = -g.k_stop * (q - g.q_lo) - g.c_stop * qd
     rest = stop - g.mgl * math.cos(q) - g.c_j * qd
     rest += g.shaking_nm * math.sin(2.0 * math.pi * g.shaking_hz * t)
+    rest -= _snagging(g, q)
     out[4] = qd
     if playing:
         lead, closing = cq - q, cqd - qd
@@ -122,25 +139,28 @@ def _play(
 ) -> None:
     """Run through all samples; `series` is the command, or the set points of a controller."""
     h = SAMPLE_S / inner
-    k1, k2, k3, k4 = np.zeros(11), np.zeros(11), np.zeros(11), np.zeros(11)
+    k1, k2, k3, k4 = np.zeros(SIZE), np.zeros(SIZE), np.zeros(SIZE), np.zeros(SIZE)
     shaft = y[4] - y[9]
+    u = 0.0
     lag = g.t_d + g.delay_s
     for n in range(len(out)):
         t = n * SAMPLE_S
         z = 2.0 * (shaft - g.q_lo) / (g.q_hi - g.q_lo) - 1.0
-        out[n, 0] = shaft + g.bow_rad * (1.0 - z * z) + g.drift_rad_per_min * t / 60.0
+        bowed = g.bow_rad * (1.0 - z * z) + worn(g, 0.5 * (z + 1.0))
+        out[n, 0] = shaft + bowed + g.drift_rad_per_min * t / 60.0
         out[n, 1] = y[2]
         out[n, 2] = y[3]
         volts[n] = controlled(series[n] - out[n, 0] - noise[n], driving) if closed else series[n]
         for i in range(inner):
             now = t + i * h
             place = math.floor((now + 0.5 * h - lag) / SAMPLE_S)
-            u = volts[int(place)] if place >= 0 else 0.0
+            wanted = volts[int(place)] if place >= 0 and not lost(g, now - lag) else 0.0
+            u = min(max(wanted, u - g.ramp_v_per_s * h), u + g.ramp_v_per_s * h)
             _derivative(g, y, u, now, k1)
             _derivative(g, y + 0.5 * h * k1, u, now + 0.5 * h, k2)
             _derivative(g, y + 0.5 * h * k2, u, now + 0.5 * h, k3)
             _derivative(g, y + h * k3, u, now + h, k4)
-            for j in range(11):
+            for j in range(SIZE):
                 y[j] += h / 6.0 * (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j])
             y[2] = max(y[2], 0.0)
             y[3] = max(y[3], 0.0)
@@ -170,9 +190,9 @@ def play(
     assert series is not None
     count = len(series)
     start = math.radians(driving.start_deg)
-    y = np.zeros(11)
+    y = np.zeros(SIZE)
     _, lever = _cylinder(machine, start)
-    moment = machine.mgl * math.cos(start)
+    moment = machine.mgl * math.cos(start) + _snagging(machine, start)
     y[3] = machine.p_b_0
     y[4] = y[7] = start
     if machine.base_k > 0.0:  # at rest the base leans against the load

@@ -1,5 +1,6 @@
 """Numbers of a concealed machine of the joint bench, from the rig."""
 
+import math
 from typing import NamedTuple
 
 from hydrolek_drake.rigs import Rig
@@ -76,6 +77,18 @@ class Machine(NamedTuple):
     hose: float = 0.0  # in no list: hose on side A, volume v_0 hose p / 1 MPa on top
     shaking_nm: float = 0.0  # in no list: periodic moment at the joint
     shaking_hz: float = 1.0
+    ramp_v_per_s: float = math.inf  # in no list: a card lets the voltage change no faster
+    lost_s: float = 0.0  # in no list: the command is lost for so long, once in every lost_every_s
+    lost_every_s: float = 1.0
+    flow_force: float = (
+        0.0  # in no list: oil closes the spool, with this share of opening times pressure drop
+    )
+    return_pa_s: float = 0.0  # in no list: return line, pressure for each m^3/s through it
+    snag_nm_per_rad: float = 0.0  # in no list: hoses that pull tight beyond an angle, a share of the travel
+    snag_at: float = 0.5
+    worn_rad: float = 0.0  # in no list: potentiometer worn around one angle
+    worn_at: float = 0.5
+    worn_wide: float = 0.1
 
 
 SPREAD = {

@@ -77,22 +77,29 @@ Draft = tuple[Build, str, str, list[str], list[str]]
 """Machine, kind, level, names of listed effects and of physics in no list."""
 
 
-def draw_cases(rigs: Sequence[Rig], count: int, seed: int) -> list[Case]:
+def draw_cases(
+    rigs: Sequence[Rig], count: int, seed: int, kinds: Sequence[tuple[str, float]] = KINDS
+) -> list[Case]:
     """Cases in random order, so that the first ones are a fair sample of all.
 
     Args:
         rigs: taken in turn; their numbers are all that machine and diagnosis share.
         count: how many.
         seed: of everything random.
+        kinds: as `KINDS`.
     """
     rng = np.random.default_rng(seed)
     builds = [build_of(rig) for rig in rigs]
-    drafts = drafted(builds, count, rng, np.random.default_rng((seed, len(builds))))
+    drafts = drafted(builds, count, rng, np.random.default_rng((seed, len(builds))), kinds)
     return [_case(n, *draft, rng) for n, draft in enumerate(drafts, start=1)]
 
 
 def drafted(
-    builds: Sequence[Build], count: int, rng: np.random.Generator, rng_builds: np.random.Generator
+    builds: Sequence[Build],
+    count: int,
+    rng: np.random.Generator,
+    rng_builds: np.random.Generator,
+    shares: Sequence[tuple[str, float]] = KINDS,
 ) -> list[Draft]:
     """What is concealed in which machine, in random order; sizes and commands are drawn later.
 
@@ -101,8 +108,9 @@ def drafted(
         count: how many.
         rng: of kinds and effects.
         rng_builds: of the order of the builds.
+        shares: kinds of cases, as `KINDS`.
     """
-    kinds = [kind for kind, share in KINDS for _ in range(max(round(share * count), 1))][:count]
+    kinds = [kind for kind, share in shares for _ in range(max(round(share * count), 1))][:count]
     kinds += ["single"] * (count - len(kinds))
     listed = _in_turn(list(dict.fromkeys(name for build in builds for name in build.listed)), rng)
     unlisted = _in_turn(list(builds[0].unlisted), rng)

@@ -21,6 +21,10 @@ def challenge(
             "or all (the bench too)"
         ),
     ] = "joint_bench",
+    kind: Annotated[
+        str,
+        typer.Option(help="what they conceal: healthy, single, double or unlisted; or all, in their shares"),
+    ] = "all",
     workers: Annotated[
         int | None, typer.Option(help="threads; as many as there are cores by default")
     ] = None,
@@ -36,7 +40,7 @@ def challenge(
 
     from hydrolek_drake.challenge.build import BENCH, rig_names
     from hydrolek_drake.challenge.calibration import calibration_png
-    from hydrolek_drake.challenge.cases import digest, draw_cases, labels_of, read_case, record
+    from hydrolek_drake.challenge.cases import KINDS, digest, draw_cases, labels_of, read_case, record
     from hydrolek_drake.challenge.confusion import confusion_markdown
     from hydrolek_drake.challenge.scoring import markdown, score, summaries, summaries_markdown
     from hydrolek_drake.challenge.visibility import visibility_markdown
@@ -52,18 +56,22 @@ def challenge(
     for name, value in (("--cases", cases), ("--workers", workers), ("--first", first)):
         if value is not None and value < 1:
             raise InputError(f"{name} {value}: at least 1 is needed")
+    if kind not in (known := [name for name, _ in KINDS]) and kind != "all":
+        raise InputError(f"--kind {kind}: no such cases; choose {', '.join([*known, 'all'])}")
     output = console()
     drawn_of = rig_names(rig)
     prepare_folder(out)
     rigs = {name: load_rig(name, {}) for name in dict.fromkeys(drawn_of)}
+    kinds = KINDS if kind == "all" else ((kind, 1.0),)
     sample = f"{cases}_{seed}" if rig == BENCH else f"{rig}_{cases}_{seed}"
+    sample = sample if kind == "all" else f"{kind}_{sample}"
     kept = out / f"labels_{sample}.json"
     with progress("starting") as tell:
         if kept.exists():
             labels = kept.read_text()
         else:
             tell("drawing machines (sizes are found by simulation) ...")
-            labels = labels_of(draw_cases([rigs[name] for name in drawn_of], cases, seed))
+            labels = labels_of(draw_cases([rigs[name] for name in drawn_of], cases, seed, kinds))
             write_whole(kept, labels)
     output.print(f"sha256 of the labels: {digest(labels)}")
     told: list[dict[str, Any]] = json.loads(labels)[:first]
