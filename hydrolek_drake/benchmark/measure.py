@@ -56,6 +56,7 @@ def measure(seed: int, repeats: int, report: Callable[[str], None]) -> dict[str,
         ("symplectic Euler, joint moments", "symplectic_euler", False),
         ("symplectic Euler, mount forces", "symplectic_euler", True),
         ("Runge-Kutta 2, mount forces", "runge_kutta2", True),
+        ("Runge-Kutta 3, mount forces", "runge_kutta3", True),
     ):
         report(f"both arms as a Drake diagram, 1 ms, {label}")
         sizes = StepSizes(step=1e-3, integrator=integrator, mount_forces=mount_forces)

@@ -15,10 +15,9 @@ from hydrolek_drake.control.law import Array, ControlLaw
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.station.simulation import initial_context
-from hydrolek_drake.station.station import StepSizes, make_station
+from hydrolek_drake.station.station import INTEGRATORS, StepSizes, make_station
 
 _EARLY = 1e-9  # seconds by which set points come early, so that rounding never makes them a sample late
-_SCHEMES = {"runge_kutta2": "runge_kutta2", "symplectic_euler": "semi_explicit_euler"}
 _PROGRESS_S = 0.5
 
 
@@ -127,7 +126,7 @@ def run_controlled(
         inner.SetDiscreteState(group, rest.get_discrete_state(group).get_value())
     simulator = Simulator(diagram, context)
     config = SimulatorConfig(
-        integration_scheme=_SCHEMES[sizes.integrator], max_step_size=sizes.step, use_error_control=False
+        integration_scheme=INTEGRATORS[sizes.integrator], max_step_size=sizes.step, use_error_control=False
     )
     ApplySimulatorConfig(config, simulator)
     simulator.Initialize()

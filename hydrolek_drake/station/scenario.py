@@ -10,7 +10,7 @@ A scenario is a YAML file; the folder `diagrams` holds those that come with the 
     command: {kind: constant, joints: {right_j2: 2 V}} # see `station.commands` for all kinds
     initial_position: {right_j2: 20 deg, right_j3: 0}  # optional; held joints too
     events: {supply_lost_at: 5 s, commands_zero_at: 5 s}   # optional
-    integration: {step: 1 ms, plant_step: 0, log_period: 10 ms, integrator: runge_kutta2}  # optional
+    integration: {step: 1 ms, plant_step: 0, log_period: 10 ms, integrator: runge_kutta3}  # optional
     forces: mounts                    # where cylinders push: at their mounts, or as moments on the joints
     noise: false                      # whether the sensors are noisy, optional
 

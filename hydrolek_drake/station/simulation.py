@@ -13,14 +13,11 @@ from pydrake.trajectories import PiecewisePolynomial
 
 from hydrolek_drake.physics import cylinder, load
 from hydrolek_drake.rollout.rollout import rest_pressures, rest_tilt_and_lead
-from hydrolek_drake.station.station import Station
+from hydrolek_drake.station.station import INTEGRATORS, Station
 
 _EARLY = (
     1e-9  # seconds by which a played-back command comes early, so that rounding never makes it a step late
 )
-
-# With the actuators' forces one step ahead, Drake's semi-explicit Euler is symplectic in pressure and velocity too.
-_SCHEMES = {"runge_kutta2": "runge_kutta2", "symplectic_euler": "semi_explicit_euler"}
 
 
 @dataclass(frozen=True)
@@ -130,7 +127,7 @@ def run(
     _fix_supply(station, context, 1.0)
     simulator = Simulator(station.diagram, context)
     config = SimulatorConfig(
-        integration_scheme=_SCHEMES[station.sizes.integrator],
+        integration_scheme=INTEGRATORS[station.sizes.integrator],
         max_step_size=station.sizes.step,
         use_error_control=False,
         target_realtime_rate=realtime_rate,

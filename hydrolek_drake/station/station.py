@@ -35,6 +35,15 @@ from hydrolek_drake.systems.transport_delay import TransportDelay
 _Add = Callable[[Any], Any]  # adds a system to the diagram and returns it
 
 
+INTEGRATORS = {
+    "runge_kutta3": "runge_kutta3",
+    "runge_kutta2": "runge_kutta2",
+    "symplectic_euler": "semi_explicit_euler",
+}
+"""How a diagram may be integrated -> Drake's name for it. With the actuators' forces one step ahead, Drake's
+semi-explicit Euler is symplectic in pressure and velocity too."""
+
+
 @dataclass(frozen=True)
 class StepSizes:
     """How finely a diagram runs.
@@ -44,8 +53,9 @@ class StepSizes:
         plant_step: of a discrete MultibodyPlant [s], as contact needs it; 0 for a continuous plant, which is
             more accurate.
         log_period: how often signals are written [s].
-        integrator: "runge_kutta2", or "symplectic_euler", which asks for one evaluation a step instead of two
-            and is of first order.
+        integrator: one of `INTEGRATORS`. "runge_kutta3" bears oil springs that nothing damps, such as a wrist whose
+            valves are closed while the arm is thrown about; "runge_kutta2" asks for two evaluations a step instead
+            of three and feeds such a spring's oscillation; "symplectic_euler" asks for one and is of first order.
         mount_forces: whether cylinders push at their mounting points, as in the thesis (4.2.4), or act by
             force times lever on their joint, which is the same by virtual work and takes less time.
     """
@@ -53,15 +63,13 @@ class StepSizes:
     step: float = 1e-3
     plant_step: float = 0.0
     log_period: float = 1e-2
-    integrator: str = "runge_kutta2"
+    integrator: str = "runge_kutta3"
     mount_forces: bool = True
 
     def __post_init__(self) -> None:
         """Refuse an integrator that the actuators are not built for."""
-        if self.integrator not in ("runge_kutta2", "symplectic_euler"):
-            raise InputError(
-                f"integrator '{self.integrator}' is unknown; use runge_kutta2 or symplectic_euler"
-            )
+        if self.integrator not in INTEGRATORS:
+            raise InputError(f"integrator '{self.integrator}' is unknown; use {' or '.join(INTEGRATORS)}")
 
 
 @dataclass(frozen=True)
