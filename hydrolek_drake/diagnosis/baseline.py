@@ -28,9 +28,7 @@ def fit_baseline(bench: Workbench) -> Hypothesis:
         bench: its training data are replaced, see `weighing.weighted_by`.
     """
     starts = _starts(bench)
-    free = _fitted_freely(bench, starts)
-    bench.training = tuple(weighted_by(bench, free, bench.training))
-    free = bench.refit(free, bench.fine, POLISH if free.fit.over_noise < FAR else 1)
+    free = _weighed(bench, _fitted_freely(bench, starts))
     if free.fit.over_noise <= AT_NOISE:
         return free
     # from the rig's own values again: where the free fit got stuck, pulled rollouts mostly get stuck too
@@ -39,6 +37,22 @@ def fit_baseline(bench: Workbench) -> Hypothesis:
     )
     led = bench.refit(min(pulled, key=lambda h: h.fit.objective), bench.fine, LOOK)
     return min((free, led), key=lambda h: h.fit.objective)
+
+
+def _weighed(bench: Workbench, free: Hypothesis) -> Hypothesis:
+    """The fit gone on with data that are weighted by what it leaves.
+
+    Where joints move together it also tells what they do to each other, the better the nearer it is to the noise: the
+    fit is gone on with as long as a round takes `FALLING` of what it leaves beyond the noise.
+    """
+    together = any(experiment.others is not None for experiment in bench.training)
+    for _ in range(MOST_ROUNDS if together else 1):
+        beyond = free.fit.over_noise - 1.0
+        bench.training = tuple(weighted_by(bench, free, bench.training))
+        free = bench.refit(free, bench.fine, POLISH if free.fit.over_noise < FAR else 1)
+        if free.fit.over_noise <= AT_NOISE or free.fit.over_noise - 1.0 > (1.0 - FALLING) * beyond:
+            break
+    return free
 
 
 def _starts(bench: Workbench) -> list[dict[str, float]]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.effort import FAR, HOPELESS, POLISH
 from hydrolek_drake.diagnosis.found import Search
+from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.channel import faithful
 from hydrolek_drake.identification.experiment import Experiment
@@ -28,22 +29,26 @@ def weighted_by(
     A recorded signal's own movement passes for noise where it is fast; most of it is gone in the residual.
     The error of the integration is told from a second rollout with half the step: the method is of second
     order, so the coarser one is wrong by 4/3 of their difference. What joints that move at the same time do
-    is known to `OTHERS_UNKNOWN`.
+    is told by the Diagram where the model is near the noise, and known to `OTHERS_UNKNOWN` elsewhere.
     """
     problem = bench.problem(hypothesis.effects, bench.fine, experiments)
     records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
+    if hypothesis.fit.over_noise < FAR:
+        experiments = felt_together(bench.rig.with_values(hypothesis.values), experiments)
     better = []
     for experiment in experiments:
         coarse = experiment.simulate(records, bench.fine).signals
         fine = experiment.simulate(records, 0.5 * bench.fine).signals
         alone = None
-        if experiment.others is not None:
+        if experiment.others is not None and experiment.others_error is None:
             alone = replace(experiment, others=None).simulate(records, 0.5 * bench.fine).signals
         channels = []
-        for channel in experiment.channels:
+        for number, channel in enumerate(experiment.channels):
             model = getattr(fine, channel.model)
             level = noise_level(channel.measured - model)
             error = 4.0 / 3.0 * np.abs(getattr(coarse, channel.model) - model)
+            if experiment.others_error is not None:
+                error = np.hypot(error, experiment.others_error[number])
             if alone is not None:
                 error = np.hypot(error, OTHERS_UNKNOWN * (model - getattr(alone, channel.model)))
             channels.append(

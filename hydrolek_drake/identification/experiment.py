@@ -43,6 +43,8 @@ class Experiment:
         block: so many samples of the recording were averaged to one; 1 for none.
         others: what joints that move at the same time do to this one, as probes of the rollout; None if it moves
             alone.
+        others_error: by how much each channel of a rollout is wrong since `others` is not quite what they do; None if
+            that is not known. # (channels, n)
     """
 
     name: str
@@ -58,6 +60,7 @@ class Experiment:
     used: np.ndarray
     block: int = 1
     others: tuple[float, np.ndarray] | None = None
+    others_error: np.ndarray | None = None
     start_error: float = 0.0
     start_response: np.ndarray | None = None
 
@@ -137,9 +140,13 @@ class Experiment:
         """The beginning of the experiment, up to so many seconds after its first sample."""
         count = int(np.searchsorted(self.time, self.time[0] + seconds, side="right"))
         channels = tuple(channel.until(count) for channel in self.channels)
-        response = None if self.start_response is None else self.start_response[:, :count]
         return replace(
-            self, time=self.time[:count], channels=channels, used=self.used[:count], start_response=response
+            self,
+            time=self.time[:count],
+            channels=channels,
+            used=self.used[:count],
+            start_response=None if self.start_response is None else self.start_response[:, :count],
+            others_error=None if self.others_error is None else self.others_error[:, :count],
         )
 
     def responding(self, records: np.ndarray, longest_step: float, signals: Signals) -> np.ndarray | None:

@@ -1,14 +1,17 @@
-"""What the other joints of a machine do to one joint while all of them move, from what was measured.
+"""What the other joints of a machine do to one joint while all of them move, from how they moved.
 
 A rollout knows one joint. Others that move at the same time draw oil from the same pump and move the arm that the
-joint carries. Both follow from their measured angles, without any model of their valves: the flow into a cylinder is
-its area times the rod's speed, and the load is the inverse dynamics of the whole arm along the measured motion
-(Siciliano et al., Robotics, 2009, section 7.5), less what the joint would carry with the others held.
+joint carries: the load is the inverse dynamics of the whole arm along its motion (Siciliano et al., Robotics, 2009,
+section 7.5), less what the joint would carry with the others held. Motion and flow may be those of a simulation of the
+whole machine (`diagnosis.together`), or follow from measured angles without any model of the valves: the flow into a
+cylinder is its area times the rod's speed. Smoothed angles do not tell how fast an arm shakes on its oil.
 """
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
+from numba import njit
 
 from hydrolek_drake.physics import load
 from hydrolek_drake.physics.probes import PROBES
@@ -26,9 +29,11 @@ ORDER = 3
 """Of the polynomial that is fitted within the window."""
 
 
-def motion(
-    time: np.ndarray, angle: np.ndarray, grid: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+Motion = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Position, velocity and acceleration of a joint. # (n,) each."""
+
+
+def motion(time: np.ndarray, angle: np.ndarray, grid: np.ndarray) -> Motion:
     """Smoothed position, velocity and acceleration of a measured angle (Savitzky-Golay).
 
     Args:
@@ -80,22 +85,45 @@ def effects_of_others(
     grid = begin + SPACING_S * np.arange(int((end - begin) / SPACING_S) + 2)
     motions = {joint: motion(*measured[joint], grid) for joint in hydraulic}
     flows = {joint: drawn_flow(records[joint], *motions[joint][:2]) for joint in hydraulic}
+    firsts = {joint: float(measured[joint][0][0]) - begin for joint in hydraulic}
+    return probes_of(rig, motions, flows, SPACING_S, firsts)
+
+
+def probes_of(
+    rig: Rig,
+    motions: Mapping[str, Motion],
+    flows: Mapping[str, np.ndarray],
+    spacing: float,
+    firsts: Mapping[str, float],
+) -> dict[str, tuple[float, np.ndarray]]:
+    """Probes that make each joint's rollout feel the others, from how all of them moved.
+
+    Args:
+        rig: the machine.
+        motions: joint -> how it moved.
+        flows: joint -> what it drew from the supply [m^3/s]. # (n,)
+        spacing: of the samples [s].
+        firsts: joint whose probes are wanted -> when its rollout begins, after the first sample [s].
+
+    Returns:
+        Joint -> spacing [s] and rows of `probes.PROBES`, from its beginning on.
+    """
+    records = dict(zip(rig.joints, rig.records(), strict=True))
     moments = _loads_of_others(rig, records, motions)
     total = np.sum(list(flows.values()), axis=0)
     found = {}
-    for joint in hydraulic:
-        rows = np.zeros((grid.size, len(PROBES)))
+    for joint, after in firsts.items():
+        rows = np.zeros((total.size, len(PROBES)))
         rows[:, PROBES.index("flow")] = total - flows[joint]
         rows[:, PROBES.index("load")] = -moments.get(joint, 0.0)
-        first = round((float(measured[joint][0][0]) - begin) / SPACING_S)
-        found[joint] = (SPACING_S, rows[first:])
+        found[joint] = (spacing, rows[round(after / spacing) :])
     return found
 
 
 def _loads_of_others(
     rig: Rig,
     records: Mapping[str, np.void],
-    motions: Mapping[str, tuple[np.ndarray, np.ndarray, np.ndarray]],
+    motions: Mapping[str, Motion],
 ) -> dict[str, np.ndarray]:
     """Joint -> moment by which the moving arm resists more than with the other joints held [N m]."""
     arm = [joint for joint in motions if rig.variant(joint, "load") == "arm"]
@@ -114,24 +142,33 @@ def _loads_of_others(
     context = plant.CreateDefaultContext()
     for joint, position in held.items():
         arm_joint(plant, joint).set_angle(context, position)
-    places = {joint: arm_joint(plant, joint).velocity_start() for joint in arm}
-    rest = plant.GetPositions(context).copy()
-    count = len(next(iter(motions.values()))[0])
+    places = [arm_joint(plant, joint).velocity_start() for joint in arm]
+    moved = [np.stack([motions[joint][order] for joint in arm], axis=1) for order in range(3)]
+    still = (plant.GetPositions(context).copy(), *(np.zeros(plant.num_velocities()) for _ in range(2)))
     forces = MultibodyForces(plant)
-    more = {joint: np.zeros(count) for joint in arm}
-    for n in range(count):
-        q, w, a = rest.copy(), np.zeros(plant.num_velocities()), np.zeros(plant.num_velocities())
-        for joint, place in places.items():
-            q[place], w[place], a[place] = (series[n] for series in motions[joint])
+    needed = np.empty((len(moved[0]), len(arm)))
+    for n in range(len(needed)):
+        q, w, a = (rest.copy() for rest in still)
+        q[places], w[places], a[places] = (series[n] for series in moved)
         plant.SetPositions(context, q)
         plant.SetVelocities(context, w)
         plant.CalcForceElementsContribution(context, forces)
-        needed = plant.CalcInverseDynamics(context, a, forces)
-        for joint, place in places.items():
-            record = records[joint]
-            alone = load.moving_inertia(0.0, record) * a[place] + load.gravity_load(q[place], 0.0, record)
-            more[joint][n] = needed[place] - alone
+        needed[n] = plant.CalcInverseDynamics(context, a, forces)[places]
+    more = {}
+    for column, joint in enumerate(arm):
+        angle, _, acceleration = motions[joint]
+        alone = load.moving_inertia(0.0, records[joint]) * acceleration + _carried(records[joint], angle)
+        more[joint] = needed[:, column] - alone
     return more
+
+
+@njit(cache=True)
+def _carried(joint: Any, position: np.ndarray) -> np.ndarray:
+    """Gravity's moment on a joint with the others held [N m]. # (n,)."""
+    carried = np.empty(position.size)
+    for n in range(position.size):
+        carried[n] = load.gravity_load(position[n], 0.0, joint)
+    return carried
 
 
 def rows_at(probes: tuple[float, np.ndarray], spacing: float, count: int) -> np.ndarray:

@@ -85,7 +85,7 @@ def rates(
     if not oil:
         force = cylinder.motor_force(voltage, joint)
     else:
-        p_supply = supply.supply_pressure(s.flow + probe.flow, joint) + probe.supply
+        p_supply = supply.supply_pressure(s.flow, joint) + probe.supply
         open_a, open_b = valve.openings(x, joint)
         open_a *= 1.0 + probe.valve
         open_b *= 1.0 + probe.valve
@@ -102,7 +102,7 @@ def rates(
         slope_b = -stiff_b * settle_b
         friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
         force = cylinder.pressure_force(s.p_a, s.p_b, joint) - friction
-        flow_rate = supply.flow_rate_of_change(s.flow, drawn, joint)
+        flow_rate = supply.flow_rate_of_change(s.flow, drawn + probe.flow, joint)
 
     force += probe.cylinder
     moment = force * lever

@@ -1,0 +1,93 @@
+"""What joints that move together do to each other, told by the Diagram: their own rollouts then move as there."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.diagnosis.together import felt_together
+from hydrolek_drake.identification.experiment import Experiment, experiments_of
+from hydrolek_drake.recordings import Recording
+from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.station.simulation import command_source, run
+from hydrolek_drake.station.station import StepSizes, make_station
+
+MOVING = ("right_j2", "right_j3")
+TIME = np.arange(0.0, 8.0 + 0.005, 0.01)
+NOISE_DEG = 0.05
+ALLOWED_DEG = 0.02
+"""What the rollout's own step may cost (hydrolek.yaml)."""
+DROOP = "joints.right_j2.effects.supply.pressure_droop.resistance_Pa_s_per_m3"
+
+
+@pytest.fixture(scope="module")
+def two_joints(tmp_path_factory):
+    """The right arm with two joints that move and the others held."""
+    path = tmp_path_factory.mktemp("rig") / "two_joints.yaml"
+    path.write_text(
+        f"schema: 1\nname: two_joints\nbased_on: hydrolek\nkeep: [{', '.join(MOVING)}]\ntitle: two joints\n"
+    )
+    return load_rig(path, {})
+
+
+def _recorded(machine, name: str = "made") -> tuple[list[Experiment], np.ndarray]:
+    """Experiments of a noisy recording of both joints, and what they really read."""
+    rng = np.random.default_rng(4)
+    volts = np.repeat(rng.uniform(-3.0, 3.0, (17, 2)), 50, axis=0)[: TIME.size]
+    volts[:50] = 0.0
+    station = make_station(machine, command=command_source(TIME, volts), sizes=StepSizes(step=2.5e-4))
+    reading = run(station, TIME[-1]).signals["reading"][: TIME.size]
+    noisy = reading + np.radians(NOISE_DEG) * rng.standard_normal(reading.shape)
+    signals = {f"{j}.command": volts[:, i] for i, j in enumerate(MOVING)}
+    signals |= {f"{j}.angle": noisy[:, i] for i, j in enumerate(MOVING)}
+    return experiments_of(machine, Recording(name, TIME, signals, Path(f"{name}.csv"))), reading
+
+
+def _off_deg(experiments: list[Experiment], machine, reading: np.ndarray) -> list[float]:
+    return [
+        float(np.degrees(np.sqrt(np.mean((e.simulate(machine.records()).signals.reading - own) ** 2))))
+        for e, own in zip(experiments, reading.T, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("resistance", [0.0, 3e10])
+def test_joints_shake_each_other_as_in_the_diagram(two_joints, resistance):
+    machine = two_joints.with_values({DROOP: resistance})
+    experiments, reading = _recorded(machine)
+    by_angles = _off_deg(experiments, machine, reading)
+    together = felt_together(machine, experiments)
+    by_the_diagram = _off_deg(together, machine, reading)
+    # smoothed angles alone make a healthy joint look as if something were missing, the Diagram does not
+    assert min(by_angles) > 2.0 * ALLOWED_DEG
+    assert max(by_the_diagram) < ALLOWED_DEG
+    told = [np.degrees(np.sqrt(np.mean(e.others_error[0] ** 2))) for e in together]
+    assert max(told) < ALLOWED_DEG
+
+
+def test_recordings_are_told_apart_by_name_and_by_their_joints(two_joints):
+    first, _ = _recorded(two_joints)
+    again = felt_together(two_joints, [*first, *first, *(replace(e, name="other") for e in first)])
+    assert [e.name for e in again] == ["made"] * 4 + ["other"] * 2
+    assert [e.joint for e in again] == [*MOVING] * 3
+    for experiment in again[2:]:
+        assert np.array_equal(experiment.others[1], again[MOVING.index(experiment.joint)].others[1])
+
+
+def test_joints_that_move_alone_stay_as_they_are(two_joints):
+    experiments = [replace(e, others=None) for e in _recorded(two_joints)[0]]
+    assert all(a is b for a, b in zip(felt_together(two_joints, experiments), experiments, strict=True))
+
+
+def test_where_the_diagram_leaves_all_bounds_measured_angles_must_do(two_joints):
+    experiments, _ = _recorded(two_joints)
+    wild = two_joints.with_values({"fluid.bulk_modulus": 1e16})
+    again = felt_together(wild, experiments)
+    assert all(a is b for a, b in zip(again, experiments, strict=True))
+
+
+def test_the_beginning_of_an_experiment_keeps_the_beginning_of_its_error(two_joints):
+    experiment = felt_together(two_joints, _recorded(two_joints)[0])[0]
+    early = experiment.until(2.0)
+    assert early.others_error.shape == (1, early.time.size)
+    assert np.array_equal(early.others_error[0], experiment.others_error[0, : early.time.size])
