@@ -6,16 +6,10 @@ hollow.
 
 from collections.abc import Sequence
 
-from hydrolek_drake.diagnosis.effort import AT_NOISE, COARSE, FAR, LOOK, POLISH
+from hydrolek_drake.diagnosis.effort import AT_NOISE, COARSE, LOOK, POLISH
 from hydrolek_drake.diagnosis.unsticking import fit_pulled
-from hydrolek_drake.diagnosis.weighing import weighted_by
+from hydrolek_drake.diagnosis.weighing import FALLING, MOST_ROUNDS, settled
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
-
-MOST_ROUNDS = 8
-"""Of the last fit of the nominal model, as long as each takes `FALLING` of what is left."""
-
-FALLING = 0.1
-"""A fit goes on while a round takes this share of what it leaves."""
 
 AWAY = 0.1
 """The middle of the ranges is a start of its own if a parameter's own value is so far from it, in ranges."""
@@ -25,10 +19,10 @@ def fit_baseline(bench: Workbench) -> Hypothesis:
     """The nominal model, fitted to the training data, which are weighted by what it leaves.
 
     Args:
-        bench: its training data are replaced, see `weighing.weighted_by`.
+        bench: its training data are replaced, see `weighing.settled`.
     """
     starts = _starts(bench)
-    free = _weighed(bench, _fitted_freely(bench, starts))
+    free = settled(bench, _fitted_freely(bench, starts))
     if free.fit.over_noise <= AT_NOISE:
         return free
     # from the rig's own values again: where the free fit got stuck, pulled rollouts mostly get stuck too
@@ -37,22 +31,6 @@ def fit_baseline(bench: Workbench) -> Hypothesis:
     )
     led = bench.refit(min(pulled, key=lambda h: h.fit.objective), bench.fine, LOOK)
     return min((free, led), key=lambda h: h.fit.objective)
-
-
-def _weighed(bench: Workbench, free: Hypothesis) -> Hypothesis:
-    """The fit gone on with data that are weighted by what it leaves.
-
-    Where joints move together it also tells what they do to each other, the better the nearer it is to the noise: the
-    fit is gone on with as long as a round takes `FALLING` of what it leaves beyond the noise.
-    """
-    together = any(experiment.others is not None for experiment in bench.training)
-    for _ in range(MOST_ROUNDS if together else 1):
-        beyond = free.fit.over_noise - 1.0
-        bench.training = tuple(weighted_by(bench, free, bench.training))
-        free = bench.refit(free, bench.fine, POLISH if free.fit.over_noise < FAR else 1)
-        if free.fit.over_noise <= AT_NOISE or free.fit.over_noise - 1.0 > (1.0 - FALLING) * beyond:
-            break
-    return free
 
 
 def _starts(bench: Workbench) -> list[dict[str, float]]:

@@ -85,7 +85,7 @@ def grow(
     if not trials and not every:
         return Grown([], {})
     if over < NEAR:
-        return Grown(_near(bench, list(trials.values()), pairs, list(every.values()), step), {})
+        return Grown(_near(bench, beam[0], list(trials.values()), pairs, list(every.values()), step), {})
     return _from_afar(bench, list(trials.values()), step)
 
 
@@ -159,6 +159,7 @@ def _in_order(hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
 
 def _near(
     bench: Workbench,
+    parent: Hypothesis,
     trials: Sequence[Trial],
     pairs: Sequence[Trial],
     every: Sequence[Trial],
@@ -168,10 +169,12 @@ def _near(
 
     Where they do not reach the noise, it has bent its parameters: everything is fitted anew from the rig's own, with
     pulled rollouts, after which the best of these go on; where that does not reach it either, what promises most, and
-    what is sudden, also with free ones.
+    what is sudden, also with free ones. What joints that move together do to each other was told beside the model
+    without the effect, so that the right one may not reach the noise yet: what brings enough is weighed anew first.
 
     Args:
         bench: data and fits.
+        parent: the model that is near the noise.
         trials: what is tried.
         pairs: the same of two effects more; none where the model is at the noise.
         every: everything that can be tried, whether it promises something or not; nothing where the model is at the
@@ -185,6 +188,8 @@ def _near(
         lambda trial: bench.fit(trial.effects, trial.likeliest, step, POLISH),
         [*by_left, *others, *pairs],
     )
+    if bench.together and any(_brings_enough(h, parent) for h in fits):
+        every = []
     if every and all(h.fit.over_noise > AT_NOISE for h in fits):
         smooth = [trial for trial in every if not trial.effects[-1].effect.sudden]
         pulled = _in_order(bench.side_by_side(lambda trial: anew_pulled(bench, trial, step), smooth))
@@ -194,6 +199,11 @@ def _near(
         fits += bench.side_by_side(lambda trial: anew(bench, trial, step), again)
     fits = _in_order(fits)
     return _in_order([timed(bench, fits[0], step), *fits[1:]])
+
+
+def _brings_enough(hypothesis: Hypothesis, parent: Hypothesis) -> bool:
+    """Whether effects lower the squared residuals of a model by as much as one more must."""
+    return parent.fit.objective - hypothesis.fit.objective > gain_needed(parent.fit)
 
 
 def _pairs(parent: Hypothesis, scored: Sequence[Score]) -> list[Trial]:

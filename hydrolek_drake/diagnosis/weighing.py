@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.effort import FAR, HOPELESS, POLISH
+from hydrolek_drake.diagnosis.effort import AT_NOISE, FAR, HOPELESS, POLISH
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -16,6 +16,12 @@ from hydrolek_drake.replay.noise import noise_level
 OTHERS_UNKNOWN = 0.1
 """What other joints do to one is known to this share: their areas and masses are the rig's own, unfitted, and their
 speeds come from smoothed angles."""
+
+MOST_ROUNDS = 8
+"""Of a fit, as long as each takes `FALLING` of what is left."""
+
+FALLING = 0.1
+"""A fit goes on while a round takes this share of what it leaves."""
 
 NEARER = 0.5
 """A model that leaves this share of what the one left by which the data are weighed tells their noise better."""
@@ -63,6 +69,26 @@ def weighted_by(
     return better
 
 
+def settled(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:
+    """A fit gone on with training data that are weighted by what it leaves, which are replaced.
+
+    Where joints move together it also tells what they do to each other, the better the nearer it is to the noise: the
+    fit is gone on with as long as a round takes `FALLING` of what it leaves beyond the noise.
+
+    Args:
+        bench: fits, and the training data.
+        hypothesis: fitted to these.
+    """
+    for _ in range(MOST_ROUNDS if bench.together else 1):
+        beyond = hypothesis.fit.over_noise - 1.0
+        bench.training = tuple(weighted_by(bench, hypothesis, bench.training))
+        hypothesis = bench.refit(hypothesis, bench.fine, POLISH if hypothesis.fit.over_noise < FAR else 1)
+        left = hypothesis.fit.over_noise
+        if left <= AT_NOISE or left - 1.0 > (1.0 - FALLING) * beyond:
+            break
+    return hypothesis
+
+
 def weigh_anew(bench: Workbench, found: Search) -> None:
     """Weigh the training data by the best model, and fit again with these weights what is near it.
 
@@ -70,11 +96,13 @@ def weigh_anew(bench: Workbench, found: Search) -> None:
     joints that move at the same time is a share of what they do: beside a model in which they do more, such as a supply
     that they share, more is unknown.
     """
-    together = any(experiment.others is not None for experiment in bench.training)
-    if not together and found.best.fit.over_noise > NEARER * found.weighed_at:
+    if not bench.together and found.best.fit.over_noise > NEARER * found.weighed_at:
         return
     bench.training = tuple(weighted_by(bench, found.best, bench.training))
     _fit_again(bench, found)
+    if bench.together and AT_NOISE < found.best.fit.over_noise < FAR:
+        found.keep(settled(bench, found.best))
+        _fit_again(bench, found)
 
 
 def _fit_again(bench: Workbench, found: Search) -> None:

@@ -123,6 +123,11 @@ class Workbench:
         return self.training[0].longest_step
 
     @property
+    def together(self) -> bool:
+        """Whether joints move at the same time."""
+        return any(experiment.others is not None for experiment in self.training)
+
+    @property
     def alike(self) -> int:
         """How many signals count alike, see `balance`; 1 where each counts by its noise."""
         channels = {c.key: c.widened for experiment in self.training for c in experiment.channels}

@@ -270,6 +270,26 @@ def test_where_a_bore_is_scored_and_how_far_is_fitted(bench, recorded) -> None:
     ]
 
 
+def test_a_track_that_is_worn_at_one_place_is_found_at_the_sensor(bench, recorded) -> None:
+    """Narrower than a search begins, and between two of its places."""
+    size, centre, reach = 0.015, 0.06, 0.18
+    plain = recorded(bench, bench, seed=1)[0].simulate(bench.records()).signals
+    span = span_of([plain], bench.records()[0], 12.0, "rad")
+    worn = law_records("sensor", span, (Term((), place=NEAR, centre=centre, reach=reach),), (size,))
+    kept = {"pressure_noise_Pa": 2e4, "law": lambda _: worn}
+    training, held_out = (recorded(bench, bench, seed=seed, **kept) for seed in (1, 2))
+    _, judged, found = _sought(bench, training, held_out)
+    assert judged.over_noise > 2.0
+    assert found is not None and found.law.input.stage == "sensor"
+    assert found.held_out_over_noise < 1.1
+    seen = [Seen(0.0, span.joint.position(z), *(6 * [0.0])) for z in np.linspace(-1.0, 1.0, 81)]
+    added = [
+        sum(law_value(row, at) for row in records_of(found.law, found.span, found.values)) for at in seen
+    ]
+    assert np.linspace(-1.0, 1.0, 81)[int(np.argmax(added))] == pytest.approx(centre, abs=0.25 * reach)
+    assert max(added) == pytest.approx(size, rel=0.1)
+
+
 def test_a_law_says_what_its_letters_mean(bench) -> None:
     run = SimpleNamespace(
         position=np.radians([10.0, 40.0]), velocity=np.array([0.0, 0.5]), spool=np.array([0.0, 1e-3])
