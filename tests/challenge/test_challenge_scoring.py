@@ -24,6 +24,7 @@ from hydrolek_drake.challenge.confusion import confusion_markdown, confusions
 from hydrolek_drake.challenge.listed import with_effects
 from hydrolek_drake.challenge.scoring import markdown, score, summaries, summaries_markdown, summary
 from hydrolek_drake.challenge.visibility import visibility_markdown
+from hydrolek_drake.cli.challenge import challenge
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.rigs import load_rig
@@ -264,3 +265,22 @@ def test_every_double_conceals_two_different_effects_that_can_be_told_apart() ->
             assert len(set(names)) == len(names)
             assert not set(names) >= FRICTIONS
             assert set(names) <= set(build.listed)
+
+
+def test_cases_of_one_kind_conceal_every_kind_of_physics_as_often() -> None:
+    builds = [build_of(load_rig(name, {})) for name in (BENCH, "hydrolek_left_j3")]
+    count = 2 * len(builds[0].unlisted)
+    rngs = (np.random.default_rng(7), np.random.default_rng(8))
+    drafts = drafted(builds, count, *rngs, shares=(("unlisted", 1.0),))
+    assert {kind for _, kind, *_ in drafts} == {"unlisted"}
+    drawn = [name for *_, (name,) in drafts]
+    assert sorted(drawn) == sorted(2 * list(builds[0].unlisted))
+    for build, *_, (name,) in drafts:  # each machine has a number for every parameter
+        entry = build.unlisted[name]
+        assert set(build.nominal._fields) >= {*entry["size"], *entry.get("draw", {})}
+
+
+def test_a_kind_that_is_not_drawn_is_refused_in_one_line(tmp_path) -> None:
+    with pytest.raises(InputError, match=r"--kind triple: no such cases; choose healthy, single, double"):
+        challenge(kind="triple", out=tmp_path / "cases")
+    assert not (tmp_path / "cases").exists()
