@@ -76,6 +76,7 @@ class _Bench:
     """Only a fit that begins at the rig's own values, with a small play and not too coarse a step, gets anywhere."""
 
     fine = 1.0
+    together = False
 
     def beginning(self):
         return ["part"]
@@ -100,6 +101,11 @@ class _Bench:
         return hypothesis
 
 
+def _parent(left):
+    """The model to which effects are added, with the squared residuals that it leaves."""
+    return SimpleNamespace(fit=SimpleNamespace(objective=left, counted=1000, unsure=0.0))
+
+
 def test_a_sudden_effect_is_searched_from_the_rig_s_own_values_with_each_size():
     play = _candidate(SIZE, 5e-4, 5e-3, sudden=True)
     best = sudden(_Bench(), (play,), {OWN: 2.0, SIZE: 5e-3}, 4.0)
@@ -116,16 +122,23 @@ def test_what_does_not_reach_the_noise_from_a_bent_model_is_fitted_anew(sudden, 
         "hydrolek_drake.diagnosis.growing.anew_pulled",
         lambda bench, trial, step: bench.fit((), {OWN: 2.0}, step, 1),
     )
-    assert _near(bench, trials, [], trials, 1.0)[0].fit.over_noise == 1.0
-    at_noise = _near(bench, trials, [], [], 1.0)[0]
+    assert _near(bench, _parent(25.0), trials, [], trials, 1.0)[0].fit.over_noise == 1.0
+    at_noise = _near(bench, _parent(25.0), trials, [], [], 1.0)[0]
     assert at_noise.fit.over_noise == 5.0  # a model at the noise is not bent
+    bench.together = (
+        True  # what joints do to each other was told without the effect: where that brings enough ...
+    )
+    assert (
+        _near(bench, _parent(60.0), trials, [], trials, 1.0)[0].fit.over_noise == 5.0
+    )  # ... it is told anew first
+    assert _near(bench, _parent(26.0), trials, [], trials, 1.0)[0].fit.over_noise == 1.0
 
 
 def test_effects_whose_tried_sizes_were_too_large_are_followed_by_what_they_promise(monkeypatch):
     monkeypatch.setattr("hydrolek_drake.diagnosis.growing.timed", lambda bench, hypothesis, step: hypothesis)
     each = [(_candidate(f"joints.j.effects.e{i}.size", 1e-4),) for i in range(12)]
     trials = [Trial(e, float(i), [{e[0].size_path: 1e-4}], [float(i)]) for i, e in enumerate(each)]
-    tried = {h.effects[0].size_path for h in _near(_Bench(), trials, [], [], 1.0)}
+    tried = {h.effects[0].size_path for h in _near(_Bench(), _parent(25.0), trials, [], [], 1.0)}
     assert {each[0][0].size_path, each[-1][0].size_path} <= tried and len(tried) < 12
 
 
