@@ -58,7 +58,7 @@ def _simulated(rig: Rig, group: Sequence[Experiment]) -> list[Experiment]:
     from hydrolek_drake.station.station import StepSizes, make_station
 
     records = rig.records()
-    begin, end = float(group[0].time[0]), max(float(e.time[-1]) for e in group)
+    begin, end = min(float(e.time[0]) for e in group), max(float(e.time[-1]) for e in group)
     places = records["load"]["initial_position"].copy()
     volts = np.tile(records["command"]["neutral"], (group[0].command_times.size, 1))
     for e in group:

@@ -9,7 +9,6 @@ import pytest
 from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.identification.experiment import Experiment, experiments_of
 from hydrolek_drake.recordings import Recording
-from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import StepSizes, make_station
 
@@ -19,16 +18,6 @@ NOISE_DEG = 0.05
 ALLOWED_DEG = 0.02
 """What the rollout's own step may cost (hydrolek.yaml)."""
 DROOP = "joints.right_j2.effects.supply.pressure_droop.resistance_Pa_s_per_m3"
-
-
-@pytest.fixture(scope="module")
-def two_joints(tmp_path_factory):
-    """The right arm with two joints that move and the others held."""
-    path = tmp_path_factory.mktemp("rig") / "two_joints.yaml"
-    path.write_text(
-        f"schema: 1\nname: two_joints\nbased_on: hydrolek\nkeep: [{', '.join(MOVING)}]\ntitle: two joints\n"
-    )
-    return load_rig(path, {})
 
 
 def _recorded(machine, name: str = "made") -> tuple[list[Experiment], np.ndarray]:

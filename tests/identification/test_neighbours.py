@@ -21,16 +21,6 @@ TIME = np.arange(0.0, 6.0 + 0.005, 0.01)
 RESISTANCE = 5e10
 
 
-@pytest.fixture(scope="module")
-def two_joints(tmp_path_factory):
-    """The right arm with two joints that move and the others held."""
-    path = tmp_path_factory.mktemp("rig") / "two_joints.yaml"
-    path.write_text(
-        f"schema: 1\nname: two_joints\nbased_on: hydrolek\nkeep: [{', '.join(MOVING)}]\ntitle: two joints\n"
-    )
-    return load_rig(path, {})
-
-
 def _column(rows: np.ndarray, name: str) -> np.ndarray:
     return rows[:, PROBES.index(name)]
 
