@@ -33,6 +33,12 @@ def _recorded(machine, name: str = "made") -> tuple[list[Experiment], np.ndarray
     return experiments_of(machine, Recording(name, TIME, signals, Path(f"{name}.csv"))), reading
 
 
+@pytest.fixture(scope="module")
+def healthy(two_joints) -> tuple[list[Experiment], np.ndarray]:
+    """A recording of the rig's own machine."""
+    return _recorded(two_joints)
+
+
 def _off_deg(experiments: list[Experiment], machine, reading: np.ndarray) -> list[float]:
     return [
         float(np.degrees(np.sqrt(np.mean((e.simulate(machine.records()).signals.reading - own) ** 2))))
@@ -41,9 +47,9 @@ def _off_deg(experiments: list[Experiment], machine, reading: np.ndarray) -> lis
 
 
 @pytest.mark.parametrize("resistance", [0.0, 3e10])
-def test_joints_shake_each_other_as_in_the_diagram(two_joints, resistance):
+def test_joints_shake_each_other_as_in_the_diagram(two_joints, healthy, resistance):
     machine = two_joints.with_values({DROOP: resistance})
-    experiments, reading = _recorded(machine)
+    experiments, reading = _recorded(machine) if resistance else healthy
     by_angles = _off_deg(experiments, machine, reading)
     together = felt_together(machine, experiments)
     by_the_diagram = _off_deg(together, machine, reading)
@@ -54,8 +60,8 @@ def test_joints_shake_each_other_as_in_the_diagram(two_joints, resistance):
     assert max(told) < ALLOWED_DEG
 
 
-def test_recordings_are_told_apart_by_name_and_by_their_joints(two_joints):
-    first, _ = _recorded(two_joints)
+def test_recordings_are_told_apart_by_name_and_by_their_joints(two_joints, healthy):
+    first, _ = healthy
     again = felt_together(two_joints, [*first, *first, *(replace(e, name="other") for e in first)])
     assert [e.name for e in again] == ["made"] * 4 + ["other"] * 2
     assert [e.joint for e in again] == [*MOVING] * 3
@@ -63,20 +69,20 @@ def test_recordings_are_told_apart_by_name_and_by_their_joints(two_joints):
         assert np.array_equal(experiment.others[1], again[MOVING.index(experiment.joint)].others[1])
 
 
-def test_joints_that_move_alone_stay_as_they_are(two_joints):
-    experiments = [replace(e, others=None) for e in _recorded(two_joints)[0]]
+def test_joints_that_move_alone_stay_as_they_are(two_joints, healthy):
+    experiments = [replace(e, others=None) for e in healthy[0]]
     assert all(a is b for a, b in zip(felt_together(two_joints, experiments), experiments, strict=True))
 
 
-def test_where_the_diagram_leaves_all_bounds_measured_angles_must_do(two_joints):
-    experiments, _ = _recorded(two_joints)
+def test_where_the_diagram_leaves_all_bounds_measured_angles_must_do(two_joints, healthy):
+    experiments, _ = healthy
     wild = two_joints.with_values({"fluid.bulk_modulus": 1e16})
     again = felt_together(wild, experiments)
     assert all(a is b for a, b in zip(again, experiments, strict=True))
 
 
-def test_the_beginning_of_an_experiment_keeps_the_beginning_of_its_error(two_joints):
-    experiment = felt_together(two_joints, _recorded(two_joints)[0])[0]
+def test_the_beginning_of_an_experiment_keeps_the_beginning_of_its_error(two_joints, healthy):
+    experiment = felt_together(two_joints, healthy[0])[0]
     early = experiment.until(2.0)
     assert early.others_error.shape == (1, early.time.size)
     assert np.array_equal(early.others_error[0], experiment.others_error[0, : early.time.size])

@@ -156,7 +156,7 @@ def test_divergence_is_told_with_a_remedy():
     settings = {
         "scenario.duration": "0.8 s",
         "scenario.command": "{kind: constant, joints: {left_j3: 5 V}}",
-        "scenario.integration": "{step: 2 ms}",
+        "scenario.integration": "{step: 2 ms, integrator: runge_kutta2}",
     }
     with pytest.raises(InputError, match=r"diverged .*scenario.integration.step=0.5 ms"):
         run_scenario(load_scenario("gravity_hold", settings))
