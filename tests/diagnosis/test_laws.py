@@ -37,6 +37,11 @@ RIPPLE, RIPPLE_HZ = 2e6, 3.104
 """Of the supply pressure [Pa]; midway between two frequencies that lie half a cycle over 12 s apart."""
 
 
+def _inputs(bench, training) -> tuple[Input, ...]:
+    """The unknown inputs of the bench's joint."""
+    return inputs_of(natural_scales(bench, "joint", training), bench.value("supply.pressure"), 10.0, "rad")
+
+
 def test_a_law_means_the_same_in_a_shorter_and_gentler_recording(bench, recorded) -> None:
     brisk, gentle = (recorded(bench, bench, largest_V=volts)[0] for volts in (9.0, 3.0))
     runs = [e.simulate(bench.records()).signals for e in (brisk, gentle)]
@@ -152,9 +157,7 @@ def test_a_first_fit_finds_a_law_for_which_the_nominal_model_bent_its_numbers_fa
     with ThreadPoolExecutor(2) as pool:
         workbench = Workbench(bench, free_parameters(bench), training, pool)
         nominal = fit_baseline(workbench)
-        inputs = inputs_of(
-            natural_scales(bench, "joint", training), bench.value("supply.pressure"), 10.0, "rad"
-        )
+        inputs = _inputs(bench, training)
         hose = next(given for given in inputs if given.probe == "capacity_a")
         span = span_of(
             [e.simulate(bench.records()).signals for e in training], bench.records()[0], 12.0, "rad"
@@ -252,9 +255,7 @@ def test_where_a_bore_is_scored_and_how_far_is_fitted(bench, recorded) -> None:
     with ThreadPoolExecutor(2) as pool:
         workbench = Workbench(bench, free_parameters(bench), training, pool)
         nominal = fit_baseline(workbench)
-        inputs = inputs_of(
-            natural_scales(bench, "joint", training), bench.value("supply.pressure"), 10.0, "rad"
-        )
+        inputs = _inputs(bench, training)
         rod = next(given for given in inputs if given.stage == "cylinder")
         for start in (0.25, 0.5):
             begun = replace(rubbing, centre=start, reach=0.5)
@@ -281,9 +282,7 @@ def test_a_track_that_is_worn_at_one_place_is_found_at_the_sensor(bench, recorde
     with ThreadPoolExecutor(2) as pool:
         workbench = Workbench(bench, free_parameters(bench), training, pool)
         nominal = fit_baseline(workbench)
-        inputs = inputs_of(
-            natural_scales(bench, "joint", training), bench.value("supply.pressure"), 10.0, "rad"
-        )
+        inputs = _inputs(bench, training)
         laws = promising(workbench, nominal, inputs, span, 4.0 * workbench.fine)
         best = max(laws, key=lambda law: law.gain)
         assert nominal.fit.over_noise > 2.0
