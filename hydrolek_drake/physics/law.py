@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-from hydrolek_drake.physics.probes import CYLINDER, LOAD, Probe, added
+from hydrolek_drake.physics.probes import AMPLIFIER, COMMAND, CYLINDER, LOAD, Probe, added
 
 TIMES = ("1", "t/T", "(t/T)^2")
 NEAR = "near"
@@ -69,72 +69,76 @@ def law_of(joint: np.ndarray) -> np.ndarray | None:
 
 
 @njit
-def time_factor(shape: float, t: float) -> float:
+def _time_factor(law: Any, seen: Seen) -> float:
     """A factor of `TIMES`."""
-    if shape == 1.0:
-        return t
-    return t * t if shape == 2.0 else 1.0
+    if law.time == 1.0:
+        return seen.time / law.seconds
+    return (seen.time / law.seconds) ** 2 if law.time == 2.0 else 1.0
 
 
 @njit
-def place_factor(shape: float, z: float, off: float) -> float:
-    """A factor of `PLACES`, off being how far from a place it is, over the reach."""
+def _place_factor(law: Any, seen: Seen) -> float:
+    """A factor of `PLACES`."""
+    shape = law.place
+    if shape == 0.0:
+        return 1.0
+    place = seen.stroke if law.at_rod > 0.0 else seen.q
+    if shape == 6.0:
+        off = (place - law.centre) / law.reach
+        return math.cos(0.5 * math.pi * off) ** 2 if abs(off) < 1.0 else 0.0
+    z = 2.0 * (place - law.low) / (law.high - law.low) - 1.0
     if shape == 1.0:
         return z
     if shape == 2.0:
         return z * z
     if shape == 3.0:
         return 1.0 - z * z
-    if shape == 4.0:
-        return (0.5 * (1.0 + z)) ** 2
-    if shape == 5.0:
-        return (0.5 * (1.0 - z)) ** 2
-    if shape == 6.0:
-        return math.cos(0.5 * math.pi * off) ** 2 if abs(off) < 1.0 else 0.0
-    return 1.0
+    return (0.5 * (1.0 + z)) ** 2 if shape == 4.0 else (0.5 * (1.0 - z)) ** 2
 
 
 @njit
-def speed_factor(shape: float, v: float, sign: float) -> float:
-    """A factor of `SPEEDS`."""
-    if shape == 1.0:
-        return sign
-    if shape == 2.0:
-        return v
-    if shape == 3.0:
-        return abs(v)
-    return v * abs(v) if shape == 4.0 else 1.0
-
-
-@njit
-def other_factor(shape: float, p_a: float, p_b: float, x: float) -> float:
+def _other_factor(law: Any, seen: Seen) -> float:
     """A factor of `OTHERS`."""
+    shape = law.other
+    if shape == 0.0:
+        return 1.0
     if shape == 1.0:
-        return p_a
+        return seen.p_a / law.pressure
     if shape == 2.0:
-        return p_b
+        return seen.p_b / law.pressure
     if shape == 3.0:
-        return p_a - p_b
-    if shape == 4.0:
-        return x
-    return abs(x) if shape == 5.0 else 1.0
+        return (seen.p_a - seen.p_b) / law.pressure
+    return seen.x / law.opening if shape == 4.0 else abs(seen.x) / law.opening
 
 
 @njit
-def _without_speed(law: Any, seen: Seen) -> float:
-    """A term's value but for its factor of the speed."""
+def _speed_factor(law: Any, seen: Seen) -> tuple[float, float]:
+    """A factor of `SPEEDS`, and for one that changes its sign with the speed v also the factor over v, else 0."""
+    shape = law.speed_shape
+    if shape == 0.0:
+        return 1.0, 0.0
+    v = seen.v if law.at_rod > 0.0 else seen.w
+    if shape == 1.0:
+        sign = math.tanh(v / law.slow)
+        return sign, sign / v if abs(v) > 1e-6 * law.slow else 1.0 / law.slow
+    relative = v / law.speed
+    if shape == 2.0:
+        return relative, 1.0 / law.speed
+    if shape == 3.0:
+        return abs(relative), 0.0
+    return relative * abs(relative), abs(relative) / law.speed
+
+
+@njit
+def _value_and_slope(law: Any, seen: Seen) -> tuple[float, float]:
+    """A term's value, and its secant slope over the speed where it changes its sign with it, else 0."""
     size = law.sine
     if law.frequency > 0.0:
         angle = 2.0 * math.pi * law.frequency * seen.time
         size = law.sine * math.sin(angle) + law.cosine * math.cos(angle)
-    place = seen.stroke if law.at_rod > 0.0 else seen.q
-    z = 2.0 * (place - law.low) / (law.high - law.low) - 1.0
-    return (
-        size
-        * time_factor(law.time, seen.time / law.seconds)
-        * place_factor(law.place, z, (place - law.centre) / law.reach)
-        * other_factor(law.other, seen.p_a / law.pressure, seen.p_b / law.pressure, seen.x / law.opening)
-    )
+    size *= _time_factor(law, seen) * _place_factor(law, seen) * _other_factor(law, seen)
+    factor, secant = _speed_factor(law, seen)
+    return size * factor, size * secant
 
 
 @njit
@@ -145,45 +149,42 @@ def law_value(law: Any, seen: Seen) -> float:
         law: a record of `LAW`.
         seen: what it depends on.
     """
-    v = seen.v if law.at_rod > 0.0 else seen.w
-    return _without_speed(law, seen) * speed_factor(law.speed_shape, v / law.speed, math.tanh(v / law.slow))
+    return _value_and_slope(law, seen)[0]
 
 
 @njit
-def felt(probe: Probe, laws: np.ndarray | None, seen: Seen) -> Probe:
-    """Probes with what the terms of a law add, if there is one."""
-    if laws is None:  # known when this is compiled: the rollout without a law is a program of its own
-        return probe
-    for row in range(len(laws)):
-        law = laws[row]
-        probe = added(probe, law.probe, law_value(law, seen))
-    return probe
-
-
-@njit
-def braking_slope(laws: np.ndarray | None, lever: float, seen: Seen) -> float:
-    """Secant slope of a law's moment over the joint's speed where it brakes, else 0 [N m s/rad].
-
-    What a stiff integrator must know of a friction.
+def felt(probe: Probe, laws: np.ndarray | None, lever: float, seen: Seen) -> tuple[Probe, float]:
+    """Probes with what the terms of a law add, if there is one, and how a stiff integrator sees its frictions.
 
     Args:
+        probe: from outside.
         laws: records of `LAW`, or None.
         lever: of the rod at the joint [m/rad].
         seen: what the law depends on.
+
+    Returns:
+        The probes, and the secant slope of the law's moment over the joint's speed where it brakes, else 0
+        [N m s/rad].
     """
-    if laws is None:
-        return 0.0
+    if laws is None:  # known when this is compiled: the rollout without a law is a program of its own
+        return probe, 0.0
     slope = 0.0
     for row in range(len(laws)):
         law = laws[row]
-        if (law.probe != CYLINDER and law.probe != LOAD) or law.speed_shape == 0.0 or law.speed_shape == 3.0:
-            continue
-        v = seen.v if law.at_rod > 0.0 else seen.w
-        secant = 1.0 / law.speed
-        if law.speed_shape == 1.0:
-            secant = math.tanh(v / law.slow) / v if abs(v) > 1e-6 * law.slow else 1.0 / law.slow
-        elif law.speed_shape == 4.0:
-            secant = abs(v) / law.speed**2
-        arm = lever if law.at_rod > 0.0 else 1.0
-        slope += _without_speed(law, seen) * secant * arm * arm
-    return min(slope, 0.0)
+        value, secant = _value_and_slope(law, seen)
+        probe = added(probe, law.probe, value)
+        if law.probe == CYLINDER or law.probe == LOAD:
+            arm = lever if law.at_rod > 0.0 else 1.0
+            slope += secant * arm * arm
+    return probe, min(slope, 0.0)
+
+
+@njit
+def before_the_spool(laws: np.ndarray | None) -> bool:
+    """Whether a law acts before the spool, which is advanced ahead of the rest of a step."""
+    if laws is None:
+        return False
+    for row in range(len(laws)):
+        if laws[row].probe == COMMAND or laws[row].probe == AMPLIFIER:
+            return True
+    return False

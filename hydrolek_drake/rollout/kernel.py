@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 
 from hydrolek_drake.physics import amplifier, command, hooks, load, sensor, solenoid
+from hydrolek_drake.physics.law import before_the_spool
 from hydrolek_drake.physics.probes import Probe, probe_at
 from hydrolek_drake.physics.solenoid import GAMMA
 from hydrolek_drake.rollout.rates import State, felt_at, rates
@@ -152,6 +153,7 @@ def integrate(
     s = State(state[2], state[3], state[4], state[5], state[6], state[7], state[8], state[9], state[10])
     playing = hooks.linkage_gap(joint) > 0.0
     rocking = hooks.base_stiffness(joint) > 0.0
+    early = before_the_spool(law)
     delay = command.transport_delay(joint)
     rod = load.reflected_rod_inertia(joint)
     begin = times[0]
@@ -180,7 +182,7 @@ def integrate(
                 for i in range(steps):
                     time = t + i * h - on
                     gain = 0.0
-                    if law is not None:
+                    if early:
                         now = felt_at(probe, law, time, s, x, joint)
                         gain = now.amplifier - probe.amplifier
                         voltage = command.drive_voltage(arrived + now.command, joint)

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from hydrolek_drake.physics import base, cylinder, fluid, hooks, linkage, load, supply, valve
-from hydrolek_drake.physics.law import Seen, braking_slope, felt
+from hydrolek_drake.physics.law import Seen, felt
 from hydrolek_drake.physics.probes import Probe
 
 
@@ -54,7 +54,7 @@ def felt_at(probe: Probe, law: np.ndarray | None, time: float, s: State, x: floa
     stroke = lever = 0.0
     if joint.cylinder.variant != cylinder.ELECTRIC_MOTOR:
         stroke, lever = linkage.stroke_and_lever(q, joint)
-    return felt(probe, law, Seen(time, s.q, s.w, stroke, lever * w, s.p_a, s.p_b, x))
+    return felt(probe, law, lever, Seen(time, s.q, s.w, stroke, lever * w, s.p_a, s.p_b, x))[0]
 
 
 @njit
@@ -76,7 +76,7 @@ def rates(
     stroke, lever = linkage.stroke_and_lever(side_q, joint) if oil else (0.0, joint.linkage.direction)
     v = lever * side_w
     seen = Seen(time, s.q, s.w, stroke, v, s.p_a, s.p_b, x)
-    probe = felt(outside, law, seen)
+    probe, braking = felt(outside, law, lever, seen)
 
     rate_a = rate_b = slope_a = slope_b = 0.0
     flow_rate = 0.0
@@ -108,7 +108,7 @@ def rates(
     moment = force * lever
     resisting, slope_r = load.resisting_load(s.q, s.w, time, joint)
     resisting -= probe.load
-    slope_r -= braking_slope(law, lever, seen)
+    slope_r -= braking
     lead_acceleration = slope_lead = 0.0
     if playing:
         side_inertia = joint.linkage.play_inertia

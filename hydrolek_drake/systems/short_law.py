@@ -31,7 +31,7 @@ def _outside(
         pressure[n + joint],
         spool[joint],
     )
-    added = felt(no_probe(), laws, seen)
+    added, _ = felt(no_probe(), laws, 0.0, seen)
     row = out[joint]
     row[0], row[1], row[2], row[3] = added.command, added.amplifier, added.valve, added.supply
     row[4], row[5], row[6], row[7] = added.cylinder, added.load, added.sensor, added.flow
