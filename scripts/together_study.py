@@ -145,6 +145,7 @@ def main() -> None:
     labels = drawn(arguments.cases, arguments.seed)
     text = json.dumps(labels, indent=1, sort_keys=True)
     print("labels sha256", hashlib.sha256(text.encode()).hexdigest(), flush=True)
+    arguments.out.mkdir(parents=True, exist_ok=True)
     write_whole(arguments.out / "labels.json", text)
     lines = list(HEAD)
     with ThreadPoolExecutor(arguments.workers) as pool:
