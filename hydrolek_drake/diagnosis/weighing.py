@@ -23,6 +23,9 @@ MOST_ROUNDS = 8
 FALLING = 0.1
 """A fit goes on while a round takes this share of what it leaves."""
 
+MOST_FOLLOWED = 5
+"""So many models beside the best one are followed where joints move together."""
+
 NEARER = 0.5
 """A model that leaves this share of what the one left by which the data are weighed tells their noise better."""
 
@@ -98,18 +101,24 @@ def weigh_anew(bench: Workbench, found: Search) -> None:
     """
     if not bench.together and found.best.fit.over_noise > NEARER * found.weighed_at:
         return
-    bench.training = tuple(weighted_by(bench, found.best, bench.training))
-    _fit_again(bench, found)
     if bench.together and AT_NOISE < found.best.fit.over_noise < FAR:
-        found.keep(settled(bench, found.best))
-        _fit_again(bench, found)
+        best = settled(bench, found.best)
+    else:
+        best = found.best
+        bench.training = tuple(weighted_by(bench, best, bench.training))
+    _fit_again(bench, found, best)
 
 
-def _fit_again(bench: Workbench, found: Search) -> None:
-    """Fit again what is near the best model, and give up the rest."""
-    best = found.best
-    near = [h for h in found.hypotheses.values() if h.fit.objective < HOPELESS * best.fit.objective]
-    chosen = {h.ids: h for h in (found.baseline, best, *near)}
+def _fit_again(bench: Workbench, found: Search, best: Hypothesis) -> None:
+    """Fit again what is near the best model, and give up the rest.
+
+    Where joints move together every effect is a candidate at each of them, and only the best few are followed.
+    """
+    bound = HOPELESS * found.best.fit.objective
+    ranked = sorted(found.hypotheses.values(), key=lambda h: h.fit.objective)
+    near = [h for h in ranked if h.ids != best.ids and h.fit.objective < bound]
+    near = [best, *near[: MOST_FOLLOWED if bench.together else None]]
+    chosen = {h.ids: h for h in (found.baseline, *near)}
     again = bench.side_by_side(
         lambda h: bench.refit(h, bench.fine, POLISH if h.fit.over_noise < FAR else 1), list(chosen.values())
     )
