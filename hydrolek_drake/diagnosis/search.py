@@ -129,6 +129,8 @@ def _grown(
     if pruned.fit.over_noise > AT_NOISE:
         widen(bench, found, pruned, candidates)
         lead_on(bench, found)
+        if bench.together and found.best is not pruned:
+            weigh_anew(bench, found)
     if found.best.fit.over_noise < NEAR:
         widen_where_promised(bench, found, candidates)
     if found.best is not pruned:  # in its place an effect may have become needless

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.effort import AT_NOISE, FAR, HOPELESS, POLISH
+from hydrolek_drake.diagnosis.effort import AT_NOISE, FAR, HOPELESS, LOOK, POLISH
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -22,6 +22,9 @@ MOST_ROUNDS = 8
 
 FALLING = 0.1
 """A fit goes on while a round takes this share of what it leaves."""
+
+PATIENCE = 2
+"""So many rounds may take less, where joints move together."""
 
 MOST_FOLLOWED = 5
 """So many models beside the best one are followed where joints move together."""
@@ -75,21 +78,30 @@ def weighted_by(
 def settled(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:
     """A fit gone on with training data that are weighted by what it leaves, which are replaced.
 
-    Where joints move together it also tells what they do to each other, the better the nearer it is to the noise: the
-    fit is gone on with as long as a round takes `FALLING` of what it leaves beyond the noise.
+    Where joints move together it also tells what they do to each other, the better the nearer it is to the noise. Each
+    round then fits to the end with what the last one told. That may first lead away from the noise, since a movement
+    that is not yet the right one shakes the other joints otherwise: the rounds end where `PATIENCE` of them have not
+    taken `FALLING` of what the best one left beyond the noise, and the best one counts.
 
     Args:
         bench: fits, and the training data.
         hypothesis: fitted to these.
     """
-    for _ in range(MOST_ROUNDS if bench.together else 1):
-        beyond = hypothesis.fit.over_noise - 1.0
+    if not bench.together:
         bench.training = tuple(weighted_by(bench, hypothesis, bench.training))
-        hypothesis = bench.refit(hypothesis, bench.fine, POLISH if hypothesis.fit.over_noise < FAR else 1)
-        left = hypothesis.fit.over_noise
-        if left <= AT_NOISE or left - 1.0 > (1.0 - FALLING) * beyond:
+        return bench.refit(hypothesis, bench.fine, POLISH if hypothesis.fit.over_noise < FAR else 1)
+    best, training, waited = hypothesis, bench.training, 0
+    for number in range(MOST_ROUNDS):
+        bench.training = tuple(weighted_by(bench, hypothesis, bench.training))
+        hypothesis = bench.refit(hypothesis, bench.fine, 2 * LOOK if hypothesis.fit.over_noise < FAR else 1)
+        left, least = hypothesis.fit.over_noise, best.fit.over_noise
+        waited = 0 if left - 1.0 < (1.0 - FALLING) * (least - 1.0) else waited + 1
+        if number == 0 or left < least:
+            best, training = hypothesis, bench.training
+        if left <= AT_NOISE or waited == PATIENCE:
             break
-    return hypothesis
+    bench.training = training
+    return best
 
 
 def weigh_anew(bench: Workbench, found: Search) -> None:
@@ -102,11 +114,29 @@ def weigh_anew(bench: Workbench, found: Search) -> None:
     if not bench.together and found.best.fit.over_noise > NEARER * found.weighed_at:
         return
     if bench.together and AT_NOISE < found.best.fit.over_noise < FAR:
-        best = settled(bench, found.best)
+        best = _settled_or_anew(bench, found.best)
     else:
         best = found.best
         bench.training = tuple(weighted_by(bench, best, bench.training))
     _fit_again(bench, found, best)
+
+
+def _settled_or_anew(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:
+    """A fit settled; where that does not reach the noise, also one of the same effects from the rig's own values.
+
+    The model without an effect bends its numbers to make up for it, and then tells the other joints' movement wrong:
+    from there a fit may settle far from where it should. The other one begins with what measured angles tell of them.
+    """
+    settling = settled(bench, hypothesis)
+    if settling.fit.over_noise <= AT_NOISE:
+        return settling
+    training, bench.training = bench.training, bench.recorded
+    own = {path: value for path, value in settling.values.items() if ".effects." in path}
+    anew = settled(bench, bench.fit(hypothesis.effects, own, bench.fine, 2 * LOOK))
+    if anew.fit.over_noise < settling.fit.over_noise:
+        return anew
+    bench.training = training
+    return settling
 
 
 def _fit_again(bench: Workbench, found: Search, best: Hypothesis) -> None:

@@ -84,12 +84,12 @@ class Workbench:
         Args:
             rig: the machine with nominal values and all searched effects off.
             nominal: its free parameters.
-            training: the recordings that are fitted.
+            training: the recordings that are fitted; `training` is weighed anew in time, and `recorded` stays.
             pool: threads for fits side by side, and for the columns of a fit's Jacobian where some are idle.
         """
         self.rig = rig
         self.nominal = tuple(nominal)
-        self.training = tuple(training)
+        self.recorded = self.training = tuple(training)
         self.pool = pool
         self._stopped = threading.Event()
         self.evaluations = 0
