@@ -31,7 +31,7 @@ from hydrolek_drake.diagnosis.improving import (
     widen_where_promised,
 )
 from hydrolek_drake.diagnosis.score import scores_of
-from hydrolek_drake.diagnosis.weighing import weigh_anew
+from hydrolek_drake.diagnosis.weighing import moved_on, weigh_anew
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
 MATERIAL_GAIN = 0.3
@@ -129,7 +129,7 @@ def _grown(
     if pruned.fit.over_noise > AT_NOISE:
         widen(bench, found, pruned, candidates)
         lead_on(bench, found)
-        if bench.together and found.best is not pruned:
+        if bench.together and moved_on(pruned, found.best):
             weigh_anew(bench, found)
     if found.best.fit.over_noise < NEAR:
         widen_where_promised(bench, found, candidates)

@@ -94,14 +94,18 @@ def settled(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:
     for number in range(MOST_ROUNDS):
         bench.training = tuple(weighted_by(bench, hypothesis, bench.training))
         hypothesis = bench.refit(hypothesis, bench.fine, 2 * LOOK if hypothesis.fit.over_noise < FAR else 1)
-        left, least = hypothesis.fit.over_noise, best.fit.over_noise
-        waited = 0 if left - 1.0 < (1.0 - FALLING) * (least - 1.0) else waited + 1
-        if number == 0 or left < least:
+        waited = 0 if moved_on(best, hypothesis) else waited + 1
+        if number == 0 or hypothesis.fit.over_noise < best.fit.over_noise:
             best, training = hypothesis, bench.training
-        if left <= AT_NOISE or waited == PATIENCE:
+        if best.fit.over_noise <= AT_NOISE or waited == PATIENCE:
             break
     bench.training = training
     return best
+
+
+def moved_on(before: Hypothesis, after: Hypothesis) -> bool:
+    """Whether a fit has taken `FALLING` of what was left beyond the noise."""
+    return after.fit.over_noise - 1.0 < (1.0 - FALLING) * (before.fit.over_noise - 1.0)
 
 
 def weigh_anew(bench: Workbench, found: Search) -> None:
