@@ -31,7 +31,8 @@ from hydrolek_drake.diagnosis.improving import (
     widen_where_promised,
 )
 from hydrolek_drake.diagnosis.score import scores_of
-from hydrolek_drake.diagnosis.weighing import moved_on, weigh_anew
+from hydrolek_drake.diagnosis.settling import moved_on
+from hydrolek_drake.diagnosis.weighing import weigh_anew
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
 MATERIAL_GAIN = 0.3

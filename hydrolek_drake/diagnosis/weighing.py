@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.effort import AT_NOISE, FAR, HOPELESS, LOOK, POLISH
 from hydrolek_drake.diagnosis.found import Search
+from hydrolek_drake.diagnosis.settling import settled_together
 from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.channel import faithful
@@ -16,15 +17,6 @@ from hydrolek_drake.replay.noise import noise_level
 OTHERS_UNKNOWN = 0.1
 """What other joints do to one is known to this share: their areas and masses are the rig's own, unfitted, and their
 speeds come from smoothed angles."""
-
-MOST_ROUNDS = 8
-"""Of a fit, as long as each takes `FALLING` of what is left."""
-
-FALLING = 0.1
-"""A fit goes on while a round takes this share of what it leaves."""
-
-PATIENCE = 2
-"""So many rounds may take less, where joints move together."""
 
 MOST_FOLLOWED = 5
 """So many models beside the best one are followed where joints move together."""
@@ -78,34 +70,18 @@ def weighted_by(
 def settled(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:
     """A fit gone on with training data that are weighted by what it leaves, which are replaced.
 
-    Where joints move together it also tells what they do to each other, the better the nearer it is to the noise. Each
-    round then fits to the end with what the last one told. That may first lead away from the noise, since a movement
-    that is not yet the right one shakes the other joints otherwise: the rounds end where `PATIENCE` of them have not
-    taken `FALLING` of what the best one left beyond the noise, and the best one counts.
+    Near the noise, where joints move together, also with what they do to each other, see `settling`.
 
     Args:
         bench: fits, and the training data.
         hypothesis: fitted to these.
     """
-    if not bench.together:
-        bench.training = tuple(weighted_by(bench, hypothesis, bench.training))
-        return bench.refit(hypothesis, bench.fine, POLISH if hypothesis.fit.over_noise < FAR else 1)
-    best, training, waited = hypothesis, bench.training, 0
-    for number in range(MOST_ROUNDS):
-        bench.training = tuple(weighted_by(bench, hypothesis, bench.training))
-        hypothesis = bench.refit(hypothesis, bench.fine, 2 * LOOK if hypothesis.fit.over_noise < FAR else 1)
-        waited = 0 if moved_on(best, hypothesis) else waited + 1
-        if number == 0 or hypothesis.fit.over_noise < best.fit.over_noise:
-            best, training = hypothesis, bench.training
-        if best.fit.over_noise <= AT_NOISE or waited == PATIENCE:
-            break
-    bench.training = training
-    return best
-
-
-def moved_on(before: Hypothesis, after: Hypothesis) -> bool:
-    """Whether a fit has taken `FALLING` of what was left beyond the noise."""
-    return after.fit.over_noise - 1.0 < (1.0 - FALLING) * (before.fit.over_noise - 1.0)
+    bench.training = tuple(weighted_by(bench, hypothesis, bench.training))
+    near = hypothesis.fit.over_noise < FAR
+    if not near or not bench.together:
+        return bench.refit(hypothesis, bench.fine, POLISH if near else 1)
+    fitted = bench.refit(hypothesis, bench.fine, 2 * LOOK)
+    return fitted if fitted.fit.over_noise <= AT_NOISE else settled_together(bench, fitted)
 
 
 def weigh_anew(bench: Workbench, found: Search) -> None:

@@ -1,83 +1,127 @@
-"""Joints that move together: a fit is gone on with until what the joints do to each other has settled."""
+"""Joints that move together: parameters are fitted with what the joints do to each other."""
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis import weighing
-from hydrolek_drake.diagnosis.effort import AT_NOISE
+from hydrolek_drake.diagnosis import settling, weighing
+from hydrolek_drake.diagnosis.settling import corrected
+from hydrolek_drake.identification.least_squares import Fit
+
+NAMES = ("a", "b", "c", "d")
+TRUTH = np.array([0.3, 0.6, 0.45, 0.7])
+NOISE = 1e-3
 
 
 class _Bench:
-    """Fits that leave one value after the other; training data are named by the round that weighed them."""
+    """Residuals own (u - truth) + others (told - truth) over the noise: `told` is what the Diagram was asked with."""
 
-    together = True
-    fine = 5e-4
+    together, fine = True, 5e-4
 
-    def __init__(self, leaves):
-        self.leaves = list(leaves)
-        self.recorded = self.training = ("as recorded",)
-        self.starts = []
+    def __init__(self, start: np.ndarray):
+        rng = np.random.default_rng(3)
+        self.own = rng.standard_normal((40, 4))
+        round_and_round = np.kron(np.eye(2), [[0.0, -1.1], [1.1, 0.0]])  # turns lead ever farther away
+        self.others = self.own @ round_and_round + 0.3 * rng.standard_normal((40, 4))
+        self.recorded = self.training = (start,)
+        self.rig = SimpleNamespace(with_values=lambda values: np.array([values[n] for n in NAMES]))
+        self.noise = NOISE * rng.standard_normal(40)
+        self.asked = 0
+
+    def parameters(self, effects):
+        return SimpleNamespace(values=lambda unit: dict(zip(NAMES, unit, strict=True)))
+
+    def movable(self, effects, parameters):
+        return np.ones(4, dtype=bool)
+
+    def alive(self):
+        pass
+
+    def fit(self, effects, values, step, most_steps):
+        unit = np.array([values[n] for n in NAMES])
+        if most_steps > 1:  # of its own rollouts, with the others as told: to the end
+            known = self.others @ (self.training[0] - TRUTH) + self.noise
+            unit = TRUTH - np.linalg.lstsq(self.own, known, rcond=None)[0]
+        left = self.own @ (unit - TRUTH) + self.others @ (self.training[0] - TRUTH) + self.noise
+        fit = Fit(unit, left / NOISE, np.zeros(4), self.own / NOISE, np.zeros((4, 4)), 40, 1)
+        return SimpleNamespace(effects=effects, values=dict(zip(NAMES, unit, strict=True)), fit=fit)
 
     def refit(self, hypothesis, step, most_steps):
-        return _left(self.leaves.pop(0))
-
-    def fit(self, effects, start, step, most_steps):
-        self.starts.append((start, self.training))
-        return _left(self.leaves.pop(0))
-
-
-def _left(over_noise, **values):
-    return SimpleNamespace(fit=SimpleNamespace(over_noise=over_noise), effects=(), values=values)
+        return self.fit(hypothesis.effects, hypothesis.values, step, most_steps)
 
 
 @pytest.fixture(autouse=True)
-def rounds(monkeypatch):
-    """What was weighed, in its order."""
-    told = []
+def diagram(monkeypatch):
+    """The Diagram tells what the others do with the values that it is asked with."""
 
-    def weighted(bench, hypothesis, experiments):
-        told.append(hypothesis.fit.over_noise)
-        return [f"told by {hypothesis.fit.over_noise}"]
+    def felt(rig, experiments):
+        return [rig]
 
-    monkeypatch.setattr(weighing, "weighted_by", weighted)
-    return told
+    monkeypatch.setattr(settling, "felt_together", felt)
+    monkeypatch.setattr(weighing, "weighted_by", lambda bench, h, e: felt(bench.rig.with_values(h.values), e))
 
 
-def test_a_round_that_leads_away_does_not_end_it_and_the_best_one_counts(rounds) -> None:
-    bench = _Bench([1.06, 1.07, 1.03, 1.031, 1.029])  # the last two take less than a tenth of 0.03
-    best = weighing.settled(bench, _left(1.18))
-    assert best.fit.over_noise == 1.029
-    assert rounds == [1.18, 1.06, 1.07, 1.03, 1.031]
-    assert bench.training == ("told by 1.031",)  # by which the best one was fitted
-    assert not bench.leaves
+def test_it_ends_where_turns_with_the_diagram_do_not() -> None:
+    start = TRUTH + 0.02
+    bench = _Bench(start)
+    turns = bench.fit((), dict(zip(NAMES, start, strict=True)), bench.fine, 1)
+    for _ in range(20):
+        bench.training = (turns.fit.unit,)
+        turns = bench.refit(turns, bench.fine, 30)
+    bench.training = (turns.fit.unit,)
+    assert bench.refit(turns, bench.fine, 1).fit.over_noise > 10.0
+
+    bench.training = (start,)
+    begun = bench.fit((), dict(zip(NAMES, start, strict=True)), bench.fine, 1)
+    found = settling.settled_together(bench, begun)
+    least = np.linalg.lstsq(bench.own + bench.others, bench.noise, rcond=None)[1]
+    assert found.fit.chi_squared == pytest.approx(least[0] / NOISE**2, rel=1e-3)
+    assert found.fit.unit == pytest.approx(TRUTH, abs=2.0 * NOISE)
+    assert bench.training[0] == pytest.approx(found.fit.unit, abs=1e-12)  # told by the place that counts
 
 
-def test_at_the_noise_it_ends(rounds) -> None:
-    bench = _Bench([1.06, AT_NOISE, 0.9])
-    assert weighing.settled(bench, _left(1.3)).fit.over_noise == AT_NOISE
-    assert bench.leaves == [0.9]
+def test_the_best_place_counts_and_not_the_last(monkeypatch) -> None:
+    bench = _Bench(TRUTH + 0.02)
+    begun = bench.fit((), dict(zip(NAMES, TRUTH + 0.02, strict=True)), bench.fine, 1)
+    monkeypatch.setattr(settling, "damped_step", lambda best, jacobian, moving, damping: np.full(4, 0.05))
+    found = settling.settled_together(bench, begun)
+    assert found.fit.unit == pytest.approx(TRUTH + 0.02)
+    assert bench.training[0] == pytest.approx(TRUTH + 0.02)
 
 
-def test_rounds_have_a_limit(rounds) -> None:
-    bench = _Bench([1.0 + 2.0 * 0.8**n for n in range(20)])
-    weighing.settled(bench, _left(2.9))
-    assert len(rounds) == weighing.MOST_ROUNDS
+def test_a_corrected_jacobian_agrees_with_every_way_and_is_left_alone_across_them() -> None:
+    rng = np.random.default_rng(1)
+    jacobian, ways, changes = rng.normal(size=(7, 4)), rng.normal(size=(2, 4)), rng.normal(size=(2, 7))
+    told = corrected(jacobian, list(ways), list(changes))
+    for way, change in zip(ways, changes, strict=True):
+        assert told @ way == pytest.approx(change)
+    across = np.linalg.svd(ways)[2][2:]
+    assert told @ across.T == pytest.approx(jacobian @ across.T)
+    assert corrected(jacobian, [], []) is jacobian
 
 
-@pytest.mark.parametrize(("anew", "wanted"), [([1.5, 1.05, 1.01], 1.01), ([2.0, 1.4, 1.39, 1.38], 1.08)])
-def test_where_it_stays_above_the_noise_it_begins_anew_and_the_better_one_counts(anew, wanted) -> None:
+@pytest.mark.parametrize(("anew", "wanted"), [(1.01, 1.01), (1.38, 1.08)])
+def test_where_it_stays_above_the_noise_it_begins_anew_and_the_better_one_counts(
+    anew, wanted, monkeypatch
+) -> None:
     path = "joints.one.effects.supply.pressure_droop.size"
-    bench = _Bench([1.08, 1.11, 1.10, *anew])
-    stuck = _left(1.1, **{path: 3e9, "joints.one.valve.overlap_a": 1e-4})
-    bench.refit = lambda h, step, most, refit=bench.refit: _with(refit(h, step, most), stuck.values)
-    best = weighing._settled_or_anew(bench, stuck)
-    assert best.fit.over_noise == wanted
+    stuck = SimpleNamespace(effects=(), values={path: 3e9, "joints.one.valve.overlap_a": 1e-4})
+    bench = SimpleNamespace(training=("weighed",), recorded=("as recorded",), fine=5e-4, starts=[])
+    leaves = [1.08, anew]
+
+    def settles(bench, hypothesis):
+        bench.training = (f"told {len(leaves)}",)
+        over_noise = leaves.pop(0)
+        return SimpleNamespace(values=stuck.values, fit=SimpleNamespace(over_noise=over_noise))
+
+    def fit(effects, start, step, most_steps):
+        bench.starts.append((start, bench.training))
+        return stuck
+
+    monkeypatch.setattr(weighing, "settled", settles)
+    bench.fit = fit
+    assert weighing._settled_or_anew(bench, stuck).fit.over_noise == wanted
     # from the rig's own numbers, with what the measured angles tell of the other joints
     assert bench.starts == [({path: 3e9}, ("as recorded",))]
-    assert bench.training == (("told by 1.05",) if wanted == 1.01 else ("told by 1.1",))
-
-
-def _with(hypothesis, values):
-    hypothesis.values = values
-    return hypothesis
+    assert bench.training == (("told 1",) if wanted == anew else ("told 2",))
