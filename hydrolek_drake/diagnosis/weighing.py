@@ -93,6 +93,8 @@ def weigh_anew(bench: Workbench, found: Search) -> None:
     """
     if not bench.together and found.best.fit.over_noise > NEARER * found.weighed_at:
         return
+    if bench.together and not found.best.effects:
+        return  # by which the data are weighed already
     if bench.together and AT_NOISE < found.best.fit.over_noise < FAR:
         best = _settled_or_anew(bench, found.best)
     else:
@@ -102,21 +104,31 @@ def weigh_anew(bench: Workbench, found: Search) -> None:
 
 
 def _settled_or_anew(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:
-    """A fit settled; where that does not reach the noise, also one of the same effects from the rig's own values.
+    """A fit settled, as it is or from the rig's own values; where one does not reach the noise also the other.
 
     The model without an effect bends its numbers to make up for it, and then tells the other joints' movement wrong:
-    from there a fit may settle far from where it should. The other one begins with what measured angles tell of them.
+    from there a fit with the first effect may settle far from where it should. The rig's own values, with what measured
+    angles tell of the other joints, come first then; later ones begin beside effects that have straightened them.
     """
-    settling = settled(bench, hypothesis)
-    if settling.fit.over_noise <= AT_NOISE:
-        return settling
-    training, bench.training = bench.training, bench.recorded
-    own = {path: value for path, value in settling.values.items() if ".effects." in path}
-    anew = settled(bench, bench.fit(hypothesis.effects, own, bench.fine, 2 * LOOK))
-    if anew.fit.over_noise < settling.fit.over_noise:
-        return anew
-    bench.training = training
-    return settling
+    so_far = bench.training
+
+    def as_it_is() -> Hypothesis:
+        bench.training = so_far
+        return settled(bench, hypothesis)
+
+    def anew() -> Hypothesis:
+        bench.training = bench.recorded
+        own = {path: value for path, value in hypothesis.values.items() if ".effects." in path}
+        return settled(bench, bench.fit(hypothesis.effects, own, bench.fine, 2 * LOOK))
+
+    ended: list[tuple[float, int, Hypothesis, tuple[Experiment, ...]]] = []
+    for number, begin in enumerate((anew, as_it_is) if len(hypothesis.effects) == 1 else (as_it_is, anew)):
+        fitted = begin()
+        ended.append((fitted.fit.over_noise, number, fitted, bench.training))
+        if fitted.fit.over_noise <= AT_NOISE:
+            break
+    _, _, best, bench.training = min(ended, key=lambda end: end[:2])
+    return best
 
 
 def _fit_again(bench: Workbench, found: Search, best: Hypothesis) -> None:

@@ -101,27 +101,25 @@ def test_a_corrected_jacobian_agrees_with_every_way_and_is_left_alone_across_the
     assert corrected(jacobian, [], []) is jacobian
 
 
-@pytest.mark.parametrize(("anew", "wanted"), [(1.01, 1.01), (1.38, 1.08)])
-def test_where_it_stays_above_the_noise_it_begins_anew_and_the_better_one_counts(
-    anew, wanted, monkeypatch
+@pytest.mark.parametrize("effects", [("droop",), ("droop", "friction")])
+@pytest.mark.parametrize(("leaves", "wanted"), [((1.01,), 1.01), ((1.08, 1.05), 1.05), ((1.08, 1.38), 1.08)])
+def test_a_fit_settles_as_it_is_or_from_the_rigs_own_values_and_the_better_one_counts(
+    effects, leaves, wanted, monkeypatch
 ) -> None:
     path = "joints.one.effects.supply.pressure_droop.size"
-    stuck = SimpleNamespace(effects=(), values={path: 3e9, "joints.one.valve.overlap_a": 1e-4})
-    bench = SimpleNamespace(training=("weighed",), recorded=("as recorded",), fine=5e-4, starts=[])
-    leaves = [1.08, anew]
+    bent = SimpleNamespace(effects=effects, values={path: 3e9, "joints.one.valve.overlap_a": 1e-4})
+    bench = SimpleNamespace(training=("weighed",), recorded=("as recorded",), fine=5e-4)
+    begun, left = [], list(leaves)
 
     def settles(bench, hypothesis):
-        bench.training = (f"told {len(leaves)}",)
-        over_noise = leaves.pop(0)
-        return SimpleNamespace(values=stuck.values, fit=SimpleNamespace(over_noise=over_noise))
-
-    def fit(effects, start, step, most_steps):
-        bench.starts.append((start, bench.training))
-        return stuck
+        begun.append((hypothesis.values, bench.training))
+        bench.training = (f"told with {left[0]}",)
+        return SimpleNamespace(values=hypothesis.values, fit=SimpleNamespace(over_noise=left.pop(0)))
 
     monkeypatch.setattr(weighing, "settled", settles)
-    bench.fit = fit
-    assert weighing._settled_or_anew(bench, stuck).fit.over_noise == wanted
-    # from the rig's own numbers, with what the measured angles tell of the other joints
-    assert bench.starts == [({path: 3e9}, ("as recorded",))]
-    assert bench.training == (("told 1",) if wanted == anew else ("told 2",))
+    bench.fit = lambda effects, start, step, most_steps: SimpleNamespace(effects=effects, values=start)
+    assert weighing._settled_or_anew(bench, bent).fit.over_noise == wanted
+    assert bench.training == (f"told with {wanted}",)
+    as_it_is, anew = (bent.values, ("weighed",)), ({path: 3e9}, ("as recorded",))
+    order = [anew, as_it_is] if len(effects) == 1 else [as_it_is, anew]
+    assert begun == order[: len(leaves)]
