@@ -21,7 +21,7 @@ MOST_ROUNDS = 10
 FALLING = 0.1
 """A round that helps takes this share of what is left beyond the noise."""
 
-PATIENCE = 3
+PATIENCE = 4
 """So many rounds may help less before they end; a step that was too long is one of them."""
 
 DAMPED, LESS, MORE = 1e-3, 0.2, 8.0

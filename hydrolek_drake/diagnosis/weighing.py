@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.effort import AT_NOISE, FAR, HOPELESS, LOOK, POLISH
+from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, AT_NOISE, FAR, HOPELESS, LOOK, POLISH
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.settling import settled_together
 from hydrolek_drake.diagnosis.together import felt_together
@@ -125,7 +125,7 @@ def _settled_or_anew(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:
     for number, begin in enumerate((anew, as_it_is) if len(hypothesis.effects) == 1 else (as_it_is, anew)):
         fitted = begin()
         ended.append((fitted.fit.over_noise, number, fitted, bench.training))
-        if fitted.fit.over_noise <= AT_NOISE:
+        if fitted.fit.over_noise <= ABOVE_NOISE:
             break
     _, _, best, bench.training = min(ended, key=lambda end: end[:2])
     return best
