@@ -86,7 +86,6 @@ def measure(seed: int, repeats: int, report: Callable[[str], None]) -> dict[str,
     error = np.degrees(rollout() - reference)
     report("the same joint with SciPy's LSODA")
     few = times < 5.0
-    simulate_plainly(rig, times[:2], command[:2])  # what is compiled at its first use is not to count
     plain = _speed("SciPy LSODA, one joint", 5.0, lambda: simulate_plainly(rig, times[few], command[few]), 1)
     speeds.append(plain)
     parting = np.degrees(simulate_plainly(rig, times[few], command[few]) - reference[few])
