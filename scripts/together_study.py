@@ -2,7 +2,7 @@
 """Concealed machines of which several joints are recorded while they move together, diagnosed.
 
 Machines are drawn by a seed: two or three joints of one arm, their numbers up to 5 % off, and in seven of ten an
-effect at one of them or at the pump that feeds all; its size is what the joint's own rollout leaves of six times the
+effect at one of them or at the pump that feeds all, of such a size that the joint's own rollout moves by six times the
 noise. The labels' SHA-256 is told before the first diagnosis. The machine is the Drake Diagram of both arms with a
 quarter of its usual step, so that, other than in `hydrolek challenge`, it shares its equations with the diagnosis:
 what is asked is whether joints are told apart, not whether the equations are right. Finished cases are kept, so an
@@ -72,11 +72,10 @@ def _label(number: int, kind: str, generator: np.random.Generator) -> dict[str, 
 def _sized(joint: str, name: str, entry: dict[str, Any], generator: np.random.Generator) -> dict[str, float]:
     """Parameters with which the joint alone shows the effect as wanted."""
     rig = load_rig(f"hydrolek_{joint}", {})
-    drawn = {p: float(np.exp(generator.uniform(*np.log(ends)))) for p, ends in entry.get("draw", {}).items()}
+    fixed = {p: float(np.exp(generator.uniform(*np.log(ends)))) for p, ends in entry.get("draw", {}).items()}
     sign = -1.0 if entry.get("signed") and generator.random() < 0.5 else 1.0
     times, volts = random_voltage(PARTS["train"], generator)
-    owner = "supply" if name == SHARED else joint
-    prefix = "effects." if owner == "supply" else f"joints.{joint}.effects."
+    prefix = "effects." if name == SHARED else f"joints.{joint}.effects."
 
     def moved(parameters: dict[str, float]) -> np.ndarray:
         other = rig.with_values({f"{prefix}{name}.{p}": value for p, value in parameters.items()})
@@ -86,7 +85,7 @@ def _sized(joint: str, name: str, entry: dict[str, Any], generator: np.random.Ge
     plain, noise, factor = moved({}), rig.value(f"joints.{joint}.sensor.noise"), 1.0
     parameters: dict[str, float] = {}
     for _ in range(SIZINGS):
-        parameters = {p: sign * value * factor for p, value in entry["size"].items()} | drawn
+        parameters = {p: sign * value * factor for p, value in entry["size"].items()} | fixed
         shown = float(np.sqrt(np.mean((moved(parameters) - plain) ** 2))) / noise
         ratio = SHOWN / max(shown, 0.02)
         factor *= 1.0 / ratio if entry.get("weakens") else ratio

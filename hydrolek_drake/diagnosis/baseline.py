@@ -6,16 +6,13 @@ hollow.
 
 from collections.abc import Sequence
 
-from hydrolek_drake.diagnosis.effort import AT_NOISE, COARSE, LOOK, POLISH
+from hydrolek_drake.diagnosis.effort import AT_NOISE, COARSE, FALLING, LOOK, POLISH
 from hydrolek_drake.diagnosis.unsticking import fit_pulled
 from hydrolek_drake.diagnosis.weighing import settled
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
 MOST_ROUNDS = 8
 """Of a fit, as long as each takes `FALLING` of what is left."""
-
-FALLING = 0.1
-"""A fit goes on while a round takes this share of what it leaves."""
 
 AWAY = 0.1
 """The middle of the ranges is a start of its own if a parameter's own value is so far from it, in ranges."""

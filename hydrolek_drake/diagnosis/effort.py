@@ -25,6 +25,9 @@ GLANCE_S = 20.0
 GLANCE, LOOK, POLISH = 4, 15, 8
 """Trust-region steps of a first fit, of one that is followed up, and of one with the rig's own step."""
 
+FALLING = 0.1
+"""A round of a fit that is worth another one takes this share of what is left."""
+
 BEAM = 3
 """So many hypotheses are extended by a further effect, and only the best once it is near the noise."""
 

@@ -11,15 +11,12 @@ Linear Algebra with Applications 16 (2009) 197), and steps are damped as in Marq
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from hydrolek_drake.diagnosis.effort import AT_NOISE
+from hydrolek_drake.diagnosis.effort import AT_NOISE, FALLING
 from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
 MOST_ROUNDS = 10
 """So many places at most are tried, each of them by the Diagram."""
-
-FALLING = 0.1
-"""A round that helps takes this share of what is left beyond the noise."""
 
 PATIENCE = 4
 """So many rounds may help less before they end; a step that was too long is one of them."""

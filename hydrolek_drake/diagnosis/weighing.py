@@ -121,13 +121,12 @@ def _settled_or_anew(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:
         own = {path: value for path, value in hypothesis.values.items() if ".effects." in path}
         return settled(bench, bench.fit(hypothesis.effects, own, bench.fine, 2 * LOOK))
 
-    ended: list[tuple[float, int, Hypothesis, tuple[Experiment, ...]]] = []
-    for number, begin in enumerate((anew, as_it_is) if len(hypothesis.effects) == 1 else (as_it_is, anew)):
-        fitted = begin()
-        ended.append((fitted.fit.over_noise, number, fitted, bench.training))
-        if fitted.fit.over_noise <= ABOVE_NOISE:
+    ended: list[tuple[Hypothesis, tuple[Experiment, ...]]] = []
+    for begin in (anew, as_it_is) if len(hypothesis.effects) == 1 else (as_it_is, anew):
+        ended.append((begin(), bench.training))
+        if ended[-1][0].fit.over_noise <= ABOVE_NOISE:
             break
-    _, _, best, bench.training = min(ended, key=lambda end: end[:2])
+    best, bench.training = min(ended, key=lambda end: end[0].fit.over_noise)
     return best
 
 

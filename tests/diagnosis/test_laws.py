@@ -38,9 +38,9 @@ RIPPLE, RIPPLE_HZ = 2e6, 3.104
 """Of the supply pressure [Pa]; midway between two frequencies that lie half a cycle over 12 s apart."""
 
 
-@pytest.fixture(autouse=True)
+@pytest.fixture
 def half_of_the_frequencies(monkeypatch) -> None:
-    """Up to 4 Hz: a matter of time, not of what is asked here."""
+    """Up to 4 Hz, for laws that are not periodic: a matter of time."""
     monkeypatch.setattr(law_search, "HIGHEST_HZ", 4.0)
 
 
@@ -126,6 +126,7 @@ def _sought(bench, training, held_out):
         )
 
 
+@pytest.mark.usefixtures("half_of_the_frequencies")
 def test_a_hose_that_expands_is_found_at_the_fluid(bench, recorded) -> None:
     kept = {"largest_V": 7.0, "pressure_noise_Pa": 2e4, "unknown": ("capacity_a", HOSE)}
     training, held_out = (recorded(bench, bench, seed=seed, **kept) for seed in (1, 2))
@@ -176,6 +177,7 @@ def test_a_first_fit_finds_a_law_for_which_the_nominal_model_bent_its_numbers_fa
     assert left < 1.1**2 * sum(e.counted for e in training)
 
 
+@pytest.mark.usefixtures("half_of_the_frequencies")
 def test_a_friction_over_the_stroke_is_found_at_the_rod_as_a_law_of_several_terms(bench, recorded) -> None:
     """F = -(400 N + 2500 N u^2) sign(v), with u from 0 to 1 over the cylinder's whole stroke: no single term of z."""
     dry, tight = 400.0, 2500.0
@@ -213,6 +215,7 @@ def test_a_friction_over_the_stroke_is_found_at_the_rod_as_a_law_of_several_term
         assert friction(u) == pytest.approx(dry + tight * u**2, abs=0.15 * (dry + tight))
 
 
+@pytest.mark.usefixtures("half_of_the_frequencies")
 def test_a_friction_at_one_place_of_the_stroke_is_found_there(bench, recorded) -> None:
     """A scored bore: between two of the places that terms have, and wider than either."""
     place, size = 0.375, 1200.0
@@ -250,6 +253,7 @@ def test_a_friction_at_one_place_of_the_stroke_is_found_there(bench, recorded) -
     assert strokes[np.argmax(friction)] == pytest.approx(peak, abs=0.125 * (reach.high - reach.low))
 
 
+@pytest.mark.usefixtures("half_of_the_frequencies")
 def test_where_a_bore_is_scored_and_how_far_is_fitted(bench, recorded) -> None:
     """Between two of the places where a search begins, and narrower than it begins."""
     size, centre, reach = 1500.0, 0.35, 0.3
@@ -278,6 +282,7 @@ def test_where_a_bore_is_scored_and_how_far_is_fitted(bench, recorded) -> None:
     ]
 
 
+@pytest.mark.usefixtures("half_of_the_frequencies")
 def test_a_track_that_is_worn_at_one_place_is_found_at_the_sensor(bench, recorded) -> None:
     """Narrower than a search begins, and between two of its places."""
     size, centre, reach = 0.015, 0.06, 0.18

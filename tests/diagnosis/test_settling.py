@@ -27,7 +27,6 @@ class _Bench:
         self.recorded = self.training = (start,)
         self.rig = SimpleNamespace(with_values=lambda values: np.array([values[n] for n in NAMES]))
         self.noise = NOISE * rng.standard_normal(40)
-        self.asked = 0
 
     def parameters(self, effects):
         return SimpleNamespace(values=lambda unit: dict(zip(NAMES, unit, strict=True)))
@@ -55,11 +54,7 @@ class _Bench:
 def diagram(monkeypatch):
     """The Diagram tells what the others do with the values that it is asked with."""
 
-    def felt(rig, experiments):
-        return [rig]
-
-    monkeypatch.setattr(settling, "felt_together", felt)
-    monkeypatch.setattr(weighing, "weighted_by", lambda bench, h, e: felt(bench.rig.with_values(h.values), e))
+    monkeypatch.setattr(settling, "felt_together", lambda rig, experiments: [rig])
 
 
 def test_it_ends_where_turns_with_the_diagram_do_not() -> None:
