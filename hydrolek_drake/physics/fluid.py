@@ -46,8 +46,8 @@ def orifice_conductance(area: float, drop: float, coefficient: float, joint: Any
         joint: parameter record.
     """
     fluid = joint.fluid
-    smooth = math.sqrt(math.sqrt(drop * drop + fluid.laminar_transition * fluid.laminar_transition))
-    return coefficient * area * math.sqrt(2.0 / fluid.density) / smooth
+    smooth = math.sqrt(drop * drop + fluid.laminar_transition * fluid.laminar_transition)
+    return coefficient * area * math.sqrt(2.0 / (fluid.density * smooth))
 
 
 LEAST_CAPACITY = 0.1
@@ -55,19 +55,26 @@ LEAST_CAPACITY = 0.1
 
 
 @njit
-def softer(capacity: float, stiffness: float) -> float:
-    """How many times more slowly a pressure changes where something besides the oil takes volume.
+def softened(capacity: float, rate: float, stiffness: float) -> tuple[float, float]:
+    """Rate [Pa/s] and stiffness [Pa/m^3] of a chamber where something besides the oil takes volume.
 
-    With the chamber's stiffness B/V the oil takes V/B per pressure, and the rest `capacity`: 1 + capacity B/V.
+    With the chamber's stiffness B/V the oil takes V/B per pressure, and the rest `capacity`: both are 1 + capacity
+    B/V times less.
 
     Args:
         capacity: volume that is taken per pressure besides the oil's [m^3/Pa].
-        stiffness: of the chamber [Pa/m^3].
+        rate: of the pressure with the oil alone [Pa/s].
+        stiffness: of the oil alone [Pa/m^3].
     """
-    return max(1.0 + capacity * stiffness, LEAST_CAPACITY)
+    if capacity == 0.0:
+        return rate, stiffness
+    share = 1.0 / max(1.0 + capacity * stiffness, LEAST_CAPACITY)
+    return share * rate, share * stiffness
 
 
 @njit
 def effective_bulk_modulus(pressure: float, joint: Any) -> float:
     """Bulk modulus at a pressure [Pa]; entrained air softens the oil where the pressure is low."""
-    return 1.0 / (1.0 / joint.fluid.bulk_modulus + hooks.compressibility(pressure, joint))
+    bulk_modulus = joint.fluid.bulk_modulus
+    more = hooks.compressibility(pressure, joint)
+    return bulk_modulus if more == 0.0 else bulk_modulus / (1.0 + bulk_modulus * more)

@@ -6,6 +6,7 @@ from typing import Any
 from numba import njit
 
 from hydrolek_drake.physics import hooks
+from hydrolek_drake.physics.angle import Angle, angle
 from hydrolek_drake.physics.parameters import Parameter, Stage
 
 STAGE = Stage(
@@ -76,21 +77,32 @@ DIRECT = float(STAGE.code("direct"))
 
 
 @njit
-def stroke_and_lever(position: float, joint: Any) -> tuple[float, float]:
-    """Rod stroke [m] and lever ds/dq [m/rad] at a joint position.
+def included_angle(position: float, joint: Any) -> float:
+    """Angle between the two mounts as seen from the joint axis [rad], direction q + phi."""
+    p = joint.linkage
+    return position if p.variant == DIRECT else p.direction * position + p.angle_offset
 
-    Triangle: L^2 = a^2 + b^2 - 2 a b cos(included angle), included angle = direction q + phi,
-    stroke = L - L(rod fully in), lever = direction a b sin(included angle)/L. The force of the rod times
-    the lever is the moment on the joint (virtual work).
+
+@njit
+def stroke_and_lever(position: float, joint: Any) -> tuple[float, float]:
+    """Rod stroke [m] and lever ds/dq [m/rad] at a joint position, see `stroke_and_lever_at`."""
+    return stroke_and_lever_at(angle(included_angle(position, joint)), position, joint)
+
+
+@njit
+def stroke_and_lever_at(included: Angle, position: float, joint: Any) -> tuple[float, float]:
+    """Rod stroke [m] and lever ds/dq [m/rad] at a joint position and its `included_angle`.
+
+    Triangle: L^2 = a^2 + b^2 - 2 a b cos(included angle), stroke = L - L(rod fully in), lever = direction a b
+    sin(included angle)/L. The force of the rod times the lever is the moment on the joint (virtual work).
     """
     p = joint.linkage
     if p.variant == DIRECT:
         return p.direction * (position - p.zero_stroke_position), p.direction
     a = p.distance_parent
     b = p.distance_child
-    included = p.direction * position + p.angle_offset
-    length = math.sqrt(a * a + b * b - 2.0 * a * b * math.cos(included))
-    return length - p.zero_stroke_length, p.direction * a * b * math.sin(included) / length
+    length = math.sqrt(a * a + b * b - 2.0 * a * b * included.cosine)
+    return length - p.zero_stroke_length, p.direction * a * b * included.sine / length
 
 
 @njit

@@ -1,11 +1,11 @@
 """What the actuator moves: a link that turns or a mass that slides, with gravity, damping and end stops."""
 
-import math
 from typing import Any
 
 from numba import njit
 
 from hydrolek_drake.physics import hooks
+from hydrolek_drake.physics.angle import Angle, angle
 from hydrolek_drake.physics.linkage import stroke_and_lever
 from hydrolek_drake.physics.parameters import Parameter, Stage
 
@@ -77,6 +77,12 @@ ARM = float(STAGE.code("arm"))
 
 @njit
 def gravity_load(position: float, time: float, joint: Any) -> float:
+    """Gravity's moment (or force) against the positive direction [N m or N], see `gravity_load_at`."""
+    return gravity_load_at(angle(position), time, joint)
+
+
+@njit
+def gravity_load_at(position: Angle, time: float, joint: Any) -> float:
     """Gravity's moment (or force) against the positive direction [N m or N].
 
     Everything beyond one moving joint is a rigid body that turns about a fixed axis, so the moment is
@@ -88,7 +94,7 @@ def gravity_load(position: float, time: float, joint: Any) -> float:
     mass = hooks.payload(time, joint)
     along = p.gravity_cos + mass * p.payload_gravity_cos
     across = p.gravity_sin + mass * p.payload_gravity_sin
-    return along * math.cos(position) + across * math.sin(position)
+    return along * position.cosine + across * position.sine
 
 
 @njit
@@ -127,10 +133,10 @@ def passive_load(position: float, velocity: float, joint: Any) -> tuple[float, f
 
 
 @njit
-def resisting_load(position: float, velocity: float, time: float, joint: Any) -> tuple[float, float]:
+def resisting_load(position: Angle, velocity: float, time: float, joint: Any) -> tuple[float, float]:
     """All that opposes the actuator at the joint [N m or N], and its slope over velocity."""
-    passive, slope = passive_load(position, velocity, joint)
-    return gravity_load(position, time, joint) + passive, slope
+    passive, slope = passive_load(position.value, velocity, joint)
+    return gravity_load_at(position, time, joint) + passive, slope
 
 
 @njit

@@ -97,7 +97,8 @@ def spool_acceleration(x: float, v: float, drive_a: float, drive_b: float, joint
         - p.spring * x
         - friction
     )
-    return force / p.moving_mass, -(p.damping + friction_slope) / p.moving_mass
+    per_mass = 1.0 / p.moving_mass
+    return force * per_mass, -(p.damping + friction_slope) * per_mass
 
 
 @njit

@@ -58,9 +58,16 @@ def openings(x: float, joint: Any) -> tuple[float, float]:
     """
     p = joint.valve
     shift = hooks.land_shift(joint)
-    towards_a = (x - (p.overlap_a + shift)) / (p.full_opening_a - p.overlap_a)
-    towards_b = (-x - (p.overlap_b - shift)) / (p.full_opening_b - p.overlap_b)
-    return min(max(towards_a, 0.0), 1.0), min(max(towards_b, 0.0), 1.0)
+    return (
+        _opened(x - (p.overlap_a + shift), p.full_opening_a - p.overlap_a),
+        _opened(-x - (p.overlap_b - shift), p.full_opening_b - p.overlap_b),
+    )
+
+
+@njit
+def _opened(beyond: float, travel: float) -> float:
+    """Share of full opening of a land that is `beyond` its overlap, out of the `travel` to full opening [m]."""
+    return min(max(beyond / travel, 0.0), 1.0) if beyond > 0.0 else 0.0
 
 
 @njit

@@ -16,12 +16,18 @@ from hydrolek_drake.physics import amplifier, command, hooks, load, sensor, sole
 from hydrolek_drake.physics.law import before_the_spool
 from hydrolek_drake.physics.probes import Probe, probe_at
 from hydrolek_drake.physics.solenoid import GAMMA
-from hydrolek_drake.rollout.rates import State, felt_at, rates
+from hydrolek_drake.rollout.rates import State, Turned, felt_at, rates, turned
 
 SIGNALS = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool", "supply_pressure", "force")
 
 PULLED = ("reading", "pressure_a", "pressure_b")
 NOT_PULLED = np.zeros((0, len(PULLED)))
+
+
+@njit
+def _implicit(h: float, slope: float) -> float:
+    """By how much a stiff rate is lessened in a step of `h` seconds, 1 for one that is not."""
+    return 1.0 if slope == 0.0 else 1.0 / (1.0 - GAMMA * h * slope)
 
 
 @njit
@@ -36,15 +42,13 @@ def _step(
     probe: Probe,
     probe_next: Probe,
     law: np.ndarray | None,
+    near: Turned,
     joint: Any,
 ) -> State:
     """One Rosenbrock-W step of `h` seconds; the spool goes from `x` to `x_next` meanwhile."""
-    k, slope, _, _ = rates(s, x, voltage, time, inertia, probe, law, joint)
-    c_a = 1.0 / (1.0 - GAMMA * h * slope.p_a)
-    c_b = 1.0 / (1.0 - GAMMA * h * slope.p_b)
-    c_w = 1.0 / (1.0 - GAMMA * h * slope.w)
-    c_t = 1.0 / (1.0 - GAMMA * h * slope.tilt_rate)
-    c_l = 1.0 / (1.0 - GAMMA * h * slope.lead_w)
+    k, slope, _, _ = rates(s, x, voltage, time, inertia, probe, law, near, joint)
+    c_a, c_b, c_w = _implicit(h, slope.p_a), _implicit(h, slope.p_b), _implicit(h, slope.w)
+    c_t, c_l = _implicit(h, slope.tilt_rate), _implicit(h, slope.lead_w)
     k_a, k_b, k_w, k_t, k_l = k.p_a * c_a, k.p_b * c_b, k.w * c_w, k.tilt_rate * c_t, k.lead_w * c_l
     middle = State(
         s.p_a + h * k_a,
@@ -57,7 +61,7 @@ def _step(
         s.lead_q + h * k.lead_q,
         s.lead_w + h * k_l,
     )
-    m, _, _, _ = rates(middle, x_next, voltage, time + h, inertia, probe_next, law, joint)
+    m, _, _, _ = rates(middle, x_next, voltage, time + h, inertia, probe_next, law, near, joint)
     half = 0.5 * h
     return State(
         max(s.p_a + half * (3.0 * k_a + (m.p_a - 2.0 * k_a) * c_a), 0.0),
@@ -164,6 +168,7 @@ def integrate(
     t = begin
     for row in range(len(times)):
         target = times[row]
+        near = turned(s, joint)
         while t < target:
             while held < last and command_times[held + 1] + delay <= t + 1e-12:
                 held += 1
@@ -193,7 +198,7 @@ def integrate(
                         x, xd, gain * drive_a, gain * drive_b, h, spool_steps, joint
                     )
                     inertia = _inertia_at(time, rod, joint)
-                    s = _step(s, x, x_next, voltage, time, h, inertia, probe, probe_next, law, joint)
+                    s = _step(s, x, x_next, voltage, time, h, inertia, probe, probe_next, law, near, joint)
                     x = x_next
                     probe = probe_next
                     play = sensor.played(play, s.q - s.tilt, joint)
@@ -204,7 +209,7 @@ def integrate(
         now = felt_at(probe, law, t - on, s, x, joint)
         voltage = command.drive_voltage(_arrived(command_values, held, joint) + now.command, joint)
         inertia = _inertia_at(t - on, rod, joint)
-        _, _, p_supply, force = rates(s, x, voltage, t - on, inertia, probe, law, joint)
+        _, _, p_supply, force = rates(s, x, voltage, t - on, inertia, probe, law, near, joint)
         out[row, 0] = sensor.reading(play, t - on, joint) + now.sensor
         out[row, 1] = s.q
         out[row, 2] = s.w

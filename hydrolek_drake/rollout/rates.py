@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 
 from hydrolek_drake.physics import base, cylinder, fluid, hooks, linkage, load, supply, valve
+from hydrolek_drake.physics.angle import Angle, angle, angle_near
 from hydrolek_drake.physics.law import Seen, felt
 from hydrolek_drake.physics.probes import Probe
 
@@ -35,6 +36,20 @@ class Slopes(NamedTuple):
     w: float
     tilt_rate: float
     lead_w: float
+
+
+class Turned(NamedTuple):
+    """How far the joint has turned, for the sines and cosines of places that are near (`physics.angle`)."""
+
+    position: Angle  # of the link
+    included: Angle  # between the mounts of the cylinder
+
+
+@njit
+def turned(s: State, joint: Any) -> Turned:
+    """How far the joint has turned in a state."""
+    side, _ = _rod_side(s, joint)
+    return Turned(angle(s.q), angle(linkage.included_angle(side, joint)))
 
 
 @njit
@@ -66,14 +81,30 @@ def rates(
     inertia: float,
     outside: Probe,
     law: np.ndarray | None,
+    near: Turned,
     joint: Any,
 ) -> tuple[State, Slopes, float, float]:
-    """Rates of the state, their stiff slopes, the supply pressure [Pa] and the rod force [N]."""
+    """Rates of the state, their stiff slopes, the supply pressure [Pa] and the rod force [N].
+
+    Args:
+        s: state.
+        x: spool position [m].
+        voltage: of the drive [V].
+        time: since switching on [s].
+        inertia: of what moves [kg m^2 or kg].
+        outside: inputs from outside the model.
+        law: how such inputs follow from the state, or None.
+        near: a place that the joint is near to or at.
+        joint: parameter record.
+    """
     rocking = hooks.base_stiffness(joint) > 0.0
     playing = hooks.linkage_gap(joint) > 0.0
     oil = joint.cylinder.variant != cylinder.ELECTRIC_MOTOR
     side_q, side_w = _rod_side(s, joint)
-    stroke, lever = linkage.stroke_and_lever(side_q, joint) if oil else (0.0, joint.linkage.direction)
+    included = angle_near(linkage.included_angle(side_q, joint), near.included)
+    stroke, lever = (
+        linkage.stroke_and_lever_at(included, side_q, joint) if oil else (0.0, joint.linkage.direction)
+    )
     v = lever * side_w
     seen = Seen(time, s.q, s.w, stroke, v, s.p_a, s.p_b, x)
     probe, braking = felt(outside, law, lever, seen)
@@ -95,9 +126,8 @@ def rates(
         rate_a, rate_b, stiff_a, stiff_b = cylinder.pressure_rates(
             s.p_a, s.p_b, flow_a, flow_b, stroke, v, joint
         )
-        softer_a, softer_b = fluid.softer(probe.capacity_a, stiff_a), fluid.softer(probe.capacity_b, stiff_b)
-        rate_a, stiff_a = rate_a / softer_a, stiff_a / softer_a
-        rate_b, stiff_b = rate_b / softer_b, stiff_b / softer_b
+        rate_a, stiff_a = fluid.softened(probe.capacity_a, rate_a, stiff_a)
+        rate_b, stiff_b = fluid.softened(probe.capacity_b, rate_b, stiff_b)
         slope_a = -stiff_a * settle_a
         slope_b = -stiff_b * settle_b
         friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
@@ -106,7 +136,7 @@ def rates(
 
     force += probe.cylinder
     moment = force * lever
-    resisting, slope_r = load.resisting_load(s.q, s.w, time, joint)
+    resisting, slope_r = load.resisting_load(angle_near(s.q, near.position), s.w, time, joint)
     resisting -= probe.load
     slope_r -= braking
     lead_acceleration = slope_lead = 0.0

@@ -9,7 +9,7 @@ from numba import njit
 from pydrake.systems.framework import BasicVector, Context, ContinuousState, LeafSystem
 
 from hydrolek_drake.physics.cylinder import friction_force, pressure_force, pressure_rates
-from hydrolek_drake.physics.fluid import softer
+from hydrolek_drake.physics.fluid import softened
 from hydrolek_drake.physics.probes import CAPACITY_A, CAPACITY_B, CYLINDER
 from hydrolek_drake.systems.short_law import Outside
 
@@ -28,8 +28,8 @@ def _rates(
         rate_a, rate_b, stiff_a, stiff_b = pressure_rates(
             pressure[i], pressure[n + i], flow[i], flow[n + i], motion[i], motion[n + i], joints[i]
         )
-        out[i] = rate_a / softer(outside[i, CAPACITY_A], stiff_a)
-        out[n + i] = rate_b / softer(outside[i, CAPACITY_B], stiff_b)
+        out[i], _ = softened(outside[i, CAPACITY_A], rate_a, stiff_a)
+        out[n + i], _ = softened(outside[i, CAPACITY_B], rate_b, stiff_b)
 
 
 @njit(cache=True)
@@ -52,8 +52,8 @@ def _forces(
             rate_a, rate_b, stiff_a, stiff_b = pressure_rates(
                 p_a, p_b, flow[i], flow[n + i], motion[i], motion[n + i], joint
             )
-            p_a += ahead * rate_a / softer(outside[i, CAPACITY_A], stiff_a)
-            p_b += ahead * rate_b / softer(outside[i, CAPACITY_B], stiff_b)
+            p_a += ahead * softened(outside[i, CAPACITY_A], rate_a, stiff_a)[0]
+            p_b += ahead * softened(outside[i, CAPACITY_B], rate_b, stiff_b)[0]
         out[i] = pressure_force(p_a, p_b, joint) - friction + outside[i, CYLINDER]
 
 

@@ -5,6 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from hydrolek_drake.physics import base, load
+from hydrolek_drake.physics.angle import angle
 
 PAYLOAD = {"effects.load.payload.mass_kg": 7.0, "effects.load.payload.time_s": 3.0}
 LOWER, UPPER = np.radians(-10.3), np.radians(65.6)
@@ -54,7 +55,7 @@ def test_resisting_load_is_the_sum_and_its_slope_that_of_the_dampers_and_the_fri
         {"effects.load.coulomb_friction.force_N": 11.0, "load.friction_velocity": 0.05, **PAYLOAD}
     )
     w = 0.037
-    total, slope = load.resisting_load(q, w, 4.0, joint)
+    total, slope = load.resisting_load(angle(q), w, 4.0, joint)
     friction = 11 * np.tanh(w / 0.05)
     by_hand = (265 + 7 * 9.81) * np.cos(q) + 60 * w + friction - load.stop_load(q, w, joint)
     assert_allclose(total, by_hand, rtol=1e-12)
