@@ -15,6 +15,7 @@ from numba import njit
 from hydrolek_drake.challenge.arm_numbers import ArmMachine
 from hydrolek_drake.challenge.driving import SAMPLE_S, Driving, Played, controlled, turned_back
 from hydrolek_drake.challenge.faulty_signals import lost, worn
+from hydrolek_drake.challenge.load_holding import let_out
 
 UNPRESSED = 1e-9
 """A weight that would press a play together by less than this share of its gap is rounding: it takes up no side."""
@@ -91,7 +92,7 @@ def _rates(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) -> No
     out[1] = (push - held) / g.m
     from_pump_a = _orifice(g, to_a, p_s - p_a) + g.null_leak * (p_s - p_a)
     from_pump_b = _orifice(g, to_b, p_s - p_b) + g.null_leak * (p_s - p_b)
-    back_a = _orifice(g, to_b, p_a - p_t) + g.null_leak * (p_a - p_t)
+    back_a = _orifice(g, to_b, p_a - p_t) * let_out(g, p_a, p_b) + g.null_leak * (p_a - p_t)
     back_b = _orifice(g, to_a, p_b - p_t) + g.null_leak * (p_b - p_t)
     past = g.cross_leak * (p_a - p_b)
     out[6] = (from_pump_a + from_pump_b - felt) / g.flow_s

@@ -13,6 +13,7 @@ from numba import njit
 from hydrolek_drake.challenge.bench_numbers import Machine
 from hydrolek_drake.challenge.driving import SAMPLE_S, Driving, Played, controlled
 from hydrolek_drake.challenge.faulty_signals import lost, worn
+from hydrolek_drake.challenge.load_holding import let_out
 
 STEP_S = 2e-5
 SIZE = 12
@@ -62,7 +63,7 @@ def _derivative(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) 
     out[0] = xd
     out[1] = (force - g.c * xd - g.k * x - g.stiction_n * math.tanh(xd / g.stick_v)) / g.m
     pa = _flow(g, right, p_s - p_a, 1.0 + s_warm) + g.null_leak * (p_s - p_a)
-    at = _flow(g, left, p_a - p_t, 1.0 + s_warm) + g.null_leak * (p_a - p_t)
+    at = _flow(g, left, p_a - p_t, 1.0 + s_warm) * let_out(g, p_a, p_b) + g.null_leak * (p_a - p_t)
     pb = _flow(g, left, p_s - p_b, 1.0 + s_warm) + g.null_leak * (p_s - p_b)
     bt = _flow(g, right, p_b - p_t, 1.0 + s_warm) + g.null_leak * (p_b - p_t)
     out[6] = (pa + pb - felt) / 0.02

@@ -86,6 +86,8 @@ class Machine(NamedTuple):
     return_pa_s: float = 0.0  # in no list: return line, pressure for each m^3/s through it
     snag_nm_per_rad: float = 0.0  # in no list: hoses that pull tight beyond an angle, a share of the travel
     snag_at: float = 0.5
+    held: float = 0.0  # in no list: share of the way out of side A that a counterbalance valve may close
+    holding_pa: float = 1.0  # and the lifting pressure at which it is wholly open
     worn_rad: float = 0.0  # in no list: potentiometer worn around one angle
     worn_at: float = 0.5
     worn_wide: float = 0.1

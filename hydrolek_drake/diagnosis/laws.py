@@ -58,6 +58,8 @@ def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str)
             Input("supply", "supply", "added to the supply pressure", "Pa", 0.3 * pressure),
             Input("amplifier", "amplifier", "relative change of the coil currents", "1", 0.3),
             Input("valve", "valve", "relative change of the valve's opening", "1", 0.6),
+            Input("valve", "back_a", "relative change of what flows from side A to the tank", "1", 0.6),
+            Input("valve", "back_b", "relative change of what flows from side B to the tank", "1", 0.6),
             Input("cylinder", "cylinder", "force added at the rod", "N", 0.3 * scales.force),
             Input(
                 "fluid", "capacity_a", "volume taken per pressure on side A, added", "m^3/Pa", scales.capacity

@@ -20,14 +20,15 @@ from hydrolek_drake.diagnosis.law_counterpart import counterpart
 from hydrolek_drake.diagnosis.law_fit import STEPS, fitted, glance
 from hydrolek_drake.diagnosis.law_growing import grown
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, left_in_all, records_of
-from hydrolek_drake.diagnosis.law_search import promising
-from hydrolek_drake.diagnosis.laws import Input, Span, inputs_of, span_of
+from hydrolek_drake.diagnosis.law_search import STEADY, promising
+from hydrolek_drake.diagnosis.laws import CONSTANT, Input, Span, inputs_of, span_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiment import Experiment
 
 TRIED = 24
-"""So many laws are fitted with a few steps: the best of every input, periodic or not, and what promises most."""
+"""So many laws are fitted with a few steps: the best of every input, periodic or not, what is simplest where an input
+says how the machine is built, and what promises most."""
 
 FINER = 2.0
 """Integration step of the last fits over the rig's own, at most."""
@@ -66,7 +67,7 @@ def find_law(
     laws = sorted(promising(bench, left, inputs, span, step), key=lambda law: -law.gain)
     if not laws or laws[0].gain <= 0.0:
         return None
-    chosen = _one_of_each(laws)
+    chosen = worth_trying(laws)
     begun = bench.side_by_side(lambda law: glance(bench, left, law, span, step), chosen)
     ranked = sorted(zip(chosen, begun, strict=True), key=lambda item: item[1][0])[:FITTED]
     finer = min(step, FINER * bench.fine)
@@ -206,13 +207,26 @@ def _span(bench: Workbench, left: Hypothesis, step: float) -> Span:
     )
 
 
-def _one_of_each(laws: Sequence[Law]) -> list[Law]:
-    """The best law of every input and kind first, then the rest, as many as are tried."""
+def worth_trying(laws: Sequence[Law]) -> list[Law]:
+    """The best law of every input and kind first, then the rest, as many as are tried.
+
+    How a machine is built does not change, so that a constant is likely there even if, far from the fitted nominal
+    model, another term promises more.
+
+    Args:
+        laws: what promises most first.
+    """
     seen: set[tuple[str, bool]] = set()
     first: list[Law] = []
+    built: list[Law] = []
     rest: list[Law] = []
     for law in laws:
         key = (law.input.probe, law.periodic)
-        (rest if key in seen else first).append(law)
+        if key not in seen:
+            first.append(law)
+        elif law.input.probe in STEADY and [term.name for term in law.terms] == [CONSTANT]:
+            built.append(law)
+        else:
+            rest.append(law)
         seen.add(key)
-    return [*first, *rest][:TRIED]
+    return [*first, *built, *rest][:TRIED]

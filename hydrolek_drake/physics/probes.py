@@ -23,10 +23,14 @@ class Probe(NamedTuple):
     flow: float  # that other joints draw from the supply [m^3/s]
     capacity_a: float  # added to the oil's on side A: volume that it takes per pressure [m^3/Pa]
     capacity_b: float  # the same on side B
+    back_a: float  # relative change of what the way from side A to the tank conducts
+    back_b: float  # the same from side B
 
 
 PROBES = Probe._fields
-COMMAND, AMPLIFIER, VALVE, SUPPLY, CYLINDER, LOAD, SENSOR, FLOW, CAPACITY_A, CAPACITY_B = range(len(PROBES))
+COMMAND, AMPLIFIER, VALVE, SUPPLY, CYLINDER, LOAD, SENSOR, FLOW, CAPACITY_A, CAPACITY_B, BACK_A, BACK_B = (
+    range(len(PROBES))
+)
 """Their places."""
 
 NO_PROBE = np.zeros((0, len(PROBES)))
@@ -35,7 +39,7 @@ NO_PROBE = np.zeros((0, len(PROBES)))
 @njit
 def no_probe() -> Probe:
     """Nothing from outside."""
-    return Probe(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return Probe(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit
@@ -58,6 +62,8 @@ def probe_at(time: float, begin: float, spacing: float, values: np.ndarray) -> P
         a[7] + f * (b[7] - a[7]),
         a[8] + f * (b[8] - a[8]),
         a[9] + f * (b[9] - a[9]),
+        a[10] + f * (b[10] - a[10]),
+        a[11] + f * (b[11] - a[11]),
     )
 
 
@@ -75,4 +81,6 @@ def added(probe: Probe, at: float, value: float) -> Probe:
         probe.flow + (value if at == 7.0 else 0.0),
         probe.capacity_a + (value if at == 8.0 else 0.0),
         probe.capacity_b + (value if at == 9.0 else 0.0),
+        probe.back_a + (value if at == 10.0 else 0.0),
+        probe.back_b + (value if at == 11.0 else 0.0),
     )

@@ -115,15 +115,26 @@ def edge_conductances(
 
 @njit
 def chamber_flows(
-    open_a: float, open_b: float, p_supply: float, p_a: float, p_b: float, time: float, joint: Any
+    open_a: float,
+    open_b: float,
+    p_supply: float,
+    p_a: float,
+    p_b: float,
+    time: float,
+    joint: Any,
+    back_a: float = 0.0,
+    back_b: float = 0.0,
 ) -> tuple[float, float, float, float, float]:
     """Oil flowing into A, into B and drawn from the supply [m^3/s], and each chamber's total conductance.
 
-    Arguments as for `edge_conductances`. Leakage past the piston is part of the flows; the conductances are
-    what lets a chamber's pressure settle, for the integrator.
+    Arguments as for `edge_conductances`, and by which share the ways from A and from B to the tank conduct more, as
+    unknown inputs have it. Leakage past the piston is part of the flows; the conductances are what lets a chamber's
+    pressure settle, for the integrator.
     """
     p_tank = joint.supply.tank_pressure
     pa, at, pb, bt = edge_conductances(open_a, open_b, p_supply, p_a, p_b, time, joint)
+    at *= max(1.0 + back_a, 0.0)
+    bt *= max(1.0 + back_b, 0.0)
     cross = hooks.cross_conductance(joint)
     drawn_a = pa * (p_supply - p_a)
     drawn_b = pb * (p_supply - p_b)

@@ -43,6 +43,8 @@ UNITS = {
     "sensor": "rad|m",
     "capacity_a": "m^3/Pa",
     "capacity_b": "m^3/Pa",
+    "back_a": "1",
+    "back_b": "1",
 }
 """Inputs that a law may give -> their units; of a vane and of a sliding load the second one."""
 

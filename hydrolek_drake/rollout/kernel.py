@@ -142,7 +142,7 @@ def integrate(
         longest_step: [s].
         spool_steps: spool steps within one step.
         probe_spacing: of the samples of the probes, which begin at the first of `times` [s].
-        probe_values: `PROBES` over time, shape (k, 10); no rows for none.
+        probe_values: `PROBES` over time, shape (k, 12); no rows for none.
         pull_time: with this time constant reading and pressures are pulled to what was measured, as in an
             observer [s]; zero or less for a free rollout.
         measured: `PULLED` at `times`, NaN where there is no value, shape (n, 3); no rows for a free rollout.

@@ -121,7 +121,7 @@ def rates(
         open_a *= 1.0 + probe.valve
         open_b *= 1.0 + probe.valve
         flow_a, flow_b, drawn, settle_a, settle_b = valve.chamber_flows(
-            open_a, open_b, p_supply, s.p_a, s.p_b, time, joint
+            open_a, open_b, p_supply, s.p_a, s.p_b, time, joint, probe.back_a, probe.back_b
         )
         rate_a, rate_b, stiff_a, stiff_b = cylinder.pressure_rates(
             s.p_a, s.p_b, flow_a, flow_b, stroke, v, joint

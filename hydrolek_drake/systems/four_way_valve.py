@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
-from hydrolek_drake.physics.probes import VALVE
+from hydrolek_drake.physics.probes import BACK_A, BACK_B, VALVE
 from hydrolek_drake.physics.valve import chamber_flows, openings
 from hydrolek_drake.systems.short_law import Outside
 
@@ -25,7 +25,15 @@ def _flows(
         open_a, open_b = openings(x[i], joint)
         gain = 1.0 + outside[i, VALVE]
         out[i], out[n + i], out[2 * n + i], _, _ = chamber_flows(
-            gain * open_a, gain * open_b, p_supply, pressure[i], pressure[n + i], time, joint
+            gain * open_a,
+            gain * open_b,
+            p_supply,
+            pressure[i],
+            pressure[n + i],
+            time,
+            joint,
+            outside[i, BACK_A],
+            outside[i, BACK_B],
         )
 
 
@@ -36,7 +44,7 @@ class FourWayValve(LeafSystem):
         in `spool_position` (n) [m].
         in `pressure` (2n): chambers A, then B [Pa].
         in `supply_pressure` (1) [Pa].
-        in `outside` (10 n): what a law adds, or open.
+        in `outside` (12 n): what a law adds, or open.
         out `oil_flow` (3n): into chambers A, into chambers B (leakage past the piston included), and drawn
             from the supply [m^3/s].
     """

@@ -25,7 +25,7 @@ class ProportionalAmplifier(LeafSystem):
 
     Ports:
         in `voltage_delayed` (n) [V].
-        in `outside` (10 n): what a law adds, or open.
+        in `outside` (12 n): what a law adds, or open.
         out `coil_current` (2n): coils A, then coils B [A]; of a servo valve the voltage itself [V].
     """
 

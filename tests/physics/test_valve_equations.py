@@ -119,3 +119,12 @@ def test_compensated_valve_meters_out_by_its_flow_coefficient(crane_joint):
     flow_b = chamber_flows(0.3, 0.0, 9.3e6, 5e6, 0.1e6 + drop, 0.0, crane_joint)[1]
     assert_allclose(flow_b, -0.3 * 7.958e-7 * drop / (drop**2 + 0.02e6**2) ** 0.25, rtol=1e-12)
     assert_allclose(flow_b, -0.3 * 7.958e-7 * np.sqrt(drop), rtol=1e-4)
+
+
+def test_what_a_way_back_conducts_more_flows_there_alone(bench_joint) -> None:
+    joint = bench_joint(UNEQUAL)
+    args = (0.0, 0.4, P_S, 7.3e6, 3.1e6, 0.0, joint)
+    plain, less = chamber_flows(*args), chamber_flows(*args, -0.25, 0.7)
+    assert less[0] == pytest.approx(0.75 * plain[0], rel=1e-12)
+    assert less[1:3] == pytest.approx(plain[1:3], rel=1e-12)
+    assert chamber_flows(*args, -1.5, 0.0)[0] == 0.0

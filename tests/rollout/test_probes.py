@@ -83,3 +83,13 @@ def test_capacity_probe_is_more_oil_in_the_chamber(side: str) -> None:
     assert probed.pressure_a == pytest.approx(larger.pressure_a, rel=1e-9)
     assert probed.position == pytest.approx(larger.position, rel=1e-9)
     assert np.abs(probed.position - _run().position).max() > 1e-4
+
+
+@pytest.mark.parametrize(("probe", "volts"), [("back_a", -6.0), ("back_b", 6.0)])
+def test_a_way_back_that_is_shut_holds_the_rod(probe: str, volts: float) -> None:
+    """The oil in front of the piston stays there; 40 MPa, more than the areas make of the pump's, squeeze it by 4 %."""
+    away = np.where(TIMES < 0.5, 0.0, volts)
+    free, shut = _run(command=away), _run(probe=probe, size=-1.0, command=away)
+    assert np.ptp(shut.position) < 0.1 * np.ptp(free.position)
+    other = "back_b" if probe == "back_a" else "back_a"
+    assert _run(probe=other, size=-1.0, command=away).position == pytest.approx(free.position, abs=1e-12)

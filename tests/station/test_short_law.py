@@ -28,6 +28,8 @@ LAWS = {
     "sensor": (Term((), place="z^2"), 0.02),
     "capacity_a": (Term((), place="z"), 4e-13),
     "capacity_b": (Term((), other="p_B"), 4e-13),
+    "back_a": (Term((), other="p_B"), -0.5),
+    "back_b": (Term((), speed="v"), -0.4),
 }
 
 
