@@ -11,6 +11,7 @@ from hydrolek_drake.diagnosis.evidence import even, judge
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.hollows import deepest, strayed
 from hydrolek_drake.diagnosis.judged import Judged
+from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.search import search, search_on
 from hydrolek_drake.diagnosis.splitting import mixed
 from hydrolek_drake.diagnosis.weighing import NEARER, weighted_by
@@ -22,8 +23,8 @@ FAR_AHEAD = 2.0
 there: three quarters of the squared error are of a kind that they do not show."""
 
 PREDICTED = 1.2
-"""A model of listed effects that is right predicts held-out data to so many times the noise. Where it does worse, its
-parameters' uncertainty or something else may be the reason, which only more data tell."""
+"""A model that is right predicts held-out data to so many times the noise. Where it does worse, its parameters'
+uncertainty or something else may be the reason, which only more data tell."""
 
 
 @dataclass(frozen=True)
@@ -202,6 +203,22 @@ def _whole(known: Known) -> Known:
     if known.interrupted:
         raise KeyboardInterrupt
     return known
+
+
+def law_first(known: Known) -> bool:
+    """Whether a law is tried before more data are fitted: effects that the training data ask for fail ahead.
+
+    Where physics in no list is the reason, effects may imitate it in the training data, and fitting parts of both
+    recordings costs a whole search and changes nothing. Where the nominal model explains the training data, only more
+    of them tell what is missing.
+    """
+    unlisted = known.conclusion.verdict == "unlisted_physics"
+    return unlisted and _unexcited(known.conclusion) and known.found.baseline.fit.over_noise > EXPLAINED
+
+
+def predicting(law: FoundLaw) -> bool:
+    """Whether a law explains the training data and predicts the held-out data as a right model does."""
+    return law.fit.over_noise <= EXPLAINED and law.held_out_over_noise <= PREDICTED
 
 
 def _unexcited(conclusion: Conclusion) -> bool:

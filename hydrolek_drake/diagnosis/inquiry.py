@@ -10,6 +10,8 @@ from hydrolek_drake.diagnosis.attempt import (
     by_both,
     by_more_data,
     by_their_noise,
+    law_first,
+    predicting,
 )
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import Conclusion
@@ -83,13 +85,23 @@ class Inquiry:
                 conclusion = replace(conclusion, verdict="ambiguous")
             return Answer(known, conclusion, None, (INTERRUPTED,))
         answer = Answer(known, known.conclusion)
-        for question in (self._by_more_data, self._by_a_law, self._by_other_weights):
+        questions = (self._by_a_law_at_once, self._by_more_data, self._by_a_law, self._by_other_weights)
+        for question in questions:
+            if answer.law is not None and question != self._by_other_weights:
+                continue
             try:
                 answer = question(answer)
             except KeyboardInterrupt:
                 answer.known.bench.resume()
                 return replace(answer, remarks=(*answer.remarks, INTERRUPTED))
         return answer
+
+    def _by_a_law_at_once(self, answer: Answer) -> Answer:
+        """A law in place of more data, if it explains both recordings."""
+        if not (self.apart and law_first(answer.known)):
+            return answer
+        with_a_law = self._by_a_law(answer)
+        return with_a_law if with_a_law.law is not None and predicting(with_a_law.law) else answer
 
     def _by_more_data(self, answer: Answer) -> Answer:
         """What only the held-out data show, or decide."""

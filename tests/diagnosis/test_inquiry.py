@@ -25,7 +25,7 @@ def _known(verdict, interrupted=False):
 def asked(monkeypatch):
     """(answers of the questions, of which one may be an interrupt, whether held-out data are apart) -> answer."""
 
-    def ask(apart=True, **answers):
+    def ask(apart=True, law_first=False, explained=False, **answers):
         def answering(name):
             def answer(*_):
                 if answers.get(name) is KeyboardInterrupt:
@@ -39,6 +39,8 @@ def asked(monkeypatch):
         monkeypatch.setattr(
             inquiry, "with_law", lambda bench, conclusion, *_: answering("with_law")() or (conclusion, None)
         )
+        monkeypatch.setattr(inquiry, "law_first", lambda known: law_first)
+        monkeypatch.setattr(inquiry, "predicting", lambda law: explained)
         monkeypatch.setattr(inquiry, "material", lambda conclusion, *_: replace(conclusion, groups=(("m",),)))
         return Inquiry((), SimpleNamespace(), apart, lambda text: None).answer(_Bench(), ())
 
@@ -88,3 +90,15 @@ def test_a_law_that_comes_near_the_noise_needs_no_other_weights(asked):
     law = SimpleNamespace(held_out_over_noise=1.1)
     answer = asked(attempt=first, with_law=(first.conclusion, law), balanced=KeyboardInterrupt)
     assert answer.law is law and answer.remarks == ()
+
+
+def test_a_law_that_explains_both_recordings_comes_before_more_data(asked):
+    first, second = _known("unlisted_physics"), _known("missing_physics")
+    law = SimpleNamespace(held_out_over_noise=1.1)
+    how = {"attempt": first, "with_law": (first.conclusion, law), "by_more_data": second}
+    answer = asked(law_first=True, explained=True, **how)
+    assert answer.known is first and answer.law is law and answer.remarks == ()
+    assert asked(law_first=True, explained=False, **how).known is second
+    assert asked(law_first=False, explained=True, **how).known is second
+    answer = asked(law_first=True, explained=True, **how | {"with_law": KeyboardInterrupt})
+    assert answer.known is first and answer.law is None and answer.remarks == (INTERRUPTED,)
