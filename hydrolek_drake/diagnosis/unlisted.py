@@ -34,7 +34,10 @@ FINER = 2.0
 """Integration step of the last fits over the rig's own, at most."""
 
 FITTED = 6
-"""So many of them are fitted to the end."""
+"""So many of them are fitted to the end, and the best of every other input that did as well but for `UNDECIDED`."""
+
+UNDECIDED = 1.1
+"""First fits whose squared residuals are within this factor are not told apart by the part of the data they saw."""
 
 ALIKE = 1.1
 """Laws whose held-out errors lie within this factor predict alike: so much the parameters' own uncertainty adds."""
@@ -44,6 +47,10 @@ NEAR = 1.5
 
 BETTER = 0.8
 """A law must take the held-out error below this share of what it was, or it is no law of this machine."""
+
+
+Begun = tuple[Law, tuple[float, dict[str, float], np.ndarray]]
+"""A law and its first fit, see `glance`."""
 
 
 def find_law(
@@ -69,7 +76,7 @@ def find_law(
         return None
     chosen = worth_trying(laws)
     begun = bench.side_by_side(lambda law: glance(bench, left, law, span, step), chosen)
-    ranked = sorted(zip(chosen, begun, strict=True), key=lambda item: item[1][0])[:FITTED]
+    ranked = _followed(sorted(zip(chosen, begun, strict=True), key=lambda item: item[1][0]))
     finer = min(step, FINER * bench.fine)
     ended = bench.side_by_side(
         lambda item: fitted(bench, left, item[0], held_out, span, item[1][1:], finer), ranked
@@ -205,6 +212,18 @@ def _span(bench: Workbench, left: Hypothesis, step: float) -> Span:
         bench.training[0].channels[0].unit,
         "m" if bench.rig.variant(bench.training[0].joint, "cylinder") == "cylinder" else "rad",
     )
+
+
+def _followed(ranked: Sequence[Begun]) -> list[Begun]:
+    """Those of the first fits, the best first, that are fitted to the end."""
+    first = list(ranked[:FITTED])
+    seen = {law.input.probe for law, _ in first}
+    least = ranked[0][1][0]
+    for law, fit in ranked[FITTED:]:
+        if fit[0] < UNDECIDED * least and law.input.probe not in seen:
+            first.append((law, fit))
+            seen.add(law.input.probe)
+    return first
 
 
 def worth_trying(laws: Sequence[Law]) -> list[Law]:
