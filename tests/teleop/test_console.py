@@ -105,7 +105,7 @@ def test_the_page_and_the_whole_task():
                 break
         assert state["mode"] == "done" and {"approach", "cut"} <= seen
 
-    _served(work, rate=8.0)  # slow enough for the states, ten a second, to show every step
+    _served(work, rate=4.0)  # slow enough for the states, ten a second, to show every step
 
 
 def test_of_two_browsers_the_second_watches_and_may_stop():
