@@ -48,7 +48,6 @@ NEAR = 1.5
 BETTER = 0.8
 """A law must take the held-out error below this share of what it was, or it is no law of this machine."""
 
-
 Begun = tuple[Law, tuple[float, dict[str, float], np.ndarray]]
 """A law and its first fit, see `glance`."""
 
@@ -76,7 +75,7 @@ def find_law(
         return None
     chosen = worth_trying(laws)
     begun = bench.side_by_side(lambda law: glance(bench, left, law, span, step), chosen)
-    ranked = _followed(sorted(zip(chosen, begun, strict=True), key=lambda item: item[1][0]))
+    ranked = followed(sorted(zip(chosen, begun, strict=True), key=lambda item: item[1][0]))
     finer = min(step, FINER * bench.fine)
     ended = bench.side_by_side(
         lambda item: fitted(bench, left, item[0], held_out, span, item[1][1:], finer), ranked
@@ -214,8 +213,12 @@ def _span(bench: Workbench, left: Hypothesis, step: float) -> Span:
     )
 
 
-def _followed(ranked: Sequence[Begun]) -> list[Begun]:
-    """Those of the first fits, the best first, that are fitted to the end."""
+def followed(ranked: Sequence[Begun]) -> list[Begun]:
+    """Those of the first fits that are fitted to the end.
+
+    Args:
+        ranked: first fits, the best first.
+    """
     first = list(ranked[:FITTED])
     seen = {law.input.probe for law, _ in first}
     least = ranked[0][1][0]
