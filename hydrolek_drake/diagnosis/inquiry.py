@@ -25,7 +25,7 @@ from hydrolek_drake.identification.natural_scales import Scales
 INTERRUPTED = "interrupted: this is what was known by then; run it again for the whole answer"
 
 MIXED = (
-    "the held-out recording shows something that the training data do not, since a model that follows these does far "
+    "the held-out recording shows something that the training data do not, since a model that follows these does "
     "worse on it: two thirds of that recording were fitted too, and the rest was held out"
 )
 
@@ -87,8 +87,6 @@ class Inquiry:
         answer = Answer(known, known.conclusion)
         questions = (self._by_a_law_at_once, self._by_more_data, self._by_a_law, self._by_other_weights)
         for question in questions:
-            if answer.law is not None and question != self._by_other_weights:
-                continue
             try:
                 answer = question(answer)
             except KeyboardInterrupt:
@@ -104,7 +102,9 @@ class Inquiry:
         return with_a_law if with_a_law.law is not None and predicting(with_a_law.law) else answer
 
     def _by_more_data(self, answer: Answer) -> Answer:
-        """What only the held-out data show, or decide."""
+        """What only the held-out data show, or decide, unless a law predicts them."""
+        if answer.law is not None:
+            return answer
         known = answer.known
         second = by_more_data(known, self.candidates, self.say) if self.apart else None
         if second is not None:
@@ -113,8 +113,8 @@ class Inquiry:
         return answer if other is None else Answer(other, other.conclusion, None, (BY_BOTH,))
 
     def _by_a_law(self, answer: Answer) -> Answer:
-        """A law for what is in no list."""
-        if self.scales is None:
+        """A law for what is in no list, unless there is one."""
+        if self.scales is None or answer.law is not None:
             return answer
         known = answer.known
         conclusion, law = with_law(

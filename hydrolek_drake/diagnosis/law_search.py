@@ -124,13 +124,13 @@ def promising(
         near = np.concatenate([law.frequency + around for law in best])
         return [max(gains(given, longer, near), key=_promised)]
 
-    through = [given for given in inputs if given.probe in SCANNED] or list(inputs)
+    shaken = [given for given in inputs if given.probe not in STEADY]
+    through = [given for given in shaken if given.probe in SCANNED] or shaken
     at = {
         given.probe: peaks for given, peaks in zip(through, bench.side_by_side(scanned, through), strict=True)
     }
     frequencies = np.unique([law.frequency for peaks in at.values() for law in peaks])
-    work = [(of_terms, given) for given in inputs]
-    work += [(of_frequencies, given) for given in inputs if given.probe not in STEADY]
+    work = [(of_terms, given) for given in inputs] + [(of_frequencies, given) for given in shaken]
     return [law for laws in bench.side_by_side(lambda item: item[0](item[1]), work) for law in laws]
 
 

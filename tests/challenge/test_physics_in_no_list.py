@@ -9,6 +9,7 @@ import pytest
 from hydrolek_drake.challenge.build import Build, build_of
 from hydrolek_drake.challenge.driving import SAMPLE_S, Played, random_series
 from hydrolek_drake.challenge.faulty_signals import lost
+from hydrolek_drake.challenge.load_holding import let_out
 from hydrolek_drake.rigs import load_rig
 
 RIGS = ("joint_bench", "hydrolek_left_j3")
@@ -123,6 +124,28 @@ def _leaving(build: Build, reading: np.ndarray) -> float:
     length = np.sqrt(near**2 + far**2 - 2.0 * near * far * np.cos(turned))
     speed = float(length[-1] - length[0]) / ((length.size - 1) * SAMPLE_S)
     return machine.a_b * speed if speed > 0.0 else -machine.a_a * speed
+
+
+@pytest.mark.parametrize("rig", RIGS)
+def test_a_counterbalance_valve_slows_the_way_in_and_not_the_way_out(rig: str) -> None:
+    """Oil leaves side A where the rod goes in; held wholly, it opens by what both chambers' pressures lift."""
+    build = _build(rig)
+    valve = {"held": 1.0, "holding_pa": 5e7}
+    assert let_out(build.nominal._replace(**valve), 5e6, 5e6) == pytest.approx((5e6 + 3.0 * 5e6) / 5e7)
+    assert let_out(build.nominal._replace(**valve), 5e7, 0.0) == let_out(build.nominal, 5e6, 5e6) == 1.0
+    out, back = (np.r_[np.zeros(50), np.full(100, sign * MODERATE_V[rig])] for sign in (1.0, -1.0))
+    assert np.array_equal(_driven(build, out, **valve).reading, _driven(build, out).reading)
+    plain, held = _driven(build, back), _driven(build, back, **valve)
+    open_share = let_out(build.nominal._replace(**valve), held.pressure_a[-1], held.pressure_b[-1])
+    slower = []
+    for done in (
+        plain,
+        held,
+    ):  # speed per root of the pressure that drives the oil out, where the motion is steady
+        drop = done.pressure_a[-10:].mean() - build.nominal.p_t
+        slower.append((done.reading[-1] - done.reading[-10]) / math.sqrt(drop))
+    assert open_share < 0.95
+    assert slower[1] / slower[0] == pytest.approx(open_share, rel=0.02)
 
 
 @pytest.mark.parametrize("rig", RIGS)

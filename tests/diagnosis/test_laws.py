@@ -20,7 +20,7 @@ from hydrolek_drake.diagnosis.law_terms import gain_along
 from hydrolek_drake.diagnosis.laws import Input, Term, inputs_of, law_record, law_records, span_of
 from hydrolek_drake.diagnosis.panels import after
 from hydrolek_drake.diagnosis.score import gain_of
-from hydrolek_drake.diagnosis.unlisted import find_law, worth_trying
+from hydrolek_drake.diagnosis.unlisted import find_law
 from hydrolek_drake.diagnosis.words import where_sentence
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
@@ -303,31 +303,6 @@ def test_a_track_that_is_worn_at_one_place_is_found_at_the_sensor(bench, recorde
         found = fitted(workbench, nominal, best, held_out, span, at, workbench.fine)
     assert found.held_out_over_noise < 1.1
     assert found.values == pytest.approx([size, centre, reach], rel=0.05)
-
-
-@pytest.mark.parametrize(("side", "share"), [("back_a", -0.1), ("back_b", -0.2)])
-def test_a_throttle_in_the_way_back_is_told_from_a_smaller_valve(bench, recorded, side, share) -> None:
-    """Of either side alone: what drives the rod one way is as it was. The fits decide, not what each law promised."""
-    span = span_of(
-        [recorded(bench, bench)[0].simulate(bench.records()).signals], bench.records()[0], 12.0, "rad"
-    )
-    throttle = law_records(side, span, (Term(()),), (share,))
-    kept = {"pressure_noise_Pa": 2e4, "law": lambda _: throttle}
-    training, held_out = (recorded(bench, bench, seed=seed, **kept) for seed in (1, 2))
-    with ThreadPoolExecutor(2) as pool:
-        workbench = Workbench(bench, free_parameters(bench), training, pool)
-        nominal = fit_baseline(workbench)
-        valve = [given for given in _inputs(bench, training) if given.stage == "valve"]
-        laws = promising(workbench, nominal, valve, span, 4.0 * workbench.fine)
-        laws.sort(key=lambda law: -law.gain)
-        first = worth_trying(laws)[: 2 * len(valve)]
-        tried = [(glance(workbench, nominal, law, span, 2.0 * workbench.fine), law) for law in first]
-        (_, *at), law = min(tried, key=lambda each: each[0][0])
-        found = fitted(workbench, nominal, law, held_out, span, at, workbench.fine)
-    assert nominal.fit.over_noise > 2.0
-    assert found.law.input.probe == side
-    assert found.held_out_over_noise < 1.1
-    assert found.values == pytest.approx([share], rel=0.05)
 
 
 def test_a_law_says_what_its_letters_mean(bench) -> None:
