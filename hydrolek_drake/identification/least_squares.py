@@ -9,6 +9,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from hydrolek_drake.identification.problem import PULLS_S, Problem
+from hydrolek_drake.identification.steps_taken import StepsTaken
 
 EDGE = 1e-6
 """Starts are pulled so far inside the cube: the trust-region method walks in the interior."""
@@ -65,21 +66,31 @@ class Fit:
         unit: place in the unit cube. # (n,)
         residuals: there, in units of the noise. # (values,)
         off_prior: distance of each parameter from the rig's own value, in standard deviations. # (n,)
-        jacobian: d residuals / d unit there, zero for parameters that were held. # (values, n)
+        slopes: d residuals / d unit there, zero for parameters that were held, or what computes it: most fits only lead
+            to others, and nobody asks; see `jacobian`. # (values, n)
         prior_jacobian: d off_prior / d unit. # (n, n)
         counted: values that count; where a sample does not count its residual is zero.
-        evaluations: rollouts of all experiments that it took.
+        evaluations: rollouts of all experiments that it took, but for those of a Jacobian at its end.
         unsure: squared residuals that what is known but roughly may leave.
     """
 
     unit: np.ndarray
     residuals: np.ndarray
     off_prior: np.ndarray
-    jacobian: np.ndarray
+    slopes: np.ndarray | Callable[[], np.ndarray]
     prior_jacobian: np.ndarray
     counted: int
     evaluations: int
     unsure: float = 0.0
+
+    @property
+    def jacobian(self) -> np.ndarray:
+        """Change of the residuals with each parameter's place, zero for those that were held. # (values, n)."""
+        known = self.slopes() if callable(self.slopes) else self.slopes
+        object.__setattr__(
+            self, "slopes", known
+        )  # a lock, as of functools' cached property, would hold up threads
+        return known
 
     @property
     def chi_squared(self) -> float:
@@ -114,21 +125,25 @@ def fit_from(
 ) -> Fit:
     """Bounded least squares from one start (trust region reflective, scipy).
 
+    It ends after so many rollouts, or once a step takes less of the cost, or is shorter, than the tolerance. The
+    method would compute a Jacobian there, too, which is left to whom it may concern (`Fit.jacobian`).
+
     Args:
         problem: residuals and Jacobian.
         start: place in the unit cube. # (n,)
         loss: one of `LOSSES`; all but linear give large residuals less weight.
-        most_steps: of the trust-region method, each with one Jacobian.
+        most_steps: of the trust-region method, each with one Jacobian but the last.
         tolerance: relative change of cost and parameters at which it ends.
         stop: asked before each rollout; True ends the search with `KeyboardInterrupt`.
         moving: which parameters are searched, the others stay where they start; None for all. # (n,)
     """
     before = problem.evaluations
-    known: dict[bytes, np.ndarray] = {}
-
     searched = np.flatnonzero(np.ones(start.size) if moving is None else moving)
     inside = np.array(start, dtype=float)
     inside[searched] = np.clip(start[searched], EDGE, 1.0 - EDGE)
+    prior_jacobian = problem.prior_jacobian()
+    taken = StepsTaken(most_steps, tolerance, robust=loss != "linear")
+    known: dict[bytes, np.ndarray] = {}
 
     def whole(part: np.ndarray) -> np.ndarray:
         unit = inside.copy()
@@ -142,14 +157,20 @@ def fit_from(
         value = problem.residuals(unit)
         known.clear()
         known[unit.tobytes()] = value
-        return np.concatenate([value, problem.prior_residuals(unit)])
+        every = np.concatenate([value, problem.prior_residuals(unit)])
+        taken.tried(every)
+        return every
 
     def jacobian(part: np.ndarray) -> np.ndarray:
         unit = whole(part)
-        own = problem.jacobian(unit, known.get(unit.tobytes()), moving)
-        return np.concatenate([own, prior_jacobian])[:, searched]
+        value = known[unit.tobytes()]
+        if taken.last(part):
+            return np.zeros((value.size + len(prior_jacobian), searched.size))
+        own = problem.jacobian(unit, value, moving)
+        slopes = np.concatenate([own, prior_jacobian])[:, searched]
+        taken.goes_on(part, slopes)
+        return slopes
 
-    prior_jacobian = problem.prior_jacobian()
     result = least_squares(
         residuals,
         inside[searched],
@@ -162,13 +183,14 @@ def fit_from(
         gtol=1e-12,
     )
     values = len(result.fun) - len(prior_jacobian)
+    unit, at = whole(result.x), result.fun[:values]
     found = np.zeros((values, len(inside)))
     found[:, searched] = result.jac[:values]
     return Fit(
-        unit=whole(result.x),
-        residuals=result.fun[:values],
+        unit=unit,
+        residuals=at,
         off_prior=result.fun[values:],
-        jacobian=found,
+        slopes=(lambda: problem.jacobian(unit, at, moving)) if taken.ended else found,
         prior_jacobian=prior_jacobian,
         counted=problem.counted,
         evaluations=problem.evaluations - before,

@@ -143,8 +143,8 @@ def fit_rig(
         with ThreadPoolExecutor(workers) as threads:
             shared = Problem(parameters, training, pool=threads) if workers > 1 else problem
             fit, interrupted = _least_squares(shared, rng, loss, progress)
+            jacobian = fit.jacobian
         unit, evaluations, found = fit.unit, shared.evaluations, None
-        jacobian = fit.jacobian
     else:
         objective = RigObjective(problem, p, segments if method == "nsga2" else None)
         journal = None
