@@ -12,7 +12,7 @@ from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.hollows import deepest, strayed
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
-from hydrolek_drake.diagnosis.search import search, search_on
+from hydrolek_drake.diagnosis.search import Other, search, search_on
 from hydrolek_drake.diagnosis.splitting import mixed
 from hydrolek_drake.diagnosis.weighing import NEARER, weighted_by
 from hydrolek_drake.diagnosis.workbench import Workbench
@@ -53,14 +53,22 @@ def attempt(
     candidates: Sequence[Candidate],
     held_out: Sequence[Experiment],
     say: Callable[[str], None],
+    other: Other | None = None,
 ) -> Known:
     """Search in the training data, and judge by the held-out data.
+
+    Args:
+        bench: data and fits.
+        candidates: every effect that may be missing.
+        held_out: data that nothing is fitted to.
+        say: told what is being done.
+        other: asked before a second effect is added, what else explains the data.
 
     Raises:
         KeyboardInterrupt: before the nominal model was fitted; later ones end the search.
     """
     found = Search()
-    return _attempted(bench, found, lambda: search(bench, candidates, found, say), held_out, say)
+    return _attempted(bench, found, lambda: search(bench, candidates, found, say, other), held_out, say)
 
 
 def _attempted(

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field, replace
 
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.gains import cost_of
+from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.score import Score
 from hydrolek_drake.diagnosis.workbench import Hypothesis
 
@@ -21,6 +22,7 @@ class Search:
         given_up: sets of effects that were too far behind after a few steps.
         smooth: whether a fit that was led on proved not to have been stuck.
         weighed_at: what the model left, over the noise, by which the data are weighed.
+        law: beside the nominal model, which ended the search since it explains everything; None for none.
     """
 
     hypotheses: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
@@ -31,6 +33,7 @@ class Search:
     given_up: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
     smooth: bool = False
     weighed_at: float = 0.0
+    law: FoundLaw | None = None
 
     def keep(self, hypothesis: Hypothesis) -> None:
         """Remember it if it is the best fit of these effects."""

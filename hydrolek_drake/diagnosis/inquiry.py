@@ -16,8 +16,9 @@ from hydrolek_drake.diagnosis.attempt import (
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.effort import FAR
-from hydrolek_drake.diagnosis.law_choice import material, with_law
+from hydrolek_drake.diagnosis.law_choice import alone, material, with_law
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
+from hydrolek_drake.diagnosis.shaking import shaken
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.natural_scales import Scales
@@ -78,12 +79,16 @@ class Inquiry:
         Raises:
             KeyboardInterrupt: before the nominal model was fitted.
         """
-        known = attempt(bench, self.candidates, held_out, self.say)
+        scales = self.scales
+        other = None if scales is None else lambda nominal: shaken(bench, nominal, held_out, scales)
+        known = attempt(bench, self.candidates, held_out, self.say, other)
         if known.interrupted:
             conclusion = known.conclusion
             if conclusion.verdict == "unlisted_physics":  # not every known effect has been tried
                 conclusion = replace(conclusion, verdict="ambiguous")
             return Answer(known, conclusion, None, (INTERRUPTED,))
+        if known.found.law is not None:
+            return _by_the_law(known, known.found.law)
         answer = Answer(known, known.conclusion)
         questions = (self._by_a_law_at_once, self._by_more_data, self._by_a_law, self._by_other_weights)
         for question in questions:
@@ -141,3 +146,8 @@ class Inquiry:
         if own is not None and own.conclusion.verdict != "unlisted_physics":
             return Answer(own, own.conclusion, None, answer.remarks)
         return Answer(alike, material(alike.conclusion, alike.judged, alike.held_out), None, told)
+
+
+def _by_the_law(known: Known, law: FoundLaw) -> Answer:
+    """A law that ended the search, beside the nominal model."""
+    return Answer(known, alone(known.conclusion, known.judged, law), law)

@@ -53,8 +53,20 @@ def with_law(
         if law is not None and left_in_all(law.fit, law.held_out_over_noise, held_out) <= left_in_all(
             best.hypothesis.fit, best.over_noise, held_out
         ):
-            return replace(conclusion, verdict="unlisted_physics", best=nominal, groups=_stages(law)), law
+            return alone(conclusion, judged, law), law
     return conclusion, None
+
+
+def alone(conclusion: Conclusion, judged: Sequence[Judged], law: FoundLaw) -> Conclusion:
+    """A law beside the nominal model is what is missing.
+
+    Args:
+        conclusion: from known effects alone.
+        judged: all hypotheses that were held against held-out data.
+        law: that explains it.
+    """
+    nominal = next(j for j in judged if not j.hypothesis.effects)
+    return replace(conclusion, verdict="unlisted_physics", best=nominal, groups=_stages(law))
 
 
 def _law_and_model(
@@ -67,17 +79,17 @@ def _law_and_model(
     no material part of the error are left out from the beginning, and so are all where the law alone explains the data.
     A law that was found beside effects may be another one than the nominal model led to, so it is tried without them.
     """
-    alone = find_law(bench, nominal, held_out, scales)
-    if _immaterial(best, nominal) or (alone is not None and explains(alone)):
-        return alone, nominal
+    by_itself = find_law(bench, nominal, held_out, scales)
+    if _immaterial(best, nominal) or (by_itself is not None and explains(by_itself)):
+        return by_itself, nominal
     law = find_law(bench, best, held_out, scales)
     to_beat = best.over_noise
     if law is not None:
         to_beat = SIMPLER * law.held_out_over_noise
         again = without_effects(bench, nominal, law, held_out)
-        alone = min((found for found in (alone, again) if found is not None), key=_ahead)
-    if alone is not None and alone.held_out_over_noise < to_beat:
-        return alone, nominal
+        by_itself = min((found for found in (by_itself, again) if found is not None), key=_ahead)
+    if by_itself is not None and by_itself.held_out_over_noise < to_beat:
+        return by_itself, nominal
     return law, best
 
 

@@ -20,7 +20,7 @@ from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.physics.law import NEAR
+from hydrolek_drake.physics.law import PLACED
 from hydrolek_drake.replay.display import shown
 from hydrolek_drake.rollout.rollout import Signals
 
@@ -64,9 +64,11 @@ class Law:
         return bool(self.terms) and all(term.speed in FRICTIONS for term in self.terms)
 
     @property
-    def placed(self) -> tuple[int, ...]:
-        """Which of its terms act near a place, which is fitted with its reach."""
-        return tuple(number for number, term in enumerate(self.terms) if term.place == NEAR)
+    def placed(self) -> tuple[tuple[int, str], ...]:
+        """Which of its terms have which numbers of a place (`physics.law.PLACED`), that are fitted."""
+        return tuple(
+            (number, name) for number, term in enumerate(self.terms) for name in PLACED.get(term.place, ())
+        )
 
     @property
     def sizes(self) -> int:
@@ -75,24 +77,23 @@ class Law:
 
     @property
     def size(self) -> int:
-        """How many parameters it has: amplitudes, then a frequency, or centre and reach of every placed term."""
-        return 3 if self.periodic else self.sizes + 2 * len(self.placed)
+        """How many parameters it has: amplitudes, then a frequency, or the numbers of its places."""
+        return 3 if self.periodic else self.sizes + len(self.placed)
 
     def at(self, values: np.ndarray) -> "Law":
         """The law with its placed terms where they were fitted."""
         if not self.placed:
             return self
         terms = list(self.terms)
-        for number, (centre, reach) in zip(self.placed, values[self.sizes :].reshape(-1, 2), strict=True):
-            terms[number] = replace(terms[number], centre=float(centre), reach=float(reach))
+        for (number, name), value in zip(self.placed, values[self.sizes :].tolist(), strict=True):
+            terms[number] = replace(terms[number], **{name: value})
         return replace(self, terms=tuple(terms))
 
     def begun(self, sizes: np.ndarray) -> np.ndarray:
         """All its values, from its amplitudes (SI) alone and where it begins."""
         if self.periodic:
             return np.append(sizes, self.frequency)
-        places = [(self.terms[n].centre, self.terms[n].reach) for n in self.placed]
-        return np.concatenate([sizes, np.ravel(places)])
+        return np.append(sizes, [getattr(self.terms[number], name) for number, name in self.placed])
 
 
 @dataclass(frozen=True)
@@ -101,7 +102,7 @@ class FoundLaw:
 
     Attributes:
         law: stage and form.
-        values: amplitudes (SI), then centre and reach of every placed term (as in `laws.Term`); or sine and cosine
+        values: amplitudes (SI), then the numbers of its places (`Law.placed`, as in `laws.Term`); or sine and cosine
             amplitudes and frequency [Hz].
         parameters: full path -> nominal parameters fitted with it.
         fit: on the training data.
@@ -134,10 +135,11 @@ class FoundLaw:
         reach = self.span.at(self.law.input.probe)
 
         def told(term: Term) -> str:
-            if term.place != NEAR:
+            if term.place not in PLACED:
                 return term.name
-            where = (reach.position(term.centre), reach.distance(term.reach))
-            return term.name.replace(NEAR, f"near({', '.join(shown(each, reach.unit) for each in where)})")
+            where = [reach.position(term.centre), reach.distance(term.reach)][: len(PLACED[term.place])]
+            told = ", ".join(shown(each, reach.unit) for each in where)
+            return term.name.replace(term.place, f"{term.place}({told})")
 
         return [told(term) for term in self.law.at(self.values).terms]
 
@@ -187,6 +189,7 @@ class LawProblem(Problem):
         self.law = law
         self.span = span
         self._nominal = len(parameters)
+        self._reaches = [at for at, (_, name) in enumerate(law.placed) if name == "reach"]
         self._prior_mean = np.concatenate([self._prior_mean, np.full(law.size, 0.5)])
         self._prior_weight = np.concatenate([self._prior_weight, np.zeros(law.size)])
 
@@ -197,8 +200,8 @@ class LawProblem(Problem):
         sizes *= self.law.input.scale
         if self.law.periodic:
             values[2] = self.law.frequency + 0.5 * values[2] / SCAN_S
-        else:
-            places[1::2] = FIRST_REACH * WIDEST ** places[1::2]
+        reaches = self._reaches
+        places[reaches] = FIRST_REACH * WIDEST ** places[reaches]
         return values
 
     def start(self, nominal: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -208,8 +211,8 @@ class LawProblem(Problem):
         sizes /= self.law.input.scale
         if self.law.periodic:
             own[2] = 2.0 * (own[2] - self.law.frequency) * SCAN_S
-        else:
-            places[1::2] = np.log(places[1::2] / FIRST_REACH) / math.log(WIDEST)
+        reaches = self._reaches
+        places[reaches] = np.log(places[reaches] / FIRST_REACH) / math.log(WIDEST)
         return np.concatenate([nominal, np.clip(0.5 + 0.5 * own, 0.0, 1.0)])
 
     def signals(self, unit: np.ndarray) -> list[Signals]:

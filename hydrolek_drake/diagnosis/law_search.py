@@ -48,7 +48,12 @@ class _Part:
 
 
 def promising(
-    bench: Workbench, left: Hypothesis, inputs: Sequence[Input], span: Span, step: float
+    bench: Workbench,
+    left: Hypothesis,
+    inputs: Sequence[Input],
+    span: Span,
+    step: float,
+    terms: Sequence[Term] = TERMS,
 ) -> list[Law]:
     """Every law with the gain that it promises, and the amplitude at which its fit should begin.
 
@@ -58,6 +63,7 @@ def promising(
         inputs: unknown inputs of the joint.
         span: what the laws' variables are told in.
         step: of the integration [s].
+        terms: that are tried; none for periodic laws alone.
     """
     parameters = bench.parameters(left.effects)
     records = parameters.records(parameters.unit(left.values))
@@ -83,7 +89,7 @@ def promising(
         model = Fitted(records, span, step, across, off)
         return [
             Law(given, (term,), 0.0, gain, (start,))
-            for term, gain, start in terms_scored(bench, model, given, TERMS)
+            for term, gain, start in terms_scored(bench, model, given, terms)
         ]
 
     def beginning(seconds: float) -> _Part:
@@ -130,7 +136,8 @@ def promising(
         given.probe: peaks for given, peaks in zip(through, bench.side_by_side(scanned, through), strict=True)
     }
     frequencies = np.unique([law.frequency for peaks in at.values() for law in peaks])
-    work = [(of_terms, given) for given in inputs] + [(of_frequencies, given) for given in shaken]
+    work = [(of_terms, given) for given in (inputs if terms else ())]
+    work += [(of_frequencies, given) for given in shaken]
     return [law for laws in bench.side_by_side(lambda item: item[0](item[1]), work) for law in laws]
 
 

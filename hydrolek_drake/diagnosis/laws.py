@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.effects.scales import Scales
-from hydrolek_drake.physics.law import LAW, NEAR, OTHERS, PLACES, SPEEDS, TIMES
+from hydrolek_drake.physics.law import BELOW, BEYOND, LAW, NEAR, OTHERS, PLACED, PLACES, SPEEDS, TIMES
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rollout.one_point import stroke_and_lever
 from hydrolek_drake.rollout.rollout import Signals
@@ -85,8 +85,9 @@ class Term:
         place: of `PLACES`.
         speed: of `SPEEDS`.
         other: of `OTHERS`.
-        centre: near which place of the movement, -1 at its low end and 1 at its high one; where a fit begins.
-        reach: how far to either side, half of the movement being 1.
+        centre: near which place of the movement, or from which on, -1 at its low end and 1 at its high one; where a
+            fit begins.
+        reach: how far to either side, half of the movement being 1; so far past the place an amplitude is told.
     """
 
     stages: tuple[str, ...]
@@ -95,7 +96,7 @@ class Term:
     speed: str = "1"
     other: str = "1"
     centre: float = 0.0
-    reach: float = 0.0
+    reach: float = 1.0
 
     @property
     def name(self) -> str:
@@ -131,6 +132,7 @@ TERMS = (
     Term(_FORCES, place="((1 + z)/2)^2", speed="sign(v)"),
     Term(_FORCES, place="((1 - z)/2)^2", speed="sign(v)"),
     *(Term(_FORCES, place=NEAR, speed="sign(v)", centre=0.25 * n, reach=FIRST_REACH) for n in range(-3, 4)),
+    *(Term(_FORCES, place=past, centre=0.5 * n) for past in (BEYOND, BELOW) for n in range(-1, 2)),
     *(Term(("sensor",), place=NEAR, centre=0.125 * n, reach=TRACK_REACH) for n in range(-7, 8)),
     Term(_FORCES, place="z", speed="v"),
     Term(("valve", "fluid", *_MOVED), other="p_A"),
@@ -265,9 +267,9 @@ def law_record(
     record["at_rod"] = float(reach is span.rod)
     for name in ("low", "high", "speed", "slow"):
         record[name] = getattr(reach, name)
-    near = term if term is not None and term.place == NEAR else None
-    record["centre"] = reach.position(near.centre) if near is not None else 0.0
-    record["reach"] = reach.distance(near.reach) if near is not None else 1.0
+    placed = term if term is not None and term.place in PLACED else None
+    record["centre"] = reach.position(placed.centre) if placed is not None else 0.0
+    record["reach"] = reach.distance(placed.reach) if placed is not None else 1.0
     for name in ("seconds", "opening", "pressure"):
         record[name] = getattr(span, name)
     return record

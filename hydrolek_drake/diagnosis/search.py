@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.beginning import shown_by
 from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.effort import (
     ABOVE_NOISE,
     AT_NOISE,
@@ -30,10 +31,14 @@ from hydrolek_drake.diagnosis.improving import (
     widen,
     widen_where_promised,
 )
+from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.score import scores_of
 from hydrolek_drake.diagnosis.settling import moved_on
 from hydrolek_drake.diagnosis.weighing import weigh_anew
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+
+Other = Callable[[Hypothesis], FoundLaw | None]
+"""What explains what the nominal model leaves, other than effects of the list."""
 
 MATERIAL_GAIN = 0.3
 """A third effect is also looked for if one promises to take this share of the squared residuals: far from the noise,
@@ -49,7 +54,11 @@ second one is looked for: of two effects, one alone takes much of what both do."
 
 
 def search(
-    bench: Workbench, candidates: Sequence[Candidate], found: Search, say: Callable[[str], None]
+    bench: Workbench,
+    candidates: Sequence[Candidate],
+    found: Search,
+    say: Callable[[str], None],
+    other: Other | None = None,
 ) -> None:
     """Search the effects that explain the training data.
 
@@ -58,6 +67,7 @@ def search(
         candidates: every effect that may be added.
         found: empty; filled as the search goes on, so that an interrupt loses nothing.
         say: told what is being done.
+        other: asked before a second effect is added, what else explains the data.
     """
     say("fitting the nominal model")
     baseline = fit_baseline(bench)
@@ -67,7 +77,7 @@ def search(
     say("trying what could explain the rest")
     found.scores = scores_of(bench, baseline, candidates, bench.fine)
     found.left = found.scores
-    _go_on(bench, candidates, found, [baseline], say)
+    _go_on(bench, candidates, found, [baseline], say, other)
 
 
 def search_on(
@@ -100,11 +110,17 @@ def _go_on(
     found: Search,
     beam: list[Hypothesis],
     say: Callable[[str], None],
+    other: Other | None = None,
 ) -> None:
-    """Add effects to the models of the beam as long as that pays."""
+    """Add effects to the models of the beam as long as that pays, and nothing else explains the data."""
+    material = MATERIAL_GAIN / bench.alike
     while beam:
-        while found.rounds < MOST_GROWN and _worth_going_on(found, MATERIAL_GAIN / bench.alike):
+        while found.rounds < MOST_GROWN and _worth_going_on(found, material):
             candidates, beam = _grown(bench, found, beam, candidates, say)
+            if found.rounds == 1 and other is not None and _one_does_not_do(found, material):
+                found.law = other(found.baseline)
+            if found.law is not None:
+                return
         beam = exchanged(bench, found, candidates)
 
 
@@ -149,6 +165,11 @@ def _grown(
 
 def _words(count: int) -> str:
     return {1: "one effect", 2: "two effects"}.get(count, f"{count} effects")
+
+
+def _one_does_not_do(found: Search, material: float) -> bool:
+    """Whether the models with one effect leave something: a second one is asked for, or they are far off."""
+    return found.best.fit.over_noise > EXPLAINED or _worth_going_on(found, material)
 
 
 def _worth_going_on(found: Search, material: float) -> bool:

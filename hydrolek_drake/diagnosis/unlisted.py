@@ -9,7 +9,7 @@ is fitted to each recording.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -63,27 +63,66 @@ def find_law(
         held_out: what decides.
         scales: natural scales of the joint.
     """
-    left = named.hypothesis
-    joint = bench.training[0].joint
-    pressure = bench.rig.value("supply.pressure")
-    limit = bench.rig.value(f"joints.{joint}.command.limit")
-    inputs = inputs_of(scales, pressure, limit, bench.training[0].channels[0].unit)
-    step = bench.coarsest(left, left.fit.over_noise, COARSE)
-    span = _span(bench, left, step)
-    laws = sorted(promising(bench, left, inputs, span, step), key=lambda law: -law.gain)
+    asked = Asked.of(bench, named.hypothesis, held_out, scales)
+    laws = promising(bench, asked.left, asked.inputs, asked.span, asked.step)
+    return best_of(bench, asked, laws, BETTER * named.over_noise)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a law is asked to explain.
+
+    Attributes:
+        left: the model that leaves it.
+        held_out: what decides.
+        inputs: unknown inputs of the joint.
+        span: what the laws' variables are told in.
+        step: of the integration in the first fits [s].
+    """
+
+    left: Hypothesis
+    held_out: Sequence[Experiment]
+    inputs: tuple[Input, ...]
+    span: Span
+    step: float
+
+    @classmethod
+    def of(
+        cls, bench: Workbench, left: Hypothesis, held_out: Sequence[Experiment], scales: Scales
+    ) -> "Asked":
+        """What a fitted model leaves; arguments as of `find_law`."""
+        joint = bench.training[0].joint
+        pressure = bench.rig.value("supply.pressure")
+        limit = bench.rig.value(f"joints.{joint}.command.limit")
+        inputs = inputs_of(scales, pressure, limit, bench.training[0].channels[0].unit)
+        step = bench.coarsest(left, left.fit.over_noise, COARSE)
+        return cls(left, held_out, inputs, _span(bench, left, step), step)
+
+
+def best_of(bench: Workbench, asked: Asked, laws: Sequence[Law], to_beat: float) -> FoundLaw | None:
+    """The law that explains best what is asked, fitted; None if none leaves less than is to beat.
+
+    Args:
+        bench: data and fits.
+        asked: what is to be explained.
+        laws: that may explain it.
+        to_beat: over the noise, on held-out data.
+    """
+    left, held_out, span = asked.left, asked.held_out, asked.span
+    laws = sorted(laws, key=lambda law: -law.gain)
     if not laws or laws[0].gain <= 0.0:
         return None
     chosen = worth_trying(laws)
-    begun = bench.side_by_side(lambda law: glance(bench, left, law, span, step), chosen)
+    begun = bench.side_by_side(lambda law: glance(bench, left, law, span, asked.step), chosen)
     ranked = followed(sorted(zip(chosen, begun, strict=True), key=lambda item: item[1][0]))
-    finer = min(step, FINER * bench.fine)
+    finer = min(asked.step, FINER * bench.fine)
     ended = bench.side_by_side(
         lambda item: fitted(bench, left, item[0], held_out, span, item[1][1:], finer), ranked
     )
     ended = bench.side_by_side(lambda found: grown(bench, left, found, held_out, finer), _ahead(ended))
-    ended += _other_side(bench, left, ended, held_out, inputs, finer)
+    ended += _other_side(bench, left, ended, held_out, asked.inputs, finer)
     least = min(found.held_out_over_noise for found in ended)
-    if not least < BETTER * named.over_noise:
+    if not least < to_beat:
         return None
     alike = [found for found in ended if found.held_out_over_noise <= ALIKE * least]
     in_all = [left_in_all(found.fit, found.held_out_over_noise, held_out) for found in alike]

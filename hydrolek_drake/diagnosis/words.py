@@ -129,11 +129,14 @@ def where_sentence(law: FoundLaw) -> str:
         shown(reach.low, reach.unit),
         shown(reach.high, reach.unit),
     )
+    half = shown(reach.distance(1.0), reach.unit)
     over = f" over {shown(reach.speed, reach.unit)}/s" if "v" in names.replace("sign(v)", "") else ""
     told = {
         "t/T": f"T = {shown(law.span.seconds, 's')}",
         "z": f"z is the {place}, -1 at {low} and 1 at {high}",
         "near": f"near(c, w) is 1 at a {place} of c and falls to 0 over w to either side",
+        "beyond": f"beyond(c) is 0 up to a {place} of c and grows with it, by 1 over {half}",
+        "below": f"below(c) is 0 down to a {place} of c and grows as it falls further, by 1 over {half}",
         "v": f"v is the {'rod' if rod else 'joint'}'s speed{over}",
         "p_": f"p_A and p_B are pressures over {shown(law.span.pressure, 'Pa')}",
         "x": f"x is the spool over {shown(law.span.opening, 'm')}",

@@ -20,12 +20,19 @@ NEAR = "near"
 """At one place of the movement alone: half a wave of cosine squared around `centre`, nothing beyond `reach` from it
 (a Hann window; several half their width apart add up to 1 between them)."""
 
-PLACES = ("1", "z", "z^2", "(1 - z^2)", "((1 + z)/2)^2", "((1 - z)/2)^2", NEAR)
+BEYOND, BELOW = "beyond", "below"
+"""From one place of the movement on, in proportion to the way past `centre`, over `reach`: what is pulled tight or
+touched there (a spring with a gap)."""
+
+PLACED = {NEAR: ("centre", "reach"), BEYOND: ("centre",), BELOW: ("centre",)}
+"""Factors that act at a place -> which numbers of theirs are the law's own, and not told by the movement."""
+
+PLACES = ("1", "z", "z^2", "(1 - z^2)", "((1 + z)/2)^2", "((1 - z)/2)^2", NEAR, BEYOND, BELOW)
 SPEEDS = ("1", "sign(v)", "v", "|v|", "v |v|")
 OTHERS = ("1", "p_A", "p_B", "(p_A - p_B)", "x", "|x|")
 """t: time since switching on, T: `seconds`, z: stroke or position, -1 at `low` and 1 at `high`; near:
-cos(pi/2 d)^2 with d the distance from `centre` over `reach`, and 0 beyond 1; v: speed over `speed`, sign(v): tanh(v
-over `slow`), p: pressure over `pressure`, x: spool over `opening`."""
+cos(pi/2 d)^2 with d the distance from `centre` over `reach`, and 0 beyond 1; beyond, below: max(d, 0), max(-d, 0);
+v: speed over `speed`, sign(v): tanh(v over `slow`), p: pressure over `pressure`, x: spool over `opening`."""
 
 LAW = np.dtype(
     [
@@ -83,9 +90,11 @@ def _place_factor(law: Any, seen: Seen) -> float:
     if shape == 0.0:
         return 1.0
     place = seen.stroke if law.at_rod > 0.0 else seen.q
-    if shape == 6.0:
+    if shape >= 6.0:
         off = (place - law.centre) / law.reach
-        return math.cos(0.5 * math.pi * off) ** 2 if abs(off) < 1.0 else 0.0
+        if shape == 6.0:
+            return math.cos(0.5 * math.pi * off) ** 2 if abs(off) < 1.0 else 0.0
+        return max(off, 0.0) if shape == 7.0 else max(-off, 0.0)
     z = 2.0 * (place - law.low) / (law.high - law.low) - 1.0
     if shape == 1.0:
         return z

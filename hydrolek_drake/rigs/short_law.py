@@ -21,8 +21,8 @@ from hydrolek_drake.physics.law import (
     LAW,
     LAW_RECORD,
     MOST_TERMS,
-    NEAR,
     OTHERS,
+    PLACED,
     PLACES,
     SPEEDS,
     TERM_NAMES,
@@ -55,8 +55,14 @@ _SEEN = ("joint", "rod")
 SCALES = (
     Parameter("low", "m|rad", "position at which z is -1", 0.0),
     Parameter("high", "m|rad", "position at which z is 1", 1.0),
-    Parameter("centre", "m|rad", "position near which the term acts", 0.0),
-    Parameter("reach", "m|rad", "so far from it to either side", 1.0, positive=True),
+    Parameter("centre", "m|rad", "position near which the term acts, or from which on", 0.0),
+    Parameter(
+        "reach",
+        "m|rad",
+        "so far from it to either side, or so far past it for its amplitude",
+        1.0,
+        positive=True,
+    ),
     Parameter("speed", "m/s|rad/s", "by which v is divided", 1.0, positive=True),
     Parameter("slow", "m/s|rad/s", "below which sign(v) is smoothed", 1.0, positive=True),
     Parameter("seconds", "s", "T in t/T", 1.0, positive=True),
@@ -72,10 +78,10 @@ def needed(factors: Mapping[str, str]) -> tuple[str, ...]:
     """Names of `SCALES` that the factors of a term need."""
     place, speed, other = (factors.get(name, "1") for name in ("place", "speed", "other"))
     found = {
-        "low": place not in ("1", NEAR),
-        "high": place not in ("1", NEAR),
-        "centre": place == NEAR,
-        "reach": place == NEAR,
+        "low": place != "1" and place not in PLACED,
+        "high": place != "1" and place not in PLACED,
+        "centre": place in PLACED,
+        "reach": place in PLACED,
         "speed": speed not in ("1", "sign(v)"),
         "slow": speed == "sign(v)",
         "seconds": factors.get("time", "1") != "1",

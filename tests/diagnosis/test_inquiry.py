@@ -16,9 +16,9 @@ class _Bench:
         self.resumed = True
 
 
-def _known(verdict, interrupted=False):
+def _known(verdict, interrupted=False, law=None):
     conclusion = inquiry.Conclusion(verdict, None, {}, ())
-    return inquiry.Known(_Bench(), None, (), (), conclusion, interrupted)
+    return inquiry.Known(_Bench(), SimpleNamespace(law=law), (), (), conclusion, interrupted)
 
 
 @pytest.fixture
@@ -51,6 +51,17 @@ def test_what_explains_the_data_ends_it(asked):
     known = _known("missing_physics")
     answer = asked(attempt=known)
     assert answer.known is known and answer.remarks == () and answer.law is None
+
+
+def test_a_law_that_ended_the_search_is_the_answer(asked, monkeypatch):
+    law = SimpleNamespace()
+    known = _known("unlisted_physics", law=law)
+    monkeypatch.setattr(
+        inquiry, "alone", lambda conclusion, judged, law: replace(conclusion, groups=(("l",),))
+    )
+    answer = asked(attempt=known, with_law=KeyboardInterrupt, by_more_data=KeyboardInterrupt)
+    assert answer.law is law and answer.conclusion.groups == (("l",),)
+    assert answer.remarks == ()
 
 
 def test_an_interrupted_search_does_not_tell_physics_in_no_list(asked):
