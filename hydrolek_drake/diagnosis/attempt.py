@@ -62,7 +62,7 @@ def attempt(
         candidates: every effect that may be missing.
         held_out: data that nothing is fitted to.
         say: told what is being done.
-        other: asked before a second effect is added, what else explains the data.
+        other: asked before a second and a third effect are added, what else explains the data.
 
     Raises:
         KeyboardInterrupt: before the nominal model was fitted; later ones end the search.

@@ -18,7 +18,7 @@ from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.effort import FAR
 from hydrolek_drake.diagnosis.law_choice import alone, material, with_law
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
-from hydrolek_drake.diagnosis.shaking import shaken
+from hydrolek_drake.diagnosis.other_laws import OtherLaws
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.natural_scales import Scales
@@ -79,8 +79,7 @@ class Inquiry:
         Raises:
             KeyboardInterrupt: before the nominal model was fitted.
         """
-        scales = self.scales
-        other = None if scales is None else lambda nominal: shaken(bench, nominal, held_out, scales)
+        other = None if self.scales is None else OtherLaws(bench, held_out, self.scales)
         known = attempt(bench, self.candidates, held_out, self.say, other)
         if known.interrupted:
             conclusion = known.conclusion

@@ -37,8 +37,8 @@ from hydrolek_drake.diagnosis.settling import moved_on
 from hydrolek_drake.diagnosis.weighing import weigh_anew
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
-Other = Callable[[Hypothesis], FoundLaw | None]
-"""What explains what the nominal model leaves, other than effects of the list."""
+Other = Callable[[Hypothesis, int], FoundLaw | None]
+"""What explains what the nominal model leaves, other than effects of the list, of which so many do not."""
 
 MATERIAL_GAIN = 0.3
 """A third effect is also looked for if one promises to take this share of the squared residuals: far from the noise,
@@ -67,7 +67,7 @@ def search(
         candidates: every effect that may be added.
         found: empty; filled as the search goes on, so that an interrupt loses nothing.
         say: told what is being done.
-        other: asked before a second effect is added, what else explains the data.
+        other: asked before a second and a third effect are added, what else explains the data.
     """
     say("fitting the nominal model")
     baseline = fit_baseline(bench)
@@ -117,8 +117,8 @@ def _go_on(
     while beam:
         while found.rounds < MOST_GROWN and _worth_going_on(found, material):
             candidates, beam = _grown(bench, found, beam, candidates, say)
-            if found.rounds == 1 and other is not None and _one_does_not_do(found, material):
-                found.law = other(found.baseline)
+            if other is not None and _something_else_may_do(found, material):
+                found.law = other(found.baseline, found.rounds)
             if found.law is not None:
                 return
         beam = exchanged(bench, found, candidates)
@@ -167,9 +167,11 @@ def _words(count: int) -> str:
     return {1: "one effect", 2: "two effects"}.get(count, f"{count} effects")
 
 
-def _one_does_not_do(found: Search, material: float) -> bool:
-    """Whether the models with one effect leave something: a second one is asked for, or they are far off."""
-    return found.best.fit.over_noise > EXPLAINED or _worth_going_on(found, material)
+def _something_else_may_do(found: Search, material: float) -> bool:
+    """Whether one effect leaves something or two do: a further one would be added next, or one alone is far off."""
+    if found.rounds == 1 and found.best.fit.over_noise > EXPLAINED:
+        return True
+    return found.rounds <= 2 and _worth_going_on(found, material)
 
 
 def _worth_going_on(found: Search, material: float) -> bool:

@@ -8,11 +8,13 @@ Where a periodic disturbance stands in its cycle when a recording begins is no p
 is fitted to each recording.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.effort import COARSE, NOISE_KNOWN
 from hydrolek_drake.diagnosis.gains import GAIN_NEEDED
 from hydrolek_drake.diagnosis.judged import Judged, flatter
@@ -46,7 +48,8 @@ NEAR = 1.5
 """Laws whose held-out errors lie within this factor of the best may overtake it with more terms."""
 
 BETTER = 0.8
-"""A law must take the held-out error below this share of what it was, or it is no law of this machine."""
+"""A law must take the held-out error below this share of what it was, or it is no law of this machine. So must it that
+of the training data, unless it explains them: what helps the held-out data alone may do so by chance."""
 
 Begun = tuple[Law, tuple[float, dict[str, float], np.ndarray]]
 """A law and its first fit, see `glance`."""
@@ -121,7 +124,9 @@ def best_of(bench: Workbench, asked: Asked, laws: Sequence[Law], to_beat: float)
     )
     ended = bench.side_by_side(lambda found: grown(bench, left, found, held_out, finer), _ahead(ended))
     ended += _other_side(bench, left, ended, held_out, asked.inputs, finer)
-    least = min(found.held_out_over_noise for found in ended)
+    most = max(EXPLAINED, BETTER * left.fit.over_noise)
+    ended = [found for found in ended if found.fit.over_noise < most]
+    least = min((found.held_out_over_noise for found in ended), default=math.inf)
     if not least < to_beat:
         return None
     alike = [found for found in ended if found.held_out_over_noise <= ALIKE * least]

@@ -1,4 +1,4 @@
-"""A sine at one of the inputs, before a second effect is searched for."""
+"""A sine before a second effect is searched for, and any law before a third."""
 
 from concurrent.futures import ThreadPoolExecutor
 
@@ -8,7 +8,7 @@ from hydrolek_drake.diagnosis import law_search
 from hydrolek_drake.diagnosis.attempt import attempt, predicting
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import candidates_of
-from hydrolek_drake.diagnosis.shaking import shaken
+from hydrolek_drake.diagnosis.other_laws import OtherLaws
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -27,13 +27,13 @@ def test_a_ripple_of_the_supply_ends_the_search_after_one_effect(bench, recorded
         workbench = Workbench(bench, free_parameters(bench), training, pool)
         scales = natural_scales(bench, "joint", training)
 
-        def other(nominal):
-            asked.append(nominal)
-            return shaken(workbench, nominal, held_out, scales)
+        def other(nominal, effects):
+            asked.append((nominal, effects))
+            return OtherLaws(workbench, held_out, scales)(nominal, effects)
 
         known = attempt(workbench, candidates_of(bench, "joint", scales), held_out, lambda text: None, other)
     law = known.found.law
-    assert len(asked) == 1 and not asked[0].effects
+    assert asked == [(known.found.baseline, 1)]
     assert law is not None and predicting(law)
     assert law.law.input.stage == "supply"
     assert law.amplitudes == pytest.approx([RIPPLE_PA], rel=0.05)
@@ -54,6 +54,7 @@ def test_what_does_not_repeat_itself_is_no_ripple(bench, recorded) -> None:
     with ThreadPoolExecutor(2) as pool:
         workbench = Workbench(bench, free_parameters(bench), training, pool)
         nominal = fit_baseline(workbench)
-        law = shaken(workbench, nominal, held_out, natural_scales(bench, "joint", training))
+        scales = natural_scales(bench, "joint", training)
+        law = OtherLaws(workbench, held_out, scales)(nominal, 1)
     assert nominal.fit.over_noise > 2.0
     assert law is None
