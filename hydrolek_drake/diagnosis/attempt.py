@@ -90,7 +90,7 @@ def _attempted(
     say("holding the models against data that none of them was fitted to")
     best = found.best
     weighted = tuple(weighted_by(bench, best, held_out))
-    if not interrupted:
+    if not interrupted and found.law is None:
         even(bench, found, weighted)
     if found.best is not best:
         best = found.best

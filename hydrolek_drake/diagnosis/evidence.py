@@ -209,9 +209,12 @@ def judge_given_up(bench: Workbench, found: Search, held_out: Sequence[Experimen
 
 
 def _decides(hypothesis: Hypothesis, found: Search) -> bool:
-    """Whether the error of the step could matter: only for those near the best, and if that is near the noise."""
+    """Whether the error of the step could matter: only for those near the best, and if that is near the noise.
+
+    Where a law explains what none of them does, it does not.
+    """
     best = found.best.fit
-    return best.over_noise < NEARLY and hypothesis.fit.objective < 2.0 * best.objective
+    return found.law is None and best.over_noise < NEARLY and hypothesis.fit.objective < 2.0 * best.objective
 
 
 def _contenders(first: Sequence[Judged], found: Search) -> list[Hypothesis]:
