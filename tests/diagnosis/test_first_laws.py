@@ -1,10 +1,14 @@
 """Which laws are tried, and which of the first fits go on."""
 
-import numpy as np
+from types import SimpleNamespace
 
+import numpy as np
+import pytest
+
+from hydrolek_drake.diagnosis import unlisted
 from hydrolek_drake.diagnosis.law_problem import Law
 from hydrolek_drake.diagnosis.laws import Input, Term
-from hydrolek_drake.diagnosis.unlisted import FITTED, TRIED, followed, worth_trying
+from hydrolek_drake.diagnosis.unlisted import FITTED, TRIED, Asked, best_of, followed, worth_trying
 
 CONSTANT, GROWING = Term(()), Term((), time="t/T")
 
@@ -33,3 +37,30 @@ def test_one_law_of_every_input_goes_on_where_first_fits_are_not_told_apart() ->
     rest = _begun(("load", 1090.0), ("back_a", 1095.0), ("back_a", 1096.0), ("valve", 1105.0))
     assert followed([*best, *rest]) == [*best, rest[1]]
     assert followed(best[:2]) == best[:2]
+
+
+@pytest.mark.parametrize(
+    ("left", "fitted", "ahead", "is_one"),
+    [
+        (24.0, 21.0, 1.8, False),  # of 4.4: it helps the held-out data alone
+        (24.0, 19.0, 1.8, True),
+        (1.2, 1.0, 1.8, True),  # little was left of the training data, and is explained
+        (24.0, 19.0, 3.6, False),
+    ],
+)
+def test_a_law_must_help_both_recordings(monkeypatch, left, fitted, ahead, is_one) -> None:
+    law = _law("amplifier", GROWING)
+    found = SimpleNamespace(
+        law=law, fit=SimpleNamespace(over_noise=fitted, counted=1000, unit=np.zeros(9), objective=1.0),
+        held_out_over_noise=ahead, rivals=(),
+    )  # fmt: skip
+    monkeypatch.setattr(unlisted, "glance", lambda *_: (1.0, {}, np.zeros(1)))
+    monkeypatch.setattr(unlisted, "fitted", lambda *_: found)
+    monkeypatch.setattr(unlisted, "grown", lambda bench, left, law, *_: law)
+    monkeypatch.setattr(unlisted, "_other_side", lambda *_: [])
+    monkeypatch.setattr(unlisted, "likeliest", lambda alike, *_: alike[0])
+    monkeypatch.setattr(unlisted, "_finished", lambda bench, left, law, *_: law)
+    bench = SimpleNamespace(fine=1e-3, side_by_side=lambda work, items: [work(item) for item in items])
+    nominal = SimpleNamespace(fit=SimpleNamespace(over_noise=left))
+    asked = Asked(nominal, (), (), None, 1e-3)
+    assert (best_of(bench, asked, [law], 0.8 * 4.4) is found) == is_one

@@ -1,10 +1,11 @@
 """A sine before a second effect is searched for, and any law before a third."""
 
 from concurrent.futures import ThreadPoolExecutor
+from types import SimpleNamespace
 
 import pytest
 
-from hydrolek_drake.diagnosis import law_search
+from hydrolek_drake.diagnosis import law_search, other_laws, search
 from hydrolek_drake.diagnosis.attempt import attempt, predicting
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import candidates_of
@@ -58,3 +59,47 @@ def test_what_does_not_repeat_itself_is_no_ripple(bench, recorded) -> None:
         law = OtherLaws(workbench, held_out, scales)(nominal, 1)
     assert nominal.fit.over_noise > 2.0
     assert law is None
+
+
+@pytest.mark.parametrize(
+    ("effects", "left", "ahead", "accepted"),
+    [(1, 1.05, 1.15, True), (1, 1.05, 1.25, False), (2, 1.05, 1.15, False), (2, 1.01, 1.15, True)],
+)
+def test_in_place_of_a_third_effect_a_law_must_come_to_the_noise(
+    monkeypatch, effects, left, ahead, accepted
+) -> None:
+    """A sine that nothing in the list resembles need only explain the data; any other law may resemble two effects."""
+    law = SimpleNamespace(fit=SimpleNamespace(over_noise=left), held_out_over_noise=ahead)
+    tried = []
+    monkeypatch.setattr(other_laws, "weighted_by", lambda bench, nominal, experiments: experiments)
+    monkeypatch.setattr(other_laws.Asked, "of", lambda *_: SimpleNamespace(inputs=(), span=None, step=1e-3))
+    monkeypatch.setattr(
+        other_laws, "promising", lambda *given: tried.append(given[-1]) or [SimpleNamespace(gain=900.0)]
+    )
+    monkeypatch.setattr(other_laws, "best_of", lambda *_: law)
+    nominal = SimpleNamespace(fit=SimpleNamespace(objective=2000.0, counted=1000, over_noise=1.4))
+    bench = SimpleNamespace(
+        training=(), first_s=12.0, fine=1e-3, evaluations=0, refit=lambda hypothesis, *_: hypothesis
+    )
+    bench.with_training = lambda _: bench
+    assert (OtherLaws(bench, (), None)(nominal, effects) is law) == accepted
+    assert bool(tried[0]) == (effects == 2)
+
+
+@pytest.mark.parametrize(
+    ("rounds", "left", "goes_on", "asked"),
+    [
+        (1, 1.05, True, True),
+        (1, 1.05, False, False),
+        (1, 1.2, False, True),
+        (2, 1.2, True, True),
+        (2, 1.2, False, False),
+        (3, 1.2, True, False),
+    ],
+)
+def test_something_else_is_asked_for_before_a_second_and_a_third_effect(
+    monkeypatch, rounds, left, goes_on, asked
+) -> None:
+    monkeypatch.setattr(search, "_worth_going_on", lambda *_: goes_on)
+    found = SimpleNamespace(rounds=rounds, best=SimpleNamespace(fit=SimpleNamespace(over_noise=left)))
+    assert search._something_else_may_do(found, 0.3) == asked
