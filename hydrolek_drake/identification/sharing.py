@@ -13,7 +13,8 @@ def shared_map(pool: Executor, work: Callable[[Item], Result], items: Sequence[I
 
     Idle threads of the pool take pieces; the caller does those that none has taken. So a thread of the pool may
     itself call this: where all are busy it does everything alone, and no thread ever waits for a piece that is
-    not being worked on.
+    not being worked on. Where the pool has been shut down, the caller does everything: what computes a Jacobian when it
+    is first asked for (`Fit.jacobian`) may outlive it.
 
     Args:
         pool: threads.
@@ -23,7 +24,10 @@ def shared_map(pool: Executor, work: Callable[[Item], Result], items: Sequence[I
     Raises:
         Exception: the first piece's that fails; the rest is cancelled first.
     """
-    futures = [pool.submit(work, item) for item in items[1:]]
+    try:
+        futures = [pool.submit(work, item) for item in items[1:]]
+    except RuntimeError:  # shut down
+        return [work(item) for item in items]
     try:
         results = [work(item) for item in items[:1]]
         for item, future in zip(items[1:], futures, strict=True):

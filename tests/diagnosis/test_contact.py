@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hydrolek_drake.diagnosis import law_search
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
@@ -41,9 +42,10 @@ def test_it_is_a_spring_with_a_gap(span) -> None:
 
 @pytest.mark.parametrize(("place", "size", "centre"), [(BEYOND, -150.0, 0.27), (BELOW, 120.0, -0.2)])
 def test_hoses_that_pull_tight_are_found_with_the_place_where_they_do(
-    bench, recorded, span, place, size, centre
+    bench, recorded, span, place, size, centre, monkeypatch
 ) -> None:
     """Between the places where a search begins, and told from every other moment at the load."""
+    monkeypatch.setattr(law_search, "HIGHEST_HZ", 1.0)  # a matter of time
     tight = law_records("load", span, (Term((), place=place, centre=centre),), (size,))
     kept = {"pressure_noise_Pa": 2e4, "law": lambda _: tight}
     training, held_out = (recorded(bench, bench, seed=seed, **kept) for seed in (1, 2))
@@ -54,7 +56,7 @@ def test_hoses_that_pull_tight_are_found_with_the_place_where_they_do(
         inputs = inputs_of(scales, bench.value("supply.pressure"), 10.0, "rad")
         load = [given for given in inputs if given.stage == "load"]
         laws = promising(workbench, nominal, load, span, 4.0 * workbench.fine)
-        first = sorted(laws, key=lambda law: -law.gain)[:8]
+        first = sorted((law for law in laws if law.terms), key=lambda law: -law.gain)[:3]
         tried = [(glance(workbench, nominal, law, span, 2.0 * workbench.fine), law) for law in first]
         (_, *at), law = min(tried, key=lambda each: each[0][0])
         found = fitted(workbench, nominal, law, held_out, span, at, workbench.fine)

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from hydrolek_drake.diagnosis import law_search, other_laws, search
+from hydrolek_drake.diagnosis import law_search, other_laws, search, unlisted
 from hydrolek_drake.diagnosis.attempt import attempt, predicting
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import candidates_of
@@ -14,13 +14,24 @@ from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
+
+@pytest.fixture(autouse=True)
+def few_inputs(monkeypatch) -> None:
+    """Three of the inputs, and frequencies up to 4 Hz: a matter of time."""
+    own = unlisted.inputs_of
+    kept = ("supply", "valve", "load")
+    monkeypatch.setattr(
+        unlisted, "inputs_of", lambda *given: tuple(each for each in own(*given) if each.probe in kept)
+    )
+    monkeypatch.setattr(law_search, "HIGHEST_HZ", 4.0)
+
+
 RIPPLE_PA, RIPPLE_HZ = 1.5e6, 2.3
-TRIED = ("cylinder.coulomb_friction", "fluid.entrained_air", "supply.pressure_droop")
-"""Effects that are searched, to spare time: those that make up for most of it."""
+TRIED = ("fluid.entrained_air",)
+"""What is searched, to spare time."""
 
 
-def test_a_ripple_of_the_supply_ends_the_search_after_one_effect(bench, recorded, monkeypatch) -> None:
-    monkeypatch.setattr(law_search, "HIGHEST_HZ", 4.0)  # a matter of time
+def test_a_ripple_of_the_supply_ends_the_search_after_one_effect(bench, recorded) -> None:
     kept = {"largest_V": 7.0, "unknown": ("supply", RIPPLE_PA), "unknown_Hz": RIPPLE_HZ}
     training, held_out = (recorded(bench, bench, seed=seed, **kept) for seed in (1, 2))
     asked = []

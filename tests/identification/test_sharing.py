@@ -46,3 +46,9 @@ def test_an_error_comes_out_and_the_rest_is_not_begun() -> None:
 def test_nothing_to_do() -> None:
     with ThreadPoolExecutor(1) as pool:
         assert shared_map(pool, lambda n: n, []) == []
+
+
+def test_after_its_pool_was_shut_down_the_caller_does_everything() -> None:
+    with ThreadPoolExecutor(2) as pool:
+        pass
+    assert shared_map(pool, lambda n: n * n, range(4)) == [0, 1, 4, 9]
