@@ -87,7 +87,7 @@ class Inquiry:
                 conclusion = replace(conclusion, verdict="ambiguous")
             return Answer(known, conclusion, None, (INTERRUPTED,))
         if known.found.law is not None:
-            return _by_the_law(known, known.found.law)
+            return Answer(known, alone(known.conclusion, known.judged, known.found.law), known.found.law)
         answer = Answer(known, known.conclusion)
         questions = (self._by_a_law_at_once, self._by_more_data, self._by_a_law, self._by_other_weights)
         for question in questions:
@@ -145,8 +145,3 @@ class Inquiry:
         if own is not None and own.conclusion.verdict != "unlisted_physics":
             return Answer(own, own.conclusion, None, answer.remarks)
         return Answer(alike, material(alike.conclusion, alike.judged, alike.held_out), None, told)
-
-
-def _by_the_law(known: Known, law: FoundLaw) -> Answer:
-    """A law that ended the search, beside the nominal model."""
-    return Answer(known, alone(known.conclusion, known.judged, law), law)

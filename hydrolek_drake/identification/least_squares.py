@@ -87,9 +87,8 @@ class Fit:
     def jacobian(self) -> np.ndarray:
         """Change of the residuals with each parameter's place, zero for those that were held. # (values, n)."""
         known = self.slopes() if callable(self.slopes) else self.slopes
-        object.__setattr__(
-            self, "slopes", known
-        )  # a lock, as of functools' cached property, would hold up threads
+        # without the lock of functools' cached property, which would hold up other threads
+        object.__setattr__(self, "slopes", known)
         return known
 
     @property

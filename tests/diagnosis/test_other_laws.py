@@ -28,14 +28,19 @@ def few_inputs(monkeypatch) -> None:
 RIPPLE_PA, RIPPLE_HZ = 1.5e6, 2.3
 
 
-def test_a_ripple_of_the_supply_is_the_law_that_explains_both_recordings(bench, recorded) -> None:
-    kept = {"largest_V": 7.0, "unknown": ("supply", RIPPLE_PA), "unknown_Hz": RIPPLE_HZ}
-    training, held_out = (recorded(bench, bench, seed=seed, **kept) for seed in (1, 2))
+def _asked(bench, training, held_out):
+    """The fitted nominal model, and the sine that explains both recordings."""
     with ThreadPoolExecutor(2) as pool:
         workbench = Workbench(bench, free_parameters(bench), training, pool)
         nominal = fit_baseline(workbench)
         scales = natural_scales(bench, "joint", training)
-        law = OtherLaws(workbench, held_out, scales)(nominal, 1)
+        return nominal, OtherLaws(workbench, held_out, scales)(nominal, 1)
+
+
+def test_a_ripple_of_the_supply_is_the_law_that_explains_both_recordings(bench, recorded) -> None:
+    kept = {"largest_V": 7.0, "unknown": ("supply", RIPPLE_PA), "unknown_Hz": RIPPLE_HZ}
+    training, held_out = (recorded(bench, bench, seed=seed, **kept) for seed in (1, 2))
+    nominal, law = _asked(bench, training, held_out)
     assert nominal.fit.over_noise > 2.0
     assert law is not None and predicting(law)
     assert law.law.input.stage == "supply"
@@ -52,11 +57,7 @@ def test_what_does_not_repeat_itself_is_no_ripple(bench, recorded) -> None:
         }
     )
     training, held_out = (recorded(rig, bench, seed=seed) for seed in (1, 2))
-    with ThreadPoolExecutor(2) as pool:
-        workbench = Workbench(bench, free_parameters(bench), training, pool)
-        nominal = fit_baseline(workbench)
-        scales = natural_scales(bench, "joint", training)
-        law = OtherLaws(workbench, held_out, scales)(nominal, 1)
+    nominal, law = _asked(bench, training, held_out)
     assert nominal.fit.over_noise > 2.0
     assert law is None
 
