@@ -23,15 +23,20 @@ UNPRESSED = 1e-9
 STEP_S = 2e-5
 """Half of it changes the angle by 1.2e-4 deg at most, with a play by 1.6e-3 deg: see docs/concealed_effects.md."""
 
-SIZE = 12
+SIZE = 14
 """x, x', P_A, P_B, q, q', flow felt by the supply, cylinder's side and its rate, tilt and its rate, flow felt by the
-return line."""
+return line, currents of coils that take time."""
 
 
 @njit
-def _coil(g: Any, k_f: float, i_max: float, volts: float, plunger: float, warm: float) -> float:
-    """Force of one solenoid towards its side, (4.4) and (4.5)."""
-    current = warm * (g.i_min + min(max(volts, 0.0), g.full_voltage) / g.full_voltage * (i_max - g.i_min))
+def _current(g: Any, i_max: float, volts: float, warm: float) -> float:
+    """Current that one solenoid is driven with, (4.4)."""
+    return warm * (g.i_min + min(max(volts, 0.0), g.full_voltage) / g.full_voltage * (i_max - g.i_min))
+
+
+@njit
+def _pull(g: Any, k_f: float, current: float, plunger: float) -> float:
+    """Force of one solenoid towards its side, (4.5)."""
     return k_f * (current / (1.0 + g.gap * max(plunger, 0.0))) ** 2
 
 
@@ -74,13 +79,17 @@ def _snagging(g: Any, q: float) -> float:
 @njit
 def _rates(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) -> None:
     """Rates of the state."""
-    x, xd, p_a, p_b, q, qd, felt, cq, cqd, tilt, tiltd, returned = y
+    x, xd, p_a, p_b, q, qd, felt, cq, cqd, tilt, tiltd, returned, coil_a, coil_b = y
     warm_coil = 1.0 - g.fade * (1.0 - math.exp(-t / g.fade_s))
     thin = g.warm * (1.0 - math.exp(-t / g.warm_s))
 
-    push = _coil(g, g.k_f_a, g.i_max_a, volts, x, warm_coil) - _coil(
-        g, g.k_f_b, g.i_max_b, -volts, -x, warm_coil
-    )
+    i_a, i_b = _current(g, g.i_max_a, volts, warm_coil), _current(g, g.i_max_b, -volts, warm_coil)
+    out[12] = out[13] = 0.0
+    if g.coil_s > 0.0:
+        out[12] = (i_a - coil_a) / g.coil_s
+        out[13] = (i_b - coil_b) / g.coil_s
+        i_a, i_b = coil_a, coil_b
+    push = _pull(g, g.k_f_a, i_a, x) - _pull(g, g.k_f_b, i_b, -x)
     to_a = g.area_max_a * _opened(x, g.x_o_a, g.w_a, g.shift_m) * (1.0 + thin)
     to_b = g.area_max_b * _opened(-x, g.x_o_b, g.w_b, -g.shift_m) * (1.0 + thin)
     p_s = max(g.p_s - g.droop * felt, g.p_t) + g.ripple_pa * math.sin(2.0 * math.pi * g.ripple_hz * t)
@@ -218,6 +227,7 @@ def _at_rest(machine: ArmMachine, start: float) -> np.ndarray:
         p_b = (g.a_a * p_a - moment / lever) / g.a_b
     y = np.zeros(SIZE)
     y[2], y[3], y[4], y[7], y[9] = p_a, p_b, start, side, tilt
+    y[12] = y[13] = g.i_min
     return y
 
 

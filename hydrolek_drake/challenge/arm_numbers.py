@@ -120,6 +120,7 @@ class ArmMachine(NamedTuple):
     shaking_nm: float = 0.0  # periodic moment at the joint
     shaking_hz: float = 1.0
     ramp_v_per_s: float = math.inf  # a card lets the voltage change no faster
+    coil_s: float = 0.0  # time constant of the coils' currents
     lost_s: float = 0.0  # the command is lost for so long, once in every lost_every_s
     lost_every_s: float = 1.0
     flow_force: float = 0.0  # oil closes the spool, with this share of opening times pressure drop

@@ -16,9 +16,9 @@ from hydrolek_drake.challenge.faulty_signals import lost, worn
 from hydrolek_drake.challenge.load_holding import let_out
 
 STEP_S = 2e-5
-SIZE = 12
+SIZE = 14
 """x, x', P_A, P_B, q, q', flow felt by the supply, cylinder side and its rate, tilt and its rate, flow felt by the
-return line."""
+return line, currents of coils that take time."""
 
 REACHED_M = 0.15
 """About the longest stroke that the bench reaches: friction that grows with the stroke has its given size there."""
@@ -45,10 +45,15 @@ def _snagging(g: Any, q: float) -> float:
 @njit
 def _derivative(g: Any, y: np.ndarray, volts: float, t: float, out: np.ndarray) -> None:
     """Rates of the state."""
-    x, xd, p_a, p_b, q, qd, felt, cq, cqd, tilt, tiltd, returned = y
+    x, xd, p_a, p_b, q, qd, felt, cq, cqd, tilt, tiltd, returned, coil_a, coil_b = y
     current = g.i_max * (1.0 - g.fade * (1.0 - math.exp(-t / g.fade_s)))
     i_a = current * min(max(volts, 0.0), 10.0) / 10.0
     i_b = current * min(max(-volts, 0.0), 10.0) / 10.0
+    out[12] = out[13] = 0.0
+    if g.coil_s > 0.0:
+        out[12] = (i_a - coil_a) / g.coil_s
+        out[13] = (i_b - coil_b) / g.coil_s
+        i_a, i_b = coil_a, coil_b
     force = (
         g.k_f * i_a**2 / (1.0 + g.gap * max(x, 0.0)) ** 2 - g.k_f * i_b**2 / (1.0 + g.gap * max(-x, 0.0)) ** 2
     )

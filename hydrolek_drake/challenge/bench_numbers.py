@@ -78,6 +78,7 @@ class Machine(NamedTuple):
     shaking_nm: float = 0.0  # in no list: periodic moment at the joint
     shaking_hz: float = 1.0
     ramp_v_per_s: float = math.inf  # in no list: a card lets the voltage change no faster
+    coil_s: float = 0.0  # in no list: time constant of the coils' currents
     lost_s: float = 0.0  # in no list: the command is lost for so long, once in every lost_every_s
     lost_every_s: float = 1.0
     flow_force: float = (

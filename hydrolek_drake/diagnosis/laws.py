@@ -28,6 +28,7 @@ class Input:
         symbol: how a law names it.
         unit: SI unit, "1" for a relative change.
         scale: a large amplitude for this machine.
+        lasts: whether it is a time that something takes, which is a constant and not less than none.
     """
 
     stage: str
@@ -35,6 +36,7 @@ class Input:
     symbol: str
     unit: str
     scale: float
+    lasts: bool = False
 
 
 def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str) -> tuple[Input, ...]:
@@ -52,6 +54,8 @@ def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str)
         Input("load", "load", "moment added at the joint" if moment == "N m" else "force added at the load", moment,
               0.3 * scales.load_force),
         Input("sensor", "sensor", "added to the reading", position_unit, 0.1 * scales.travel),
+        Input("command", "ramp", "time that the voltage takes for each volt", "s/V", 0.3 * scales.travel_time / limit,
+              lasts=True),
     ]  # fmt: skip
     if math.isfinite(scales.conductance):
         inputs += [
@@ -60,6 +64,14 @@ def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str)
             Input("valve", "valve", "relative change of the valve's opening", "1", 0.6),
             Input("valve", "back_a", "relative change of what flows from side A to the tank", "1", 0.6),
             Input("valve", "back_b", "relative change of what flows from side B to the tank", "1", 0.6),
+            Input(
+                "amplifier",
+                "coil_time",
+                "time constant of the coils' currents, added",
+                "s",
+                0.3 * scales.travel_time,
+                lasts=True,
+            ),
             Input("cylinder", "cylinder", "force added at the rod", "N", 0.3 * scales.force),
             Input(
                 "fluid", "capacity_a", "volume taken per pressure on side A, added", "m^3/Pa", scales.capacity
@@ -97,6 +109,10 @@ class Term:
     other: str = "1"
     centre: float = 0.0
     reach: float = 1.0
+
+    def meant_for(self, given: Input) -> bool:
+        """Whether it has a physical meaning at an input."""
+        return given.stage in self.stages and (not given.lasts or self.name == CONSTANT)
 
     @property
     def name(self) -> str:

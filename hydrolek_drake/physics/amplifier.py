@@ -1,6 +1,7 @@
 """Proportional amplifiers A and B: voltage to coil current, equation (4.4)."""
 
-from typing import Any
+import math
+from typing import Any, NamedTuple
 
 from numba import njit
 
@@ -18,6 +19,13 @@ STAGE = Stage(
             Parameter("max_current_b", "A", "current of coil B at full voltage, I_maxB in (4.4)", lowest=0.0),
             Parameter(
                 "full_voltage", "V", "voltage of full current, 10 V in (4.4)", lowest=0.0, positive=True
+            ),
+            Parameter(
+                "coil_time",
+                "s",
+                "time constant of a coil's current, inductance over resistance; 0 for none",
+                neutral=0.0,
+                lowest=0.0,
             ),
         ),
         "none": (),
@@ -47,3 +55,37 @@ def coil_currents(voltage: float, time: float, joint: Any) -> tuple[float, float
         return gain * driven, gain * p.min_current
     driven = p.min_current + share * (p.max_current_b - p.min_current)
     return gain * p.min_current, gain * driven
+
+
+class Currents(NamedTuple):
+    """Of the coils [A]; where there is no amplifier the voltage itself [V]."""
+
+    a: float
+    b: float
+
+
+@njit
+def following(
+    before: Currents, voltage: float, time: float, h: float, more: float, joint: Any
+) -> tuple[Currents, Currents]:
+    """Currents after `h` seconds of a held voltage, and their means over them.
+
+    A coil's current follows what drives it, (4.4), as a resistance and an inductance let it: di/dt = (i_driven - i)/T.
+
+    Args:
+        before: currents so far.
+        voltage: at the amplifier [V].
+        time: since the machine was switched on [s].
+        h: [s], more than none.
+        more: added to the rig's time constant [s].
+        joint: parameter record.
+    """
+    a, b = coil_currents(voltage, time, joint)
+    p = joint.amplifier
+    if p.variant != PROPORTIONAL or p.coil_time + more <= 0.0:
+        return Currents(a, b), Currents(a, b)
+    constant = p.coil_time + more
+    left = math.exp(-h / constant)
+    mean = constant / h * (1.0 - left)
+    off_a, off_b = before.a - a, before.b - b
+    return Currents(a + off_a * left, b + off_b * left), Currents(a + off_a * mean, b + off_b * mean)

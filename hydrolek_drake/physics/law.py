@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-from hydrolek_drake.physics.probes import AMPLIFIER, COMMAND, CYLINDER, LOAD, Probe, added
+from hydrolek_drake.physics.probes import AMPLIFIER, COIL_TIME, COMMAND, CYLINDER, LOAD, RAMP, Probe, added
 
 TIMES = ("1", "t/T", "(t/T)^2")
 NEAR = "near"
@@ -73,6 +73,12 @@ def law_of(joint: np.ndarray) -> np.ndarray | None:
     terms = np.ascontiguousarray(joint["law"]).view(LAW)
     there = (terms["sine"] != 0.0) | (terms["cosine"] != 0.0)
     return terms[there] if there.any() else None
+
+
+def any_gives(joints: np.ndarray, probe: int) -> bool:
+    """Whether the law of any of some joints' records gives an input, told by its place in `probes.PROBES`."""
+    laws = (law_of(joints[i : i + 1]) for i in range(len(joints)))
+    return any(law is not None and bool(np.any(law["probe"] == probe)) for law in laws)
 
 
 @njit
@@ -194,6 +200,7 @@ def before_the_spool(laws: np.ndarray | None) -> bool:
     if laws is None:
         return False
     for row in range(len(laws)):
-        if laws[row].probe == COMMAND or laws[row].probe == AMPLIFIER:
+        probe = laws[row].probe
+        if probe == COMMAND or probe == AMPLIFIER or probe == RAMP or probe == COIL_TIME:
             return True
     return False

@@ -25,12 +25,13 @@ class Probe(NamedTuple):
     capacity_b: float  # the same on side B
     back_a: float  # relative change of what the way from side A to the tank conducts
     back_b: float  # the same from side B
+    ramp: float  # added to the time that the voltage takes for each volt [s/V]
+    coil_time: float  # added to the time constant of the coils' currents [s]
 
 
 PROBES = Probe._fields
-COMMAND, AMPLIFIER, VALVE, SUPPLY, CYLINDER, LOAD, SENSOR, FLOW, CAPACITY_A, CAPACITY_B, BACK_A, BACK_B = (
-    range(len(PROBES))
-)
+COMMAND, AMPLIFIER, VALVE, SUPPLY, CYLINDER, LOAD, SENSOR, FLOW = range(8)
+CAPACITY_A, CAPACITY_B, BACK_A, BACK_B, RAMP, COIL_TIME = range(8, len(PROBES))
 """Their places."""
 
 NO_PROBE = np.zeros((0, len(PROBES)))
@@ -39,7 +40,7 @@ NO_PROBE = np.zeros((0, len(PROBES)))
 @njit
 def no_probe() -> Probe:
     """Nothing from outside."""
-    return Probe(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return Probe(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit
@@ -64,6 +65,8 @@ def probe_at(time: float, begin: float, spacing: float, values: np.ndarray) -> P
         a[9] + f * (b[9] - a[9]),
         a[10] + f * (b[10] - a[10]),
         a[11] + f * (b[11] - a[11]),
+        a[12] + f * (b[12] - a[12]),
+        a[13] + f * (b[13] - a[13]),
     )
 
 
@@ -83,4 +86,6 @@ def added(probe: Probe, at: float, value: float) -> Probe:
         probe.capacity_b + (value if at == 9.0 else 0.0),
         probe.back_a + (value if at == 10.0 else 0.0),
         probe.back_b + (value if at == 11.0 else 0.0),
+        probe.ramp + (value if at == 12.0 else 0.0),
+        probe.coil_time + (value if at == 13.0 else 0.0),
     )

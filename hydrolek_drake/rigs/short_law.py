@@ -45,6 +45,8 @@ UNITS = {
     "capacity_b": "m^3/Pa",
     "back_a": "1",
     "back_b": "1",
+    "ramp": "s/V",
+    "coil_time": "s",
 }
 """Inputs that a law may give -> their units; of a vane and of a sliding load the second one."""
 

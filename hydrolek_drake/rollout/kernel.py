@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 
 from hydrolek_drake.physics import amplifier, command, hooks, load, sensor, solenoid
+from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.law import before_the_spool
 from hydrolek_drake.physics.probes import Probe, probe_at
 from hydrolek_drake.physics.solenoid import GAMMA
@@ -134,15 +135,16 @@ def integrate(
 
     Args:
         joints: parameter record, shape (1,).
-        state: x, spool velocity, then `State`, what the sensor's play reads, and the time since switching on [s] at
-            the first of `times`; shape (13,); holds the final state afterwards.
+        state: x, spool velocity, then `State`, what the sensor's play reads, the time since switching on [s] at
+            the first of `times`, the voltage behind the ramp [V], and the coils' `Currents`; shape (16,); holds the
+            final state afterwards.
         command_times: when the command changes [s], shape (m,).
         command_values: held from then on [V], shape (m,); neutral before the first one has arrived.
         times: when to write [s], shape (n,); the integration starts at the first.
         longest_step: [s].
         spool_steps: spool steps within one step.
         probe_spacing: of the samples of the probes, which begin at the first of `times` [s].
-        probe_values: `PROBES` over time, shape (k, 12); no rows for none.
+        probe_values: `PROBES` over time, shape (k, 14); no rows for none.
         pull_time: with this time constant reading and pressures are pulled to what was measured, as in an
             observer [s]; zero or less for a free rollout.
         measured: `PULLED` at `times`, NaN where there is no value, shape (n, 3); no rows for a free rollout.
@@ -165,6 +167,8 @@ def integrate(
     held = -1  # nothing has arrived yet
     play = state[11]
     on = begin - state[12]
+    behind = state[13]
+    currents = Currents(state[14], state[15])
     t = begin
     for row in range(len(times)):
         target = times[row]
@@ -187,18 +191,22 @@ def integrate(
                 for i in range(steps):
                     time = t + i * h - on
                     gain = 0.0
+                    now = probe
                     if early:
                         now = felt_at(probe, law, time, s, x, joint)
                         gain = now.amplifier - probe.amplifier
                         voltage = command.drive_voltage(arrived + now.command, joint)
-                    drive_a, drive_b = amplifier.coil_currents(voltage, time + 0.5 * h, joint)
+                    behind, drive = command.ramped(behind, voltage, h, now.ramp, joint)
+                    currents, driving = amplifier.following(
+                        currents, drive, time + 0.5 * h, h, now.coil_time, joint
+                    )
                     probe_next = probe_at(t + (i + 1) * h, begin, probe_spacing, probe_values)
                     gain += 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
                     x_next, xd = solenoid.advance(
-                        x, xd, gain * drive_a, gain * drive_b, h, spool_steps, joint
+                        x, xd, gain * driving.a, gain * driving.b, h, spool_steps, joint
                     )
                     inertia = _inertia_at(time, rod, joint)
-                    s = _step(s, x, x_next, voltage, time, h, inertia, probe, probe_next, law, near, joint)
+                    s = _step(s, x, x_next, drive, time, h, inertia, probe, probe_next, law, near, joint)
                     x = x_next
                     probe = probe_next
                     play = sensor.played(play, s.q - s.tilt, joint)
@@ -209,7 +217,8 @@ def integrate(
         now = felt_at(probe, law, t - on, s, x, joint)
         voltage = command.drive_voltage(_arrived(command_values, held, joint) + now.command, joint)
         inertia = _inertia_at(t - on, rod, joint)
-        _, _, p_supply, force = rates(s, x, voltage, t - on, inertia, probe, law, near, joint)
+        driven = behind if joint.command.ramp + now.ramp > 0.0 else voltage
+        _, _, p_supply, force = rates(s, x, driven, t - on, inertia, probe, law, near, joint)
         out[row, 0] = sensor.reading(play, t - on, joint) + now.sensor
         out[row, 1] = s.q
         out[row, 2] = s.w
@@ -230,4 +239,5 @@ def integrate(
     state[2], state[3], state[4], state[5], state[6] = s.p_a, s.p_b, s.q, s.w, s.flow
     state[7], state[8], state[9], state[10] = s.tilt, s.tilt_rate, s.lead_q, s.lead_w
     state[11], state[12] = play, times[-1] - on
+    state[13], state[14], state[15] = behind, currents.a, currents.b
     return len(times)

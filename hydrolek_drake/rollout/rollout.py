@@ -7,14 +7,14 @@ import numpy as np
 
 from hydrolek_drake.compiled import read_only
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.physics import cylinder, hooks, load, sensor
+from hydrolek_drake.physics import amplifier, cylinder, hooks, load, sensor
 from hydrolek_drake.physics.law import law_of
 from hydrolek_drake.physics.probes import NO_PROBE
 from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, flat, position_of
 from hydrolek_drake.rollout import kernel
 from hydrolek_drake.rollout.one_point import stroke_and_lever
 
-STATE_SIZE = 2 + len(kernel.State._fields) + 2
+STATE_SIZE = 2 + len(kernel.State._fields) + 3 + len(amplifier.Currents._fields)
 
 START_STEPS = 8
 """Steps of the search for a start: its error falls by the share that lean and bow change with position, at most a
@@ -67,6 +67,7 @@ def rest_state(joint: np.ndarray, position: float | None = None, time: float = 0
     state = np.zeros(STATE_SIZE)
     state[4] = state[11] = q
     state[12] = time
+    state[14], state[15] = amplifier.coil_currents(0.0, time, record)
     if record["cylinder"]["variant"] == cylinder.ELECTRIC_MOTOR:
         state[9] = q
         return state
@@ -146,7 +147,7 @@ def roll_out(
         longest_step: upper bound of the integration step [s].
         spool_steps: steps of the spool within one step of the rest.
         probes: inputs from outside the model, `probes.PROBES`: spacing of their samples [s], and the samples,
-            shape (k, 12), the first at the first of `times`; None for none.
+            shape (k, 14), the first at the first of `times`; None for none.
         pull: reading and pressures are pulled to what was measured, as in an observer: time constant [s], and
             `kernel.PULLED` at `times`, NaN where there is no value, shape (n, 3); None for a free rollout.
         law: how inputs from outside follow from the state, rows of `law.LAW`, shape (k,), besides the law that the

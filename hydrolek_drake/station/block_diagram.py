@@ -28,6 +28,7 @@ _COLOURS = {
     "operator_computer": _COMPUTER,
     "field_point": _COMPUTER,
     "transport_delay": _COMPUTER,
+    "command_ramp": _ELECTRIC,
     "proportional_amplifier": _ELECTRIC,
     "solenoid_spool": _ELECTRIC,
     "electric_motor": _ELECTRIC,

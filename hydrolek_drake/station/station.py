@@ -13,11 +13,13 @@ from pydrake.systems.primitives import Adder, Gain, LogVectorOutput, VectorLogSi
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import cylinder, linkage
-from hydrolek_drake.physics.law import law_of
+from hydrolek_drake.physics.law import any_gives, law_of
+from hydrolek_drake.physics.probes import RAMP
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.station.chain import read_chain, read_mounts
 from hydrolek_drake.station.plant import Payload, RigPlant, add_plant
 from hydrolek_drake.systems.actuator import Actuator
+from hydrolek_drake.systems.command_ramp import CommandRamp
 from hydrolek_drake.systems.electric_motor import ElectricMotor
 from hydrolek_drake.systems.four_way_valve import FourWayValve
 from hydrolek_drake.systems.linkage import Linkage
@@ -137,7 +139,7 @@ def make_station(
     electric = joints["cylinder"]["variant"] == cylinder.ELECTRIC_MOTOR
     if electric.all():
         motor = add(ElectricMotor(joints))
-        builder.Connect(delay.voltage, motor.voltage)
+        builder.Connect(_behind_the_ramp(builder, add, joints, sizes, delay.voltage), motor.voltage)
         builder.Connect(motor.force, parts.linkage.force)
     elif electric.any():
         raise InputError(f"rig {rig.name}: electric and hydraulic joints cannot share one rig")
@@ -156,6 +158,17 @@ def make_station(
     diagram = builder.Build()
     diagram.set_name(rig.name)
     return Station(diagram, rig, joints, body.plant, body.payloads, logs, systems, sizes)
+
+
+def _behind_the_ramp(
+    builder: DiagramBuilder, add: _Add, joints: np.ndarray, sizes: StepSizes, voltage: OutputPort
+) -> OutputPort:
+    """The voltage itself where no joint has a ramp."""
+    if not np.any(joints["command"]["ramp"] > 0.0) and not any_gives(joints, RAMP):
+        return voltage
+    ramp = add(CommandRamp(joints, sizes.step))
+    builder.Connect(voltage, ramp.voltage)
+    return ramp.ramped
 
 
 @dataclass(frozen=True)
@@ -260,10 +273,10 @@ def _wire_hydraulics(
     parts: _Mechanics,
 ) -> None:
     ahead = sizes.step if sizes.integrator == "symplectic_euler" and sizes.plant_step == 0.0 else 0.0
-    amplifier = add(ProportionalAmplifier(joints))
+    amplifier = add(ProportionalAmplifier(joints, sizes.step))
     spool = add(SolenoidSpool(joints, sizes.step, round(rig.value("integration.spool_steps"))))
     valve, supply, actuator = add(FourWayValve(joints)), add(Supply(joints)), add(Actuator(joints, ahead))
-    builder.Connect(delay.arriving, amplifier.voltage)
+    builder.Connect(_behind_the_ramp(builder, add, joints, sizes, delay.arriving), amplifier.voltage)
     builder.Connect(amplifier.current, spool.current)
     builder.Connect(spool.position, valve.spool)
     builder.Connect(actuator.pressure, valve.pressure)

@@ -8,10 +8,11 @@ import pytest
 
 from hydrolek_drake.challenge.bench_machine import play
 from hydrolek_drake.challenge.bench_numbers import Machine, nominal_machine
-from hydrolek_drake.challenge.driving import bench_driving
+from hydrolek_drake.challenge.driving import bench_driving, random_series
 from hydrolek_drake.challenge.listed import LISTED, with_effects
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.rollout import rest_state, roll_out
 
 DATA = Path(__file__).parents[1] / "data" / "bench"
 LABELS = {label["id"]: label for label in json.loads((DATA / "practice_labels.json").read_text())}
@@ -36,3 +37,31 @@ def test_it_reproduces_the_practice_recordings_to_the_noise(pair: str) -> None:
     left = np.degrees(np.asarray(recording.signal("joint.angle"))[:SAMPLES] - done.reading)
     # the deviation of 1000 samples of noise is known to 2.2 %; three times that
     assert np.sqrt(np.mean(left**2)) < 1.07 * NOISE_DEG
+
+
+@pytest.mark.parametrize(
+    ("own", "path", "value"),
+    [({"ramp_v_per_s": 60.0}, "command.ramp", 1 / 60.0), ({"coil_s": 0.03}, "amplifier.coil_time", 0.03)],
+)
+def test_a_slow_command_is_that_of_the_diagnosing_rollout(
+    own: dict[str, float], path: str, value: float
+) -> None:
+    """Two formulations: within Runge-Kutta of 20 us there, in closed form over a step here."""
+    rig = load_rig("joint_bench", {})
+    driving = bench_driving()
+    command = random_series(driving, closed=False, seconds=10.0, rng=np.random.default_rng(3))
+    times = 0.01 * np.arange(command.size)
+    concealed = play(nominal_machine(rig)._replace(**own), driving, command).reading
+    plain, slow = (
+        roll_out(
+            rig.with_values(values).records(),
+            times,
+            command,
+            times,
+            state=rest_state(rig.records(), np.radians(driving.start_deg)),
+            longest_step=1e-4,
+        ).signals.reading
+        for values in ({}, {path: value})
+    )
+    assert np.degrees(np.abs(slow - plain)).max() > 0.5
+    assert np.degrees(np.abs(slow - concealed)).max() < 0.02

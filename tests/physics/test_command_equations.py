@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from hydrolek_drake.physics.command import CALIBRATED, calibrated_voltages, drive_voltage, transport_delay
+from hydrolek_drake.physics.command import (
+    CALIBRATED,
+    calibrated_voltages,
+    drive_voltage,
+    ramped,
+    transport_delay,
+)
 from hydrolek_drake.physics.records import JOINT
 from hydrolek_drake.systems.operator_computer import channel_places
 
@@ -59,3 +65,29 @@ def test_channels_are_counted_through_the_modules_as_table_3_1_does():
     towards_a, towards_b = channel_places(records, first_module=3)
     assert towards_a.tolist() == [2, 8, 21]
     assert towards_b.tolist() == [3, 9, 20]
+
+
+@pytest.mark.parametrize(
+    ("h", "reached", "mean"),
+    [
+        (0.1, -3.0 + 5.0, -3.0 + 2.5),  # on its way: 50 V/s
+        (0.16, 5.0, 1.0),  # just there
+        (0.4, 5.0, (0.16 * 1.0 + 0.24 * 5.0) / 0.4),
+    ],
+)
+def test_a_ramp_takes_its_time_for_every_volt(bench_joint, h, reached, mean):
+    joint = bench_joint({"command.ramp": 0.015})
+    assert_allclose(ramped(-3.0, 5.0, h, 0.005, joint), (reached, mean), rtol=1e-13)
+
+
+def test_a_ramp_in_many_steps_is_the_ramp_in_one(bench_joint):
+    joint = bench_joint({"command.ramp": 0.02})
+    u, means = 4.0, []
+    for _ in range(7):
+        u, mean = ramped(u, -6.0, 0.03, 0.0, joint)
+        means.append(mean)
+    assert_allclose((u, np.mean(means)), ramped(4.0, -6.0, 0.21, 0.0, joint), rtol=1e-13)
+
+
+def test_without_a_ramp_the_voltage_is_there_at_once(bench_joint):
+    assert ramped(-3.0, 5.0, 1e-4, 0.0, bench_joint()) == (5.0, 5.0)

@@ -93,3 +93,39 @@ def test_a_way_back_that_is_shut_holds_the_rod(probe: str, volts: float) -> None
     assert np.ptp(shut.position) < 0.1 * np.ptp(free.position)
     other = "back_b" if probe == "back_a" else "back_a"
     assert _run(probe=other, size=-1.0, command=away).position == pytest.approx(free.position, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("probe", "path", "size"), [("ramp", "command.ramp", 0.02), ("coil_time", "amplifier.coil_time", 0.04)]
+)
+def test_a_slow_command_s_probe_is_the_rig_s_own_number(probe: str, path: str, size: float) -> None:
+    of_the_rig = _run({path: size})
+    assert _run(probe=probe, size=size).position == pytest.approx(of_the_rig.position, abs=1e-12)
+    assert np.abs(of_the_rig.position - _run().position).max() > np.radians(0.5)
+
+
+def test_a_ramp_is_the_command_ramped_by_hand() -> None:
+    """Held for a millisecond each, and half of one late in the mean."""
+    fine = np.arange(0.0, 4.0, 1e-3)
+    ramped = np.zeros(fine.size)
+    wanted = COMMAND[np.minimum((fine / 0.01 + 1e-9).astype(int), COMMAND.size - 1)]
+    for n in range(1, fine.size):
+        ramped[n] = np.clip(wanted[n], ramped[n - 1] - 0.05, ramped[n - 1] + 0.05)
+    records = load_rig("joint_bench", {}).records()
+    by_hand = roll_out(records, fine, ramped, TIMES, longest_step=STEP).signals
+    by_the_card, at_once = _run({"command.ramp": 0.02}), _run()
+    apart = np.abs(by_the_card.position - at_once.position).max()
+    assert np.abs(by_the_card.position - by_hand.position).max() < 0.02 * apart
+
+
+def test_a_rollout_goes_on_within_a_ramp_and_a_rising_current() -> None:
+    rig = load_rig("joint_bench", {}).with_values({"command.ramp": 0.05, "amplifier.coil_time": 0.1})
+    whole = roll_out(rig.records(), TIMES, COMMAND, TIMES, longest_step=STEP).signals
+    cut = 60  # a tenth of a second after the command's jump: nothing has settled
+    first = roll_out(rig.records(), TIMES, COMMAND, TIMES[: cut + 1], longest_step=STEP)
+    then = roll_out(rig.records(), TIMES, COMMAND, TIMES[cut:], longest_step=STEP, state=first.state)
+    assert then.signals.position == pytest.approx(whole.position[cut:], abs=1e-12)
+    cold = first.state.copy()
+    cold[13:] = 0.0
+    other = roll_out(rig.records(), TIMES, COMMAND, TIMES[cut:], longest_step=STEP, state=cold)
+    assert np.abs(other.signals.position - whole.position[cut:]).max() > np.radians(0.05)

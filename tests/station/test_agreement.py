@@ -8,6 +8,7 @@ import pytest
 
 from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import StepSizes, make_station
 
@@ -31,6 +32,26 @@ def test_every_effect_agrees_with_its_rollout(number, effect):
     assert rig.effects_on(joint.removeprefix("hydrolek_")) == (effect,)
     [(_, largest)] = agreement.compare(rig, 3.0, STEP, number)
     assert largest <= REQUIRED_DEG
+
+
+@pytest.mark.parametrize(
+    ("joint", "slow"),
+    [
+        ("hydrolek_right_j3", {"command.ramp": 0.03}),
+        ("hydrolek_left_j2", {"amplifier.coil_time": 0.04}),
+        ("emps", {"command.ramp": 0.05}),  # a motor takes the voltage itself
+    ],
+)
+def test_a_command_that_takes_time_agrees_with_its_rollout(joint, slow):
+    rig = load_rig(joint)
+    [(_, largest)] = agreement.compare(rig.with_values(slow), 3.0, STEP, 4)
+    assert largest <= REQUIRED_DEG
+    times, volts = agreement.random_voltage(3.0, np.random.default_rng(4))
+    at_once, late = (
+        roll_out(each.records(), times, volts, times, longest_step=STEP).signals.reading
+        for each in (rig, rig.with_values(slow))
+    )
+    assert np.degrees(np.abs(late - at_once)).max() > 10.0 * REQUIRED_DEG
 
 
 def test_the_difference_shrinks_with_the_step():

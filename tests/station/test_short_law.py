@@ -30,6 +30,8 @@ LAWS = {
     "capacity_b": (Term((), other="p_B"), 4e-13),
     "back_a": (Term((), other="p_B"), -0.5),
     "back_b": (Term((), speed="v"), -0.4),
+    "ramp": (Term(()), 0.02),
+    "coil_time": (Term(()), 0.03),
 }
 
 

@@ -165,7 +165,7 @@ def test_divergence_is_told_with_a_remedy():
 # --- ports, feedthrough, interruption ------------------------------------------------------------------------
 
 N = 14
-OUTSIDE = {"outside": 12 * N}  # what a law for physics in no list adds; open where a rig has none
+OUTSIDE = {"outside": 14 * N}  # what a law for physics in no list adds; open where a rig has none
 ENDS = 18  # ten linear cylinders push two links each, but those of joint 1 stand on the fixed base
 PORTS = {
     "operator_computer": ({"signal_commanded": N}, {"channel_voltage": 32}),

@@ -88,7 +88,7 @@ def test_a_sample_arrives_in_the_step_in_which_its_delay_ends(delay, step_of_arr
 
 def test_proportional_amplifier_is_equation_4_4():
     volts = np.linspace(-11.0, 11.0, N)
-    currents = evaluate(ProportionalAmplifier(JOINTS), "coil_current", voltage_delayed=volts)
+    currents = evaluate(ProportionalAmplifier(JOINTS, 1e-3), "coil_current", voltage_delayed=volts)
     expected = np.array([amplifier.coil_currents(v, 0.0, j) for v, j in zip(volts, JOINTS, strict=True)])
     np.testing.assert_array_equal(currents, expected.T.ravel())
 
@@ -216,7 +216,7 @@ def test_noise_and_resolution_come_from_the_rig_and_the_generator():
         (TransportDelay(JOINTS, 1e-3), {("outside", "voltage_arriving")}),
         (SolenoidSpool(JOINTS, 1e-3, 1), set()),
         (
-            ProportionalAmplifier(JOINTS),
+            ProportionalAmplifier(JOINTS, 1e-3),
             {("voltage_delayed", "coil_current"), ("outside", "coil_current")},
         ),
         (
