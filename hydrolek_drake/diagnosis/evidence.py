@@ -20,7 +20,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.effort import AT_NOISE, NEAR, NEARLY, POLISH
+from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, AT_NOISE, NEAR, NEARLY, POLISH
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import GAIN_NEEDED, cost_of, gain_needed
 from hydrolek_drake.diagnosis.judged import SMALL, Judged, dispersion, with_probabilities
@@ -91,10 +91,31 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
     latest = {h.ids: h for h in refitted}
     # the finer step may have led one of two nested models to another place
     latest |= {h.ids: h for h in slightly_worse(bench, refitted, latest, slight=0.0)}
-    refitted = list(latest.values())
-    paying = [h for h in refitted if pays(h, refitted)]
-    judged = bench.side_by_side(lambda h: _predicted(bench, h, held_out, counted, finer), paying)
-    return with_probabilities([j for j in judged if predicts(j, judged)])
+
+    def weighed(fits: Sequence[Hypothesis]) -> list[Judged]:
+        paying = [h for h in fits if pays(h, fits)]
+        judged = bench.side_by_side(lambda h: _predicted(bench, h, held_out, counted, finer), paying)
+        return with_probabilities([j for j in judged if predicts(j, judged)])
+
+    judged = weighed(list(latest.values()))
+    if _may_lie_elsewhere(judged[0]):
+        lower = _in_their_valleys(bench, list(latest.values()))
+        if lower:
+            judged = weighed(list((latest | lower).values()))
+    return judged
+
+
+def _may_lie_elsewhere(best: Judged) -> bool:
+    """Whether the best model is near the noise where it was fitted, and leaves more of what it was not fitted to."""
+    return best.hypothesis.fit.over_noise < NEAR and best.over_noise > ABOVE_NOISE
+
+
+def _in_their_valleys(bench: Workbench, hypotheses: Sequence[Hypothesis]) -> dict[frozenset[str], Hypothesis]:
+    """Those near the best that lie lower elsewhere in the valleys that the data leave (`valleys.along_valleys`)."""
+    least = min(cost_of(h) for h in hypotheses)
+    near = [h for h in hypotheses if cost_of(h) < least + NEAR_BEST]
+    gone = bench.side_by_side(bench.along_valleys, near)
+    return {h.ids: h for h, before in zip(gone, near, strict=True) if h.fit is not before.fit}
 
 
 def _finished(bench: Workbench, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:

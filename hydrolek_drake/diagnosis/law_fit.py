@@ -14,6 +14,7 @@ from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit, fit_from, fit_from_afar
 from hydrolek_drake.identification.parameter_set import ParameterSet
+from hydrolek_drake.identification.valleys import along_valleys
 
 STEPS, GLANCE = 15, 4
 """Trust-region steps of a fit, and of a first one that tells which law is worth it."""
@@ -62,6 +63,7 @@ def fitted(
     begin: tuple[dict[str, float], np.ndarray],
     step: float,
     most_steps: int = STEPS,
+    valleys: bool = False,
 ) -> FoundLaw:
     """Fit a law together with the parameters of a model, from where a glance ended.
 
@@ -77,6 +79,7 @@ def fitted(
         begin: nominal parameters and the law's values (SI).
         step: of the integration [s].
         most_steps: of the trust region; 1 leaves everything where it begins.
+        valleys: go on from lower places along what the data tell least (`valleys.along_valleys`).
     """
     bench.alive()
     parameters = bench.parameters(left.effects)
@@ -91,6 +94,8 @@ def fitted(
         problem = LawProblem(parameters, bench.training, step, law, span)
         start = problem.start(fit.unit[:count], reached)
         fit = fit_from(problem, start, most_steps=most_steps, tolerance=1e-4, stop=bench.interrupted)
+    if valleys:
+        fit = along_valleys(problem, fit, 1e-4, bench.interrupted)
     values = problem.law_values(fit.unit)
     without = bench.training[0].simulate(parameters.records(fit.unit[:count]), step).signals
     difference = problem.signals(fit.unit)[0].reading - without.reading

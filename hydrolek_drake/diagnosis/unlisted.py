@@ -139,12 +139,14 @@ def _finished(
     bench: Workbench, left: Hypothesis, law: FoundLaw, held_out: Sequence[Experiment], step: float
 ) -> FoundLaw:
     """The law with the rig's own step: as it was fitted with a coarser one, or fitted on if it then predicts better."""
-    if step <= bench.fine:
-        return law
-    begin = (law.parameters, law.values)
-    as_it_is, finer = (
-        fitted(bench, left, law.law, held_out, law.span, begin, bench.fine, steps) for steps in (1, STEPS)
-    )
+
+    def again(steps: int) -> FoundLaw:
+        begin = (law.parameters, law.values)
+        return fitted(
+            bench, left, law.law, held_out, law.span, begin, bench.fine, steps, valleys=steps == STEPS
+        )
+
+    as_it_is, finer = again(1) if step > bench.fine else law, again(STEPS)
     better = finer.held_out_over_noise < as_it_is.held_out_over_noise
     return replace(finer if better else as_it_is, rivals=law.rivals)
 

@@ -4,7 +4,7 @@ import math
 import threading
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit, fit_from
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.identification.problem import DIFFERENCE, Problem
+from hydrolek_drake.identification.valleys import along_valleys
 from hydrolek_drake.physics import supply
 from hydrolek_drake.rigs import Rig
 
@@ -235,6 +236,15 @@ class Workbench:
     ) -> Hypothesis:
         """Go on from where a fit ended, usually with a finer step."""
         return self.fit(hypothesis.effects, hypothesis.values, step, most_steps, tolerance, alone=alone)
+
+    def along_valleys(self, hypothesis: Hypothesis, tolerance: float = 1e-4) -> Hypothesis:
+        """Go on from lower places along what the data tell least, if there are any (`valleys.along_valleys`)."""
+        self.alive()
+        problem = self.problem(hypothesis.effects, hypothesis.step)
+        moving = self.movable(hypothesis.effects, problem.parameters)
+        fit = along_valleys(problem, hypothesis.fit, tolerance, self.interrupted, moving)
+        self.evaluations += problem.evaluations
+        return replace(hypothesis, values=problem.parameters.values(fit.unit), fit=fit)
 
     def residuals(self, hypothesis: Hypothesis, experiments: Sequence[Experiment], step: float) -> np.ndarray:
         """Residuals of a fitted model on any recordings, in units of the noise. # (values,)."""
