@@ -40,7 +40,7 @@ def test_the_lowest_hollow_is_found_from_another_one() -> None:
     gone = along_valleys(land, stuck, 1e-6)
     assert stuck.objective > 3.0 * GAIN
     assert gone.objective < GAIN
-    assert gone.unit[:2] == pytest.approx([LOWEST, LOWEST], abs=0.01)
+    assert gone.unit[:2] == pytest.approx([LOWEST, LOWEST], abs=1.0 / STEEP)
 
 
 def test_the_lowest_place_stays() -> None:
