@@ -6,7 +6,7 @@ hollow.
 
 from collections.abc import Sequence
 
-from hydrolek_drake.diagnosis.effort import AT_NOISE, COARSE, FALLING, LOOK, POLISH
+from hydrolek_drake.diagnosis.effort import AT_NOISE, COARSE, FALLING, FAR, LOOK, POLISH
 from hydrolek_drake.diagnosis.unsticking import fit_pulled
 from hydrolek_drake.diagnosis.weighing import settled
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -25,7 +25,7 @@ def fit_baseline(bench: Workbench) -> Hypothesis:
         bench: its training data are replaced, see `weighing.settled`.
     """
     starts = _starts(bench)
-    free = settled(bench, _fitted_freely(bench, starts))
+    free = _lowest(bench, settled(bench, _fitted_freely(bench, starts)))
     if free.fit.over_noise <= AT_NOISE:
         return free
     # from the rig's own values again: where the free fit got stuck, pulled rollouts mostly get stuck too
@@ -33,7 +33,12 @@ def fit_baseline(bench: Workbench) -> Hypothesis:
         lambda start: fit_pulled(bench, (), [start], bench.fine, bench.training), starts
     )
     led = bench.refit(min(pulled, key=lambda h: h.fit.objective), bench.fine, LOOK)
-    return min((free, led), key=lambda h: h.fit.objective)
+    return min((free, _lowest(bench, led)), key=lambda h: h.fit.objective)
+
+
+def _lowest(bench: Workbench, fitted: Hypothesis) -> Hypothesis:
+    """The fit, from lower places in its valleys if there are any and nothing large is missing."""
+    return bench.along_valleys(fitted) if fitted.fit.over_noise < FAR else fitted
 
 
 def _starts(bench: Workbench) -> list[dict[str, float]]:
