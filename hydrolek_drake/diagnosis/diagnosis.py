@@ -86,7 +86,7 @@ class Diagnosis:
     def fitted_rig(self) -> Rig:
         """The rig with the named effects and the law switched on and every parameter estimated anew."""
         assert self.bench is not None
-        return enlarged_rig(self.rig, self.best.hypothesis, self.law, self.bench.training[0].joint)
+        return enlarged_rig(self.rig, self.best.hypothesis, self.law)
 
 
 def diagnose(
@@ -142,7 +142,8 @@ def _diagnosed(
     )
     inquiry = Inquiry(
         candidates,
-        scales[joints[0]] if len(joints) == 1 and room_for_law(rig, joints[0]) else None,
+        {joint: scales[joint] for joint in joints if room_for_law(rig, joint)},
+        several=len(joints) > 1,
         apart=bool(holdout) or between is not None,
         say=say,
     )

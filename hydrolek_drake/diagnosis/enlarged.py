@@ -12,14 +12,13 @@ from hydrolek_drake.rigs.short_law import terms_of
 SOURCE = "fitted to recordings by hydrolek diagnose"
 
 
-def enlarged_rig(rig: Rig, hypothesis: Hypothesis, law: FoundLaw | None, joint: str) -> Rig:
+def enlarged_rig(rig: Rig, hypothesis: Hypothesis, law: FoundLaw | None) -> Rig:
     """A rig with a hypothesis's values and a law, each with its source.
 
     Args:
         rig: that was diagnosed.
         hypothesis: named.
         law: found beside it, with which its values were fitted again; None if there is none.
-        joint: at which the law acts.
     """
     values = {**hypothesis.values, **(law.parameters if law is not None else {})}
     enlarged = rig.with_values(values)
@@ -34,7 +33,7 @@ def enlarged_rig(rig: Rig, hypothesis: Hypothesis, law: FoundLaw | None, joint: 
     source = f"{SOURCE}; its phase is the first recording's" if law.law.periodic else SOURCE
     units = (law.law.input.unit, law.span.at(law.law.input.probe).unit)
     terms = terms_of(rows, units, source, "reach of these recordings")
-    return replace(enlarged, laws={**rig.laws, joint: (*rig.laws.get(joint, ()), *terms)})
+    return replace(enlarged, laws={**rig.laws, law.joint: (*rig.laws.get(law.joint, ()), *terms)})
 
 
 def room_for_law(rig: Rig, joint: str) -> bool:

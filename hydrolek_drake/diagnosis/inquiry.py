@@ -1,6 +1,6 @@
 """What is asked one after the other until the data are explained: known effects, more data, a law, other weights."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from hydrolek_drake.diagnosis.attempt import (
@@ -16,7 +16,7 @@ from hydrolek_drake.diagnosis.attempt import (
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.effort import FAR
-from hydrolek_drake.diagnosis.law_choice import alone, material, with_law
+from hydrolek_drake.diagnosis.law_choice import alone, material, with_law, with_law_at_a_joint
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.other_laws import OtherLaws
 from hydrolek_drake.diagnosis.workbench import Workbench
@@ -59,15 +59,17 @@ class Inquiry:
 
     Attributes:
         candidates: every effect that may be missing.
-        scales: natural scales of the joint, for laws; None where several joints were driven.
+        scales: natural scales of the driven joints at which there may be a law.
+        several: whether several joints were driven.
         apart: whether the held-out data are of another kind, not blocks among the rest.
         say: told what is being done.
     """
 
     candidates: Sequence[Candidate]
-    scales: Scales | None
+    scales: Mapping[str, Scales]
     apart: bool
     say: Callable[[str], None]
+    several: bool = False
 
     def answer(self, bench: Workbench, held_out: Sequence[Experiment]) -> Answer:
         """Ask one after the other; an interrupt ends it with what is known by then.
@@ -79,7 +81,7 @@ class Inquiry:
         Raises:
             KeyboardInterrupt: before the nominal model was fitted.
         """
-        other = None if self.scales is None else OtherLaws(bench, held_out, self.scales)
+        other = None if self._alone is None else OtherLaws(bench, held_out, self._alone)
         known = attempt(bench, self.candidates, held_out, self.say, other)
         if known.interrupted:
             conclusion = known.conclusion
@@ -98,9 +100,14 @@ class Inquiry:
                 return replace(answer, remarks=(*answer.remarks, INTERRUPTED))
         return answer
 
+    @property
+    def _alone(self) -> Scales | None:
+        """Scales of the only joint that was driven, if there may be a law at it."""
+        return None if self.several else next(iter(self.scales.values()), None)
+
     def _by_a_law_at_once(self, answer: Answer) -> Answer:
         """A law in place of more data, if it explains both recordings."""
-        if not (self.apart and law_first(answer.known)):
+        if self.several or not (self.apart and law_first(answer.known)):
             return answer
         with_a_law = self._by_a_law(answer)
         return with_a_law if with_a_law.law is not None and predicting(with_a_law.law) else answer
@@ -118,12 +125,17 @@ class Inquiry:
 
     def _by_a_law(self, answer: Answer) -> Answer:
         """A law for what is in no list, unless there is one."""
-        if self.scales is None or answer.law is not None:
+        if not self.scales or answer.law is not None:
             return answer
         known = answer.known
-        conclusion, law = with_law(
-            known.bench, answer.conclusion, known.judged, known.held_out, self.scales, self.say
-        )
+        if self._alone is None:
+            conclusion, law = with_law_at_a_joint(
+                known.bench, answer.conclusion, known.judged, known.held_out, self.scales, self.say
+            )
+        else:
+            conclusion, law = with_law(
+                known.bench, answer.conclusion, known.judged, known.held_out, self._alone, self.say
+            )
         return replace(answer, conclusion=conclusion, law=law)
 
     def _by_other_weights(self, answer: Answer) -> Answer:

@@ -1,12 +1,13 @@
 """Whether physics in no list is named, and beside which model."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from hydrolek_drake.diagnosis.balance import squares_of
 from hydrolek_drake.diagnosis.conclusion import MATERIAL, SURE, Conclusion
 from hydrolek_drake.diagnosis.effort import AT_NOISE
 from hydrolek_drake.diagnosis.judged import Judged
+from hydrolek_drake.diagnosis.law_at_a_joint import law_at_a_joint, left_at
 from hydrolek_drake.diagnosis.law_growing import explains
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, left_in_all
 from hydrolek_drake.diagnosis.unlisted import find_law, without_effects
@@ -55,6 +56,41 @@ def with_law(
         ):
             return alone(conclusion, judged, law), law
     return conclusion, None
+
+
+def with_law_at_a_joint(
+    bench: Workbench,
+    conclusion: Conclusion,
+    judged: Sequence[Judged],
+    held_out: Sequence[Experiment],
+    scales: Mapping[str, Scales],
+    say: Callable[[str], None],
+) -> tuple[Conclusion, FoundLaw | None]:
+    """The conclusion with a law at one of several joints that were driven, where known effects do not explain the data.
+
+    It stands alone, and is told if it leaves no more of all joints than `SIMPLER` times what the effects leave.
+
+    Args:
+        bench: data and fits.
+        conclusion: from known effects alone.
+        judged: all hypotheses that were held against held-out data.
+        held_out: what decides.
+        scales: natural scales of the joints.
+        say: told what is being done.
+    """
+    if conclusion.verdict != "unlisted_physics":
+        return conclusion, None
+    nominal = next(j for j in judged if not j.hypothesis.effects)
+    say("searching a law at one joint for physics that is in no list")
+    law = law_at_a_joint(bench, nominal, held_out, scales)
+    if law is None:
+        return conclusion, None
+    there, counted = left_at(law.joint, nominal.held_out, held_out)
+    rest = float(nominal.held_out @ nominal.held_out) - there
+    left = rest + law.held_out_over_noise**2 * counted
+    if left > SIMPLER**2 * float(conclusion.best.held_out @ conclusion.best.held_out):
+        return conclusion, None
+    return alone(conclusion, judged, law), law
 
 
 def alone(conclusion: Conclusion, judged: Sequence[Judged], law: FoundLaw) -> Conclusion:

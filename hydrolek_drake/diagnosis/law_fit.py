@@ -102,7 +102,8 @@ def fitted(
     over, ahead = _ahead(parameters, fit, problem, held_out, step, span)
     bench.evaluations += problem.evaluations
     nominal = parameters.values(fit.unit[:count])
-    return FoundLaw(law, values, nominal, fit, over, difference, span, ahead)
+    joint = bench.training[0].joint
+    return FoundLaw(law, values, nominal, fit, over, difference, span, ahead, joint)
 
 
 def at_the_end(law: Law, unit: np.ndarray) -> bool:

@@ -109,7 +109,8 @@ class FoundLaw:
         held_out_over_noise: root mean square on held-out data over the noise.
         difference: of the reading on the first training recording, with and without the law. # (n,)
         span: what its variables are told in.
-        ahead: its values on each held-out recording, where a periodic one has its phase of its own.
+        ahead: its values on each held-out recording of the joint, where a periodic one has its phase of its own.
+        joint: at which it acts; of several that were driven, the one whose data `fit` and held-out error are of.
         rivals: other stages at which a law leaves as little of all data.
     """
 
@@ -121,6 +122,7 @@ class FoundLaw:
     difference: np.ndarray
     span: Span
     ahead: tuple[np.ndarray, ...]
+    joint: str
     rivals: tuple[str, ...] = ()
 
     @property

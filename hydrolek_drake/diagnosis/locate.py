@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.law_at_a_joint import left_at
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -139,13 +140,14 @@ def _weight(experiment: Experiment, difference: np.ndarray) -> float:
 
 def locate_law(bench: Workbench, best: Hypothesis, baseline: Hypothesis, law: FoundLaw) -> Location:
     """Where physics in no list acts: the stage of its law, and when the law makes a difference."""
-    experiment = bench.training[0]
+    experiment = next(e for e in bench.training if e.joint == law.joint)
     signals = experiment.simulate(
         bench.parameters(()).records(bench.parameters(()).unit(law.parameters))
     ).signals
     holds = conditions_for(bench.rig, experiment, signals)
     total = max(baseline.fit.chi_squared - baseline.fit.counted, np.finfo(float).tiny)
-    share = (best.fit.chi_squared - law.fit.chi_squared) / total
+    before, _ = left_at(law.joint, best.fit.residuals, bench.training)
+    share = (before - law.fit.chi_squared) / total
     condition = told_condition(experiment.time, law.difference, holds)
     if law.law.periodic:
         condition = f"periodic, {law.values[2]:.3g} Hz; {condition}"

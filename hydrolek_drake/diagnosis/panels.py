@@ -74,10 +74,11 @@ def _simulated(
 ) -> Signals:
     assert diagnosis.bench is not None
     parameters = diagnosis.bench.parameters(hypothesis.effects)
-    if law is None:
+    if law is None or law.joint != experiment.joint:
         records = parameters.records(parameters.unit(hypothesis.values))
         return experiment.simulate(records, diagnosis.step).signals
-    place = next((i for i, held in enumerate(diagnosis.held_out) if held is experiment), None)
+    held_out = [held for held in diagnosis.held_out if held.joint == law.joint]
+    place = next((i for i, held in enumerate(held_out) if held is experiment), None)
     own = law.values if place is None else law.ahead[place]
     return experiment.simulate(
         parameters.records(parameters.unit(law.parameters)),

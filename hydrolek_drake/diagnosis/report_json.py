@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
+from hydrolek_drake.diagnosis.law_at_a_joint import left_at
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.panels import after
 from hydrolek_drake.diagnosis.reliability import kind_of, reliability
@@ -91,7 +92,7 @@ def _law_json(diagnosis: Diagnosis, law: FoundLaw) -> dict[str, Any]:
         parameters["frequency"] = {"value": float(law.values[2]), "unit": "Hz"}
     return {
         "id": f"unlisted.{known.stage}",
-        "joint": diagnosis.locations[-1].joint,
+        "joint": law.joint,
         # stages that the data do not tell apart share it
         "probability": round(_law_posterior(diagnosis, law) * reliability("law") / (1 + len(law.rivals)), 4),
         "parameters": parameters,
@@ -108,10 +109,9 @@ def _probability(diagnosis: Diagnosis, path: str) -> float:
 
 def _law_posterior(diagnosis: Diagnosis, law: FoundLaw) -> float:
     """Probability of the law beside the best known effects, by held-out likelihood made as flat as its misfit."""
-    best = diagnosis.best
-    counted = best.held_out_counted
+    before, counted = left_at(law.joint, diagnosis.best.held_out, diagnosis.held_out)
     excess = max(1.0, law.held_out_over_noise**2 * counted - counted)
-    ahead = 0.5 * counted * (best.over_noise**2 - law.held_out_over_noise**2)
+    ahead = 0.5 * (before - law.held_out_over_noise**2 * counted)
     return 1.0 / (1.0 + math.exp(-float(np.clip(ahead * len(law.fit.unit) / excess, -50.0, 50.0))))
 
 
@@ -169,8 +169,8 @@ def fit_json(diagnosis: Diagnosis) -> dict[str, Any] | None:
         sides["with_effects"] = {
             "train_rms": factor * position_rms(training, train),
             "holdout_rms": factor * position_rms(held_out, held),
-            "train_over_noise": diagnosis.law.fit.over_noise,
-            "holdout_over_noise": diagnosis.law.held_out_over_noise,
+            "train_over_noise": _over_noise(training, train),
+            "holdout_over_noise": _over_noise(held_out, held),
         }
     return {
         "noise_floor": factor * _mean_noise(training, channel.key),
@@ -190,6 +190,10 @@ def position_rms(experiments: tuple[Experiment, ...], residuals: np.ndarray) -> 
                 squared += float(np.sum((part * channel.deviation) ** 2))
                 count += experiment.counted_of(channel)
     return math.sqrt(squared / max(count, 1))
+
+
+def _over_noise(experiments: tuple[Experiment, ...], residuals: np.ndarray) -> float:
+    return math.sqrt(float(residuals @ residuals) / max(sum(e.counted for e in experiments), 1))
 
 
 def _mean_noise(experiments: tuple[Experiment, ...], key: str) -> float:

@@ -111,7 +111,13 @@ def headline(diagnosis: Diagnosis) -> str:
         return f"{told}."
     law = diagnosis.law
     elsewhere = f" (a law at the {' or the '.join(law.rivals)} does nearly as well)" if law.rivals else ""
-    return f"{told}. At the {law.law.input.stage}{elsewhere}, {law_sentence(law)}"
+    of = f" of {law.joint}" if _several(diagnosis) else ""
+    return f"{told}. At the {law.law.input.stage}{of}{elsewhere}, {law_sentence(law)}"
+
+
+def _several(diagnosis: Diagnosis) -> bool:
+    """Whether several joints were driven."""
+    return len({experiment.joint for experiment in diagnosis.held_out}) > 1
 
 
 def law_sentence(law: FoundLaw) -> str:

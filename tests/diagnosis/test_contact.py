@@ -79,7 +79,9 @@ def test_a_rig_file_holds_it_and_the_report_says_what_it_means(span) -> None:
     given = Input("load", "load", "moment added at the joint", "N m", 100.0)
     law = Law(given, (term,), 0.0, 0.0, ())
     joint = replace(span.joint, low=0.0, high=np.radians(60.0))
-    found = FoundLaw(law, np.array([30.0, -0.5]), {}, None, 1.0, np.zeros(0), replace(span, joint=joint), ())
+    found = FoundLaw(
+        law, np.array([30.0, -0.5]), {}, None, 1.0, np.zeros(0), replace(span, joint=joint), (), "joint"
+    )
     assert found.equation() == "moment added at the joint = 30 N m * below(15 deg)"
     assert where_sentence(found) == (
         " Here below(c) is 0 down to a position of c and grows as it falls further, by 1 over 30 deg."

@@ -42,7 +42,7 @@ def asked(monkeypatch):
         monkeypatch.setattr(inquiry, "law_first", lambda known: law_first)
         monkeypatch.setattr(inquiry, "predicting", lambda law: explained)
         monkeypatch.setattr(inquiry, "material", lambda conclusion, *_: replace(conclusion, groups=(("m",),)))
-        return Inquiry((), SimpleNamespace(), apart, lambda text: None).answer(_Bench(), ())
+        return Inquiry((), {"joint": SimpleNamespace()}, apart, lambda text: None).answer(_Bench(), ())
 
     return ask
 

@@ -151,7 +151,7 @@ def test_a_hose_that_expands_is_found_at_the_fluid(bench, recorded) -> None:
 
 def _its_rig_predicts_as_it_does(bench, workbench, judged, found, held_out) -> None:
     """The rig with the law, written and read, in the rollout and in the Drake Diagram."""
-    enlarged = enlarged_rig(bench, judged.hypothesis, found, "joint")
+    enlarged = enlarged_rig(bench, judged.hypothesis, found)
     with_law, plain = (held_out.simulate(rig.records(), workbench.fine).signals for rig in (enlarged, bench))
     over_noise = np.sqrt(np.mean(held_out.residuals(with_law) ** 2))
     assert over_noise == pytest.approx(found.held_out_over_noise, rel=0.02)
@@ -319,7 +319,7 @@ def test_a_law_says_what_its_letters_mean(bench) -> None:
 
     def told(*terms, values):
         law = Law(given, terms, 0.0, 0.0, ())
-        found = FoundLaw(law, np.array(values), {}, None, 1.0, np.zeros(0), span, ())
+        found = FoundLaw(law, np.array(values), {}, None, 1.0, np.zeros(0), span, (), "joint")
         return found.equation(), where_sentence(found)
 
     friction = Term((), speed="sign(v)")

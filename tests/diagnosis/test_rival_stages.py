@@ -27,6 +27,7 @@ def _law(stage, *terms):
         np.zeros(0),
         None,
         (),
+        "joint",
     )
 
 
