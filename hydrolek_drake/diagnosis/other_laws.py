@@ -1,7 +1,9 @@
 """A law before further effects: what would explain the data otherwise is asked for while a search goes on.
 
-One effect does not do: a sine at one of the machine's inputs, such as a pump's ripple or a shaken load. It takes a few
-seconds to look for, and no effect of the list repeats itself in time, so that two of them can only make up for it.
+One effect does not do: a sine at one of the machine's inputs, such as a pump's ripple or a shaken load, or a constant
+at one that says how the machine is built, such as a card's ramp. Both take a few seconds to look for. No effect of the
+list repeats itself in time, so that two of them can only make up for a sine; a constant has one parameter, and two
+effects have two at least.
 Two do not do: any law. Three effects at once are less likely than one thing that is in no list (`law_choice.MANY`).
 """
 
@@ -10,9 +12,9 @@ from dataclasses import dataclass
 
 from hydrolek_drake.diagnosis.attempt import predicting
 from hydrolek_drake.diagnosis.effort import AT_NOISE
-from hydrolek_drake.diagnosis.law_problem import FoundLaw
-from hydrolek_drake.diagnosis.law_search import promising
-from hydrolek_drake.diagnosis.laws import TERMS
+from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
+from hydrolek_drake.diagnosis.law_search import STEADY, promising
+from hydrolek_drake.diagnosis.laws import BUILT, TERMS
 from hydrolek_drake.diagnosis.unlisted import BETTER, Asked, best_of
 from hydrolek_drake.diagnosis.weighing import weighted_by
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -20,7 +22,8 @@ from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiment import Experiment
 
 MOST = 0.5
-"""A sine must promise this share of what the nominal model leaves above the noise, or it is not fitted."""
+"""Before a second effect a law must promise this share of what the nominal model leaves above the noise, or it is not
+fitted."""
 
 
 @dataclass(frozen=True)
@@ -49,15 +52,22 @@ class OtherLaws:
         weighted.first_s = bench.first_s
         left = weighted.refit(nominal, bench.fine, 1)
         asked = Asked.of(weighted, left, weighted_by(bench, nominal, self.held_out), self.scales)
-        sines_alone = effects == 1
-        terms = () if sines_alone else TERMS
-        laws = promising(weighted, left, asked.inputs, asked.span, asked.step, terms)
-        law = None
-        if not sines_alone or max(each.gain for each in laws) > MOST * (
-            left.fit.objective - left.fit.counted
-        ):
-            law = best_of(weighted, asked, laws, BETTER * left.fit.over_noise)
+        first = effects == 1
+        laws = promising(weighted, left, asked.inputs, asked.span, asked.step, BUILT if first else TERMS)
+        if first:
+            laws = worth_it(laws, MOST * (left.fit.objective - left.fit.counted))
+        law = best_of(weighted, asked, laws, BETTER * left.fit.over_noise)
         bench.evaluations += weighted.evaluations
         if law is None or not predicting(law):
             return None
-        return law if sines_alone or law.fit.over_noise <= AT_NOISE else None
+        return law if law.law.periodic or law.fit.over_noise <= AT_NOISE else None
+
+
+def worth_it(laws: Sequence[Law], needed: float) -> list[Law]:
+    """Those that are fitted before a second effect.
+
+    All sines, if one promises what is needed, and the constants that do, at inputs that say how the machine is built.
+    """
+    sines = [law for law in laws if law.periodic]
+    built = [law for law in laws if not law.periodic and law.input.probe in STEADY and law.gain > needed]
+    return [*(sines if any(law.gain > needed for law in sines) else ()), *built]

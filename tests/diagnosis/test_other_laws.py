@@ -1,4 +1,4 @@
-"""A sine before a second effect is searched for, and any law before a third."""
+"""Before a second effect a sine and how the machine is built are asked for, and any law before a third."""
 
 from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
@@ -8,7 +8,8 @@ import pytest
 from hydrolek_drake.diagnosis import law_search, other_laws, search, unlisted
 from hydrolek_drake.diagnosis.attempt import predicting
 from hydrolek_drake.diagnosis.baseline import fit_baseline
-from hydrolek_drake.diagnosis.other_laws import OtherLaws
+from hydrolek_drake.diagnosis.laws import BUILT, TERMS
+from hydrolek_drake.diagnosis.other_laws import OtherLaws, worth_it
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -63,20 +64,25 @@ def test_what_does_not_repeat_itself_is_no_ripple(bench, recorded) -> None:
 
 
 @pytest.mark.parametrize(
-    ("effects", "left", "ahead", "accepted"),
-    [(1, 1.05, 1.15, True), (1, 1.05, 1.25, False), (2, 1.05, 1.15, False), (2, 1.01, 1.15, True)],
+    ("periodic", "left", "ahead", "accepted"),
+    [
+        (True, 1.05, 1.15, True),
+        (True, 1.05, 1.25, False),
+        (False, 1.05, 1.15, False),
+        (False, 1.01, 1.15, True),
+    ],
 )
-def test_in_place_of_a_third_effect_a_law_must_come_to_the_noise(
-    monkeypatch, effects, left, ahead, accepted
+@pytest.mark.parametrize("effects", [1, 2])
+def test_what_is_no_sine_must_come_to_the_noise(
+    monkeypatch, effects, periodic, left, ahead, accepted
 ) -> None:
     """A sine that nothing in the list resembles need only explain the data; any other law may resemble two effects."""
-    law = SimpleNamespace(fit=SimpleNamespace(over_noise=left), held_out_over_noise=ahead)
+    form = SimpleNamespace(periodic=periodic, gain=900.0, input=SimpleNamespace(probe="ramp"))
+    law = SimpleNamespace(law=form, fit=SimpleNamespace(over_noise=left), held_out_over_noise=ahead)
     tried = []
     monkeypatch.setattr(other_laws, "weighted_by", lambda bench, nominal, experiments: experiments)
     monkeypatch.setattr(other_laws.Asked, "of", lambda *_: SimpleNamespace(inputs=(), span=None, step=1e-3))
-    monkeypatch.setattr(
-        other_laws, "promising", lambda *given: tried.append(given[-1]) or [SimpleNamespace(gain=900.0)]
-    )
+    monkeypatch.setattr(other_laws, "promising", lambda *given: tried.append(given[-1]) or [form])
     monkeypatch.setattr(other_laws, "best_of", lambda *_: law)
     nominal = SimpleNamespace(fit=SimpleNamespace(objective=2000.0, counted=1000, over_noise=1.4))
     bench = SimpleNamespace(
@@ -84,7 +90,18 @@ def test_in_place_of_a_third_effect_a_law_must_come_to_the_noise(
     )
     bench.with_training = lambda _: bench
     assert (OtherLaws(bench, (), None)(nominal, effects) is law) == accepted
-    assert bool(tried[0]) == (effects == 2)
+    assert tried == [BUILT if effects == 1 else TERMS]
+
+
+def test_before_a_second_effect_what_promises_little_is_not_fitted() -> None:
+    def law(probe, gain, periodic=False):
+        return SimpleNamespace(periodic=periodic, gain=gain, input=SimpleNamespace(probe=probe))
+
+    constants = [law("ramp", 60.0), law("coil_time", 40.0), law("command", 90.0)]
+    quiet, loud = law("supply", 45.0, True), law("load", 70.0, True)
+    assert worth_it([*constants, quiet], 50.0) == [constants[0]]
+    assert worth_it([*constants, quiet, loud], 50.0) == [quiet, loud, constants[0]]
+    assert worth_it([constants[1], quiet], 50.0) == []
 
 
 @pytest.mark.parametrize(
