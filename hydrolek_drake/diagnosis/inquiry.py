@@ -81,7 +81,7 @@ class Inquiry:
         Raises:
             KeyboardInterrupt: before the nominal model was fitted.
         """
-        other = None if self._alone is None else OtherLaws(bench, held_out, self._alone)
+        other = OtherLaws(bench, held_out, self.scales) if self.scales else None
         known = attempt(bench, self.candidates, held_out, self.say, other)
         if known.interrupted:
             conclusion = known.conclusion

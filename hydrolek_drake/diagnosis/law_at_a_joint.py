@@ -6,7 +6,7 @@ that the joint is one that was driven alone, but for what the others draw from t
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,24 +15,24 @@ from hydrolek_drake.diagnosis.effort import LOOK
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.unlisted import find_law
-from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiment import Experiment
 
 
 def followed_worst(
-    nominal: Judged, held_out: Sequence[Experiment], scales: Mapping[str, Scales]
+    residuals: np.ndarray, held_out: Sequence[Experiment], scales: Mapping[str, Scales]
 ) -> str | None:
     """The joint of which a model leaves most, for each value that counts; None if there is no room for a law at any.
 
     Args:
-        nominal: the model.
+        residuals: that the model leaves, in units of the noise. # (values,)
         held_out: data that nothing was fitted to.
         scales: natural scales of the joints at which there may be a law.
     """
     over = {}
     for joint in scales:
-        squares, counted = left_at(joint, nominal.held_out, held_out)
+        squares, counted = left_at(joint, residuals, held_out)
         over[joint] = squares / max(counted, 1)
     return max(over, key=lambda joint: over[joint]) if over else None
 
@@ -55,21 +55,46 @@ def left_at(joint: str, residuals: np.ndarray, experiments: Sequence[Experiment]
     return squares, counted
 
 
-def law_at_a_joint(
-    bench: Workbench, nominal: Judged, held_out: Sequence[Experiment], scales: Mapping[str, Scales]
-) -> FoundLaw | None:
-    """The law at the joint that is followed worst that explains best what the nominal model leaves there, or None.
+@dataclass(frozen=True)
+class OneJoint:
+    """One of several joints, with the rest of the machine held.
+
+    Attributes:
+        joint: its name.
+        bench: its data and parameters.
+        nominal: the model without effects, fitted to them.
+        held_out: its held-out data.
+        scales: its natural scales.
+        values: full path -> value of all parameters where all joints were fitted.
+    """
+
+    joint: str
+    bench: Workbench
+    nominal: Hypothesis
+    held_out: tuple[Experiment, ...]
+    scales: Scales
+    values: dict[str, float]
+
+    def whole(self, law: FoundLaw) -> FoundLaw:
+        """A law that was found at the joint, with the parameters of the whole machine."""
+        return replace(law, parameters={**self.values, **law.parameters})
+
+
+def one_joint(
+    bench: Workbench, nominal: Hypothesis, held_out: Sequence[Experiment], scales: Mapping[str, Scales]
+) -> OneJoint | None:
+    """The joint that is followed worst by itself, or None if there may be a law at none.
 
     Args:
         bench: data of all joints.
         nominal: the model without effects, fitted to them.
         held_out: what decides.
-        scales: natural scales of the joints.
+        scales: natural scales of the joints at which there may be a law.
     """
-    joint = followed_worst(nominal, held_out, scales)
+    joint = followed_worst(bench.residuals(nominal, held_out, bench.fine), held_out, scales)
     if joint is None:
         return None
-    values = nominal.hypothesis.values
+    values = nominal.values
     own = {path: value for path, value in values.items() if path.startswith(f"joints.{joint}.")}
     rest = {path: value for path, value in values.items() if path not in own}
     one = Workbench(
@@ -79,10 +104,26 @@ def law_at_a_joint(
         bench.pool,
     )
     one.first_s = bench.first_s
-    kept = [e for e in held_out if e.joint == joint]
-    fitted = one.fit((), own, one.fine, LOOK)
-    counted = sum(e.counted for e in kept)
-    alone = Judged(fitted, one.residuals(fitted, kept, one.fine), counted)
-    law = find_law(one, alone, kept, scales[joint])
-    bench.evaluations += one.evaluations
-    return None if law is None else replace(law, parameters={**values, **law.parameters})
+    kept = tuple(e for e in held_out if e.joint == joint)
+    return OneJoint(joint, one, one.fit((), own, one.fine, LOOK), kept, scales[joint], values)
+
+
+def law_at_a_joint(
+    bench: Workbench, nominal: Hypothesis, held_out: Sequence[Experiment], scales: Mapping[str, Scales]
+) -> FoundLaw | None:
+    """The law at the joint that is followed worst that explains best what the nominal model leaves there, or None.
+
+    Args:
+        bench: data of all joints.
+        nominal: the model without effects, fitted to them.
+        held_out: what decides.
+        scales: natural scales of the joints.
+    """
+    one = one_joint(bench, nominal, held_out, scales)
+    if one is None:
+        return None
+    counted = sum(e.counted for e in one.held_out)
+    residuals = one.bench.residuals(one.nominal, one.held_out, one.bench.fine)
+    law = find_law(one.bench, Judged(one.nominal, residuals, counted), one.held_out, one.scales)
+    bench.evaluations += one.bench.evaluations
+    return None if law is None else one.whole(law)

@@ -82,7 +82,7 @@ def with_law_at_a_joint(
         return conclusion, None
     nominal = next(j for j in judged if not j.hypothesis.effects)
     say("searching a law at one joint for physics that is in no list")
-    law = law_at_a_joint(bench, nominal, held_out, scales)
+    law = law_at_a_joint(bench, nominal.hypothesis, held_out, scales)
     if law is None:
         return conclusion, None
     there, counted = left_at(law.joint, nominal.held_out, held_out)

@@ -7,11 +7,13 @@ effects have two at least.
 Two do not do: any law. Three effects at once are less likely than one thing that is in no list (`law_choice.MANY`).
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from hydrolek_drake.diagnosis.attempt import predicting
+from hydrolek_drake.diagnosis.attempt import PREDICTED, predicting
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.effort import AT_NOISE
+from hydrolek_drake.diagnosis.law_at_a_joint import left_at, one_joint
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
 from hydrolek_drake.diagnosis.law_search import STEADY, promising
 from hydrolek_drake.diagnosis.laws import BUILT, TERMS
@@ -33,12 +35,12 @@ class OtherLaws:
     Attributes:
         bench: training data and fits.
         held_out: what decides.
-        scales: natural scales of the joint.
+        scales: natural scales of the driven joints at which there may be a law, one at least.
     """
 
     bench: Workbench
     held_out: Sequence[Experiment]
-    scales: Scales
+    scales: Mapping[str, Scales]
 
     def __call__(self, nominal: Hypothesis, effects: int) -> FoundLaw | None:
         """The law that explains both recordings, or None.
@@ -51,16 +53,53 @@ class OtherLaws:
         weighted = bench.with_training(weighted_by(bench, nominal, bench.training))
         weighted.first_s = bench.first_s
         left = weighted.refit(nominal, bench.fine, 1)
-        asked = Asked.of(weighted, left, weighted_by(bench, nominal, self.held_out), self.scales)
-        first = effects == 1
-        laws = promising(weighted, left, asked.inputs, asked.span, asked.step, BUILT if first else TERMS)
-        if first:
-            laws = worth_it(laws, MOST * (left.fit.objective - left.fit.counted))
-        law = best_of(weighted, asked, laws, BETTER * left.fit.over_noise)
+        held_out = weighted_by(bench, nominal, self.held_out)
+        if len({experiment.joint for experiment in self.held_out}) == 1:
+            law = _asked_for(weighted, left, held_out, next(iter(self.scales.values())), effects)
+        else:
+            law = _at_one_joint(weighted, left, held_out, self.scales, effects)
         bench.evaluations += weighted.evaluations
-        if law is None or not predicting(law):
+        return law
+
+
+def _asked_for(
+    bench: Workbench, left: Hypothesis, held_out: Sequence[Experiment], scales: Scales, effects: int
+) -> FoundLaw | None:
+    """The law at the only joint of some data that explains them, or None."""
+    asked = Asked.of(bench, left, held_out, scales)
+    first = effects == 1
+    laws = promising(bench, left, asked.inputs, asked.span, asked.step, BUILT if first else TERMS)
+    if first:
+        laws = worth_it(laws, MOST * (left.fit.objective - left.fit.counted))
+    law = best_of(bench, asked, laws, BETTER * left.fit.over_noise)
+    if law is None or not predicting(law):
+        return None
+    return law if law.law.periodic or law.fit.over_noise <= AT_NOISE else None
+
+
+def _at_one_joint(
+    bench: Workbench,
+    left: Hypothesis,
+    held_out: Sequence[Experiment],
+    scales: Mapping[str, Scales],
+    effects: int,
+) -> FoundLaw | None:
+    """The law at the joint that is followed worst that explains its data, if the others' are explained without."""
+    one = one_joint(bench, left, held_out, scales)
+    if one is None:
+        return None
+    ahead = bench.residuals(left, held_out, bench.fine)
+    for residuals, experiments, most in (
+        (left.fit.residuals, bench.training, EXPLAINED),
+        (ahead, held_out, PREDICTED),
+    ):
+        squares, counted = left_at(one.joint, residuals, experiments)
+        rest = sum(experiment.counted for experiment in experiments) - counted
+        if float(residuals @ residuals) - squares > most**2 * rest:
             return None
-        return law if law.law.periodic or law.fit.over_noise <= AT_NOISE else None
+    law = _asked_for(one.bench, one.nominal, one.held_out, one.scales, effects)
+    bench.evaluations += one.bench.evaluations
+    return None if law is None else one.whole(law)
 
 
 def worth_it(laws: Sequence[Law], needed: float) -> list[Law]:

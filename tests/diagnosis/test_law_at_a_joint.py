@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis import law_at_a_joint as module
-from hydrolek_drake.diagnosis import law_choice
+from hydrolek_drake.diagnosis import law_choice, other_laws
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_at_a_joint import followed_worst, law_at_a_joint, left_at
@@ -75,8 +75,8 @@ def test_the_joint_that_is_followed_worst_is_asked_and_the_rest_is_held(
     monkeypatch.setattr(module, "find_law", find_law)
     monkeypatch.setattr(module, "replace", lambda law, **new: SimpleNamespace(**{**vars(law), **new}))
     scales = dict.fromkeys(MOVING, SimpleNamespace())
-    assert followed_worst(nominal, experiments, scales) == "right_j3"
-    law = law_at_a_joint(bench, nominal, experiments, scales)
+    assert followed_worst(nominal.held_out, experiments, scales) == "right_j3"
+    law = law_at_a_joint(bench, nominal.hypothesis, experiments, scales)
     one = asked["one"]
     assert {e.joint for e in (*one.training, *asked["kept"])} == {"right_j3"}
     assert one.nominal and all(free.path.startswith("joints.right_j3.") for free in one.nominal)
@@ -90,8 +90,30 @@ def test_the_joint_that_is_followed_worst_is_asked_and_the_rest_is_held(
 
 def test_without_room_for_a_law_none_is_looked_for(fitted, experiments) -> None:
     bench, nominal = fitted
-    assert followed_worst(nominal, experiments, {}) is None
-    assert law_at_a_joint(bench, nominal, experiments, {}) is None
+    assert followed_worst(nominal.held_out, experiments, {}) is None
+    assert law_at_a_joint(bench, nominal.hypothesis, experiments, {}) is None
+
+
+@pytest.mark.parametrize(("off", "asked"), [(0.0, True), (0.5, False)])
+def test_while_a_search_goes_on_the_other_joints_must_be_explained(
+    fitted, experiments, monkeypatch, off, asked
+) -> None:
+    """Where they are, the law that explains the joint explains all; where not, none of one joint does."""
+    bench, nominal = fitted
+    last = experiments[0].time.size
+    quiet = nominal.hypothesis.fit.residuals.copy()
+    quiet[:last] = off * quiet[:last] + (1.0 - off)
+    left = replace(nominal.hypothesis, fit=replace(nominal.hypothesis.fit, residuals=quiet))
+    monkeypatch.setattr(Workbench, "residuals", lambda self, hypothesis, *_: hypothesis.fit.residuals)
+    law = SimpleNamespace(parameters={})
+    asked_at = []
+    monkeypatch.setattr(
+        other_laws, "_asked_for", lambda one, *given: asked_at.append(one.training[0].joint) or law
+    )
+    monkeypatch.setattr(module, "replace", lambda law, **new: SimpleNamespace(**{**vars(law), **new}))
+    found = other_laws._at_one_joint(bench, left, experiments, dict.fromkeys(MOVING, None), 1)
+    assert asked_at == (["right_j3"] if asked else [])
+    assert (found is not None) == asked
 
 
 @pytest.mark.parametrize(("with_law", "told"), [(1.0, True), (30.0, False)])

@@ -35,7 +35,7 @@ def _asked(bench, training, held_out):
         workbench = Workbench(bench, free_parameters(bench), training, pool)
         nominal = fit_baseline(workbench)
         scales = natural_scales(bench, "joint", training)
-        return nominal, OtherLaws(workbench, held_out, scales)(nominal, 1)
+        return nominal, OtherLaws(workbench, held_out, {"joint": scales})(nominal, 1)
 
 
 def test_a_ripple_of_the_supply_is_the_law_that_explains_both_recordings(bench, recorded) -> None:
@@ -89,7 +89,8 @@ def test_what_is_no_sine_must_come_to_the_noise(
         training=(), first_s=12.0, fine=1e-3, evaluations=0, refit=lambda hypothesis, *_: hypothesis
     )
     bench.with_training = lambda _: bench
-    assert (OtherLaws(bench, (), None)(nominal, effects) is law) == accepted
+    held_out = (SimpleNamespace(joint="joint"),)
+    assert (OtherLaws(bench, held_out, {"joint": None})(nominal, effects) is law) == accepted
     assert tried == [BUILT if effects == 1 else TERMS]
 
 
