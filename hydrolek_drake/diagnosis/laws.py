@@ -54,8 +54,8 @@ def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str)
         Input("load", "load", "moment added at the joint" if moment == "N m" else "force added at the load", moment,
               0.3 * scales.load_force),
         Input("sensor", "sensor", "added to the reading", position_unit, 0.1 * scales.travel),
-        Input("command", "ramp", "time that the voltage takes for each volt", "s/V", 0.3 * scales.travel_time / limit,
-              lasts=True),
+        Input("command", "ramp", "time that a ramp of the voltage takes for each volt", "s/V",
+              0.3 * scales.travel_time / limit, lasts=True),
     ]  # fmt: skip
     if math.isfinite(scales.conductance):
         inputs += [
