@@ -7,6 +7,7 @@ effects have two at least.
 Two do not do: any law. Three effects at once are less likely than one thing that is in no list (`law_choice.MANY`).
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -71,7 +72,9 @@ def _asked_for(
     laws = promising(bench, left, asked.inputs, asked.span, asked.step, BUILT if first else TERMS)
     if first:
         laws = worth_it(laws, MOST * (left.fit.objective - left.fit.counted))
-    law = best_of(bench, asked, laws, BETTER * left.fit.over_noise)
+    ahead = bench.residuals(left, held_out, bench.fine)
+    counted = sum(experiment.counted for experiment in held_out)
+    law = best_of(bench, asked, laws, BETTER * math.sqrt(float(ahead @ ahead) / max(counted, 1)))
     if law is None or not predicting(law):
         return None
     return law if law.law.periodic or law.fit.over_noise <= AT_NOISE else None

@@ -3,6 +3,7 @@
 from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis import law_search, other_laws, search, unlisted
@@ -10,6 +11,7 @@ from hydrolek_drake.diagnosis.attempt import predicting
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.laws import BUILT, TERMS
 from hydrolek_drake.diagnosis.other_laws import OtherLaws, worth_it
+from hydrolek_drake.diagnosis.unlisted import BETTER
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -79,19 +81,21 @@ def test_what_is_no_sine_must_come_to_the_noise(
     """A sine that nothing in the list resembles need only explain the data; any other law may resemble two effects."""
     form = SimpleNamespace(periodic=periodic, gain=900.0, input=SimpleNamespace(probe="ramp"))
     law = SimpleNamespace(law=form, fit=SimpleNamespace(over_noise=left), held_out_over_noise=ahead)
-    tried = []
+    tried, beaten = [], []
     monkeypatch.setattr(other_laws, "weighted_by", lambda bench, nominal, experiments: experiments)
     monkeypatch.setattr(other_laws.Asked, "of", lambda *_: SimpleNamespace(inputs=(), span=None, step=1e-3))
     monkeypatch.setattr(other_laws, "promising", lambda *given: tried.append(given[-1]) or [form])
-    monkeypatch.setattr(other_laws, "best_of", lambda *_: law)
+    monkeypatch.setattr(other_laws, "best_of", lambda *given: beaten.append(given[-1]) or law)
     nominal = SimpleNamespace(fit=SimpleNamespace(objective=2000.0, counted=1000, over_noise=1.4))
     bench = SimpleNamespace(
         training=(), first_s=12.0, fine=1e-3, evaluations=0, refit=lambda hypothesis, *_: hypothesis
     )
     bench.with_training = lambda _: bench
-    held_out = (SimpleNamespace(joint="joint"),)
+    bench.residuals = lambda *_: np.full(100, 1.5)
+    held_out = (SimpleNamespace(joint="joint", counted=100),)
     assert (OtherLaws(bench, held_out, {"joint": None})(nominal, effects) is law) == accepted
     assert tried == [BUILT if effects == 1 else TERMS]
+    assert beaten == [pytest.approx(BETTER * 1.5)]  # of what the nominal model leaves ahead
 
 
 def test_before_a_second_effect_what_promises_little_is_not_fitted() -> None:
