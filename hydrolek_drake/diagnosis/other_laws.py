@@ -15,10 +15,11 @@ from hydrolek_drake.diagnosis.attempt import PREDICTED, predicting
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.effort import AT_NOISE
 from hydrolek_drake.diagnosis.law_at_a_joint import left_at, one_joint
+from hydrolek_drake.diagnosis.law_naming import BETTER
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
 from hydrolek_drake.diagnosis.law_search import STEADY, promising
 from hydrolek_drake.diagnosis.laws import BUILT, TERMS
-from hydrolek_drake.diagnosis.unlisted import BETTER, Asked, best_of
+from hydrolek_drake.diagnosis.unlisted import Asked, best_of
 from hydrolek_drake.diagnosis.weighing import weighted_by
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales

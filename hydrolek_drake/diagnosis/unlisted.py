@@ -14,13 +14,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.conclusion import EXPLAINED
-from hydrolek_drake.diagnosis.effort import COARSE, NOISE_KNOWN
-from hydrolek_drake.diagnosis.gains import GAIN_NEEDED
-from hydrolek_drake.diagnosis.judged import Judged, flatter
+from hydrolek_drake.diagnosis.effort import COARSE
+from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_counterpart import counterpart
 from hydrolek_drake.diagnosis.law_fit import STEPS, fitted, glance
 from hydrolek_drake.diagnosis.law_growing import grown
+from hydrolek_drake.diagnosis.law_naming import BETTER, helping, likeliest
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, left_in_all, records_of
 from hydrolek_drake.diagnosis.law_search import STEADY, promising
 from hydrolek_drake.diagnosis.laws import CONSTANT, Input, Span, inputs_of, span_of
@@ -46,10 +45,6 @@ ALIKE = 1.1
 
 NEAR = 1.5
 """Laws whose held-out errors lie within this factor of the best may overtake it with more terms."""
-
-BETTER = 0.8
-"""A law must take the held-out error below this share of what it was, or it is no law of this machine. So must it that
-of the training data, unless it explains them: what helps the held-out data alone may do so by chance."""
 
 Begun = tuple[Law, tuple[float, dict[str, float], np.ndarray]]
 """A law and its first fit, see `glance`."""
@@ -124,8 +119,7 @@ def best_of(bench: Workbench, asked: Asked, laws: Sequence[Law], to_beat: float)
     )
     ended = bench.side_by_side(lambda found: grown(bench, left, found, held_out, finer), _ahead(ended))
     ended += _other_side(bench, left, ended, held_out, asked.inputs, finer)
-    most = max(EXPLAINED, BETTER * left.fit.over_noise)
-    ended = [found for found in ended if found.fit.over_noise < most]
+    ended = helping(bench, left, ended, finer)
     least = min((found.held_out_over_noise for found in ended), default=math.inf)
     if not least < to_beat:
         return None
@@ -187,46 +181,6 @@ def _other_side(
     begin = (best.parameters, other[1])
     there = fitted(bench, left, other[0], held_out, best.span, begin, step)
     return [grown(bench, left, there, held_out, step)]
-
-
-def likeliest(alike: Sequence[FoundLaw], in_all: Sequence[float], counted: int) -> FoundLaw:
-    """The law that leaves least of all data, with the other stages at which one leaves hardly more.
-
-    Where even the best leaves something systematic, such as the form of a friction that is not quite its own, what is
-    hardly more is larger by that excess, see `judged.flatter`.
-    A friction at the rod and one at the joint make the same movement and pressures if each may vary over the stroke
-    as it likes, and so do any two forces there where the lever is constant, as of a vane. A short law is not quite the
-    form of either, and how much of what it leaves that is nobody knows better than the noise: frictions on both sides
-    are told apart only if they differ by more than that. Of two that do as well, a
-    friction is named at the rod first, where seals are pressed on by the oil, and what pushes or shakes at the load;
-    this is an assumption about such machines, and the other stage is told with it.
-
-    Args:
-        alike: laws that predict alike.
-        in_all: what each leaves, see `left_in_all`.
-        counted: how many values these are.
-    """
-    ranked = sorted(zip(in_all, range(len(alike)), strict=True))
-    least, place = ranked[0]
-    hardly = GAIN_NEEDED * flatter(least, counted, len(alike[place].fit.unit))
-    best = alike[place]
-    unsure = max(hardly, 2.0 * NOISE_KNOWN * least)
-    near = [best] + [
-        alike[i]
-        for each, i in ranked[1:]
-        if each < least + (unsure if _rubs(best.law) and _rubs(alike[i].law) else hardly)
-    ]
-    if best.law.input.stage in ("cylinder", "load"):
-        wanted = "cylinder" if best.law.brakes else "load"
-        same = (f for f in near if f.law.input.stage == wanted and f.law.brakes == best.law.brakes)
-        best = next(same, best)
-    stages = {f.law.input.stage for f in near} - {best.law.input.stage}
-    return replace(best, rivals=tuple(sorted(stages)))
-
-
-def _rubs(law: Law) -> bool:
-    """Whether it is a friction at the rod or at the load."""
-    return law.brakes and law.input.stage in ("cylinder", "load")
 
 
 def without_effects(

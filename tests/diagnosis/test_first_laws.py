@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis import unlisted
+from hydrolek_drake.diagnosis.law_naming import helping
 from hydrolek_drake.diagnosis.law_problem import Law
 from hydrolek_drake.diagnosis.laws import Input, Term
 from hydrolek_drake.diagnosis.unlisted import FITTED, TRIED, Asked, best_of, followed, worth_trying
@@ -64,3 +65,26 @@ def test_a_law_must_help_both_recordings(monkeypatch, left, fitted, ahead, is_on
     nominal = SimpleNamespace(fit=SimpleNamespace(over_noise=left))
     asked = Asked(nominal, (), (), None, 1e-3)
     assert (best_of(bench, asked, [law], 0.8 * 4.4) is found) == is_one
+
+
+@pytest.mark.parametrize(
+    ("without", "before", "after", "helps"),
+    [
+        (
+            0.99,
+            3901.0,
+            3899.7,
+            False,
+        ),  # the model explains the training data, and the law gains what chance does
+        (0.99, 3901.0, 3860.0, True),
+        (1.6, 9000.0, 3899.7, True),
+    ],
+)
+def test_where_the_training_data_are_explained_a_law_must_gain_there_what_chance_does_not(
+    without, before, after, helps
+) -> None:
+    law = SimpleNamespace(fit=SimpleNamespace(over_noise=0.98, objective=after))
+    left = SimpleNamespace(fit=SimpleNamespace(over_noise=without))
+    refitted = SimpleNamespace(fit=SimpleNamespace(objective=before, counted=4000, unsure=0.0))
+    bench = SimpleNamespace(refit=lambda *_, **__: refitted)
+    assert helping(bench, left, [law], 1e-3) == ([law] if helps else [])

@@ -9,9 +9,9 @@ import pytest
 from hydrolek_drake.diagnosis import law_search, other_laws, search, unlisted
 from hydrolek_drake.diagnosis.attempt import predicting
 from hydrolek_drake.diagnosis.baseline import fit_baseline
+from hydrolek_drake.diagnosis.law_naming import BETTER
 from hydrolek_drake.diagnosis.laws import BUILT, TERMS
 from hydrolek_drake.diagnosis.other_laws import OtherLaws, worth_it
-from hydrolek_drake.diagnosis.unlisted import BETTER
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
