@@ -81,19 +81,17 @@ class OneJoint:
 
 
 def one_joint(
-    bench: Workbench, nominal: Hypothesis, held_out: Sequence[Experiment], scales: Mapping[str, Scales]
-) -> OneJoint | None:
-    """The joint that is followed worst by itself, or None if there may be a law at none.
+    bench: Workbench, nominal: Hypothesis, held_out: Sequence[Experiment], joint: str, scales: Scales
+) -> OneJoint:
+    """A joint by itself.
 
     Args:
         bench: data of all joints.
         nominal: the model without effects, fitted to them.
         held_out: what decides.
-        scales: natural scales of the joints at which there may be a law.
+        joint: its name.
+        scales: its natural scales.
     """
-    joint = followed_worst(bench.residuals(nominal, held_out, bench.fine), held_out, scales)
-    if joint is None:
-        return None
     values = nominal.values
     own = {path: value for path, value in values.items() if path.startswith(f"joints.{joint}.")}
     rest = {path: value for path, value in values.items() if path not in own}
@@ -105,7 +103,7 @@ def one_joint(
     )
     one.first_s = bench.first_s
     kept = tuple(e for e in held_out if e.joint == joint)
-    return OneJoint(joint, one, one.fit((), own, one.fine, LOOK), kept, scales[joint], values)
+    return OneJoint(joint, one, one.fit((), own, one.fine, LOOK), kept, scales, values)
 
 
 def law_at_a_joint(
@@ -119,9 +117,10 @@ def law_at_a_joint(
         held_out: what decides.
         scales: natural scales of the joints.
     """
-    one = one_joint(bench, nominal, held_out, scales)
-    if one is None:
+    joint = followed_worst(bench.residuals(nominal, held_out, bench.fine), held_out, scales)
+    if joint is None:
         return None
+    one = one_joint(bench, nominal, held_out, joint, scales[joint])
     counted = sum(e.counted for e in one.held_out)
     residuals = one.bench.residuals(one.nominal, one.held_out, one.bench.fine)
     law = find_law(one.bench, Judged(one.nominal, residuals, counted), one.held_out, one.scales)

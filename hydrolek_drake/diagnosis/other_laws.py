@@ -7,14 +7,14 @@ effects have two at least.
 Two do not do: any law. Three effects at once are less likely than one thing that is in no list (`law_choice.MANY`).
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from hydrolek_drake.diagnosis.attempt import PREDICTED, predicting
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.effort import AT_NOISE
-from hydrolek_drake.diagnosis.law_at_a_joint import left_at, one_joint
+from hydrolek_drake.diagnosis.judged import Judged
+from hydrolek_drake.diagnosis.law_at_a_joint import followed_worst, left_at, one_joint
 from hydrolek_drake.diagnosis.law_naming import BETTER
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
 from hydrolek_drake.diagnosis.law_search import STEADY, promising
@@ -73,9 +73,9 @@ def _asked_for(
     laws = promising(bench, left, asked.inputs, asked.span, asked.step, BUILT if first else TERMS)
     if first:
         laws = worth_it(laws, MOST * (left.fit.objective - left.fit.counted))
-    ahead = bench.residuals(left, held_out, bench.fine)
     counted = sum(experiment.counted for experiment in held_out)
-    law = best_of(bench, asked, laws, BETTER * math.sqrt(float(ahead @ ahead) / max(counted, 1)))
+    ahead = Judged(left, bench.residuals(left, held_out, bench.fine), counted)
+    law = best_of(bench, asked, laws, BETTER * ahead.over_noise)
     if law is None or not predicting(law):
         return None
     return law if law.law.periodic or law.fit.over_noise <= AT_NOISE else None
@@ -89,18 +89,19 @@ def _at_one_joint(
     effects: int,
 ) -> FoundLaw | None:
     """The law at the joint that is followed worst that explains its data, if the others' are explained without."""
-    one = one_joint(bench, left, held_out, scales)
-    if one is None:
-        return None
     ahead = bench.residuals(left, held_out, bench.fine)
+    joint = followed_worst(ahead, held_out, scales)
+    if joint is None:
+        return None
     for residuals, experiments, most in (
         (left.fit.residuals, bench.training, EXPLAINED),
         (ahead, held_out, PREDICTED),
     ):
-        squares, counted = left_at(one.joint, residuals, experiments)
+        squares, counted = left_at(joint, residuals, experiments)
         rest = sum(experiment.counted for experiment in experiments) - counted
         if float(residuals @ residuals) - squares > most**2 * rest:
             return None
+    one = one_joint(bench, left, held_out, joint, scales[joint])
     law = _asked_for(one.bench, one.nominal, one.held_out, one.scales, effects)
     bench.evaluations += one.bench.evaluations
     return None if law is None else one.whole(law)
