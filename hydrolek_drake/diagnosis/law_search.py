@@ -28,7 +28,7 @@ SCANNED = ("command", "supply", "load", "sensor")
 """Inputs at which all frequencies are tried. What shakes at another one shows near the same frequencies at one of
 these: a force at the rod as a moment at the load, and what changes the flow in proportion as the supply does."""
 
-STEADY = ("capacity_a", "capacity_b", "back_a", "back_b", "ramp", "coil_time")
+STEADY = ("capacity_a", "capacity_b", "back_a", "back_b", "ramp", "coil_time", "flow_force")
 """Inputs that say how something is built, which no disturbance shakes: no frequency is tried there."""
 
 FOLLOWED = 6

@@ -70,10 +70,10 @@ def terms_scored(
             return model.across(np.concatenate([there - here, still]))
 
         gain, amplitudes = gain_along(moved(TRIED)[:, None], rest)
-        if given.lasts and amplitudes[0] < 0.0:
+        if given.one_sided and amplitudes[0] < 0.0:
             gain, amplitudes = 0.0, (0.0,)
         start, least = amplitudes[0], float(np.sum((rest + moved(amplitudes[0])) ** 2))
-        for size in (sign * s for s in SIZES for sign in ((1.0,) if given.lasts else (1.0, -1.0))):
+        for size in (sign * s for s in SIZES for sign in ((1.0,) if given.one_sided else (1.0, -1.0))):
             change = moved(size)
             remaining = float(np.sum((rest + change) ** 2))
             gain = max(gain, gain_of(change, rest))

@@ -28,7 +28,8 @@ class Input:
         symbol: how a law names it.
         unit: SI unit, "1" for a relative change.
         scale: a large amplitude for this machine.
-        lasts: whether it is a time that something takes, which is a constant and not less than none.
+        one_sided: whether it is a constant of the machine that cannot be less than none: a time that something takes,
+            or a share.
     """
 
     stage: str
@@ -36,7 +37,7 @@ class Input:
     symbol: str
     unit: str
     scale: float
-    lasts: bool = False
+    one_sided: bool = False
 
 
 def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str) -> tuple[Input, ...]:
@@ -55,7 +56,7 @@ def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str)
               0.3 * scales.load_force),
         Input("sensor", "sensor", "added to the reading", position_unit, 0.1 * scales.travel),
         Input("command", "ramp", "time that a ramp of the voltage takes for each volt", "s/V",
-              0.3 * scales.travel_time / limit, lasts=True),
+              0.3 * scales.travel_time / limit, one_sided=True),
     ]  # fmt: skip
     if math.isfinite(scales.conductance):
         inputs += [
@@ -70,7 +71,15 @@ def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str)
                 "time constant of the coils' currents, added",
                 "s",
                 0.3 * scales.travel_time,
-                lasts=True,
+                one_sided=True,
+            ),
+            Input(
+                "valve",
+                "flow_force",
+                "force of the oil that closes the spool, as a share of opening area times pressure drop, added",
+                "1",
+                0.3,
+                one_sided=True,
             ),
             Input("cylinder", "cylinder", "force added at the rod", "N", 0.3 * scales.force),
             Input(
@@ -112,7 +121,7 @@ class Term:
 
     def meant_for(self, given: Input) -> bool:
         """Whether it has a physical meaning at an input."""
-        return given.stage in self.stages and (not given.lasts or self.name == CONSTANT)
+        return given.stage in self.stages and (not given.one_sided or self.name == CONSTANT)
 
     @property
     def name(self) -> str:

@@ -13,7 +13,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-from hydrolek_drake.physics.probes import AMPLIFIER, COIL_TIME, COMMAND, CYLINDER, LOAD, RAMP, Probe, added
+from hydrolek_drake.physics.probes import (
+    AMPLIFIER,
+    COIL_TIME,
+    COMMAND,
+    CYLINDER,
+    FLOW_FORCE,
+    LOAD,
+    RAMP,
+    Probe,
+    added,
+)
 
 TIMES = ("1", "t/T", "(t/T)^2")
 NEAR = "near"
@@ -195,12 +205,18 @@ def felt(probe: Probe, laws: np.ndarray | None, lever: float, seen: Seen) -> tup
 
 
 @njit
-def before_the_spool(laws: np.ndarray | None) -> bool:
-    """Whether a law acts before the spool, which is advanced ahead of the rest of a step."""
+def up_to_the_spool(laws: np.ndarray | None) -> bool:
+    """Whether a law acts before the spool or on it, which is advanced ahead of the rest of a step."""
     if laws is None:
         return False
     for row in range(len(laws)):
         probe = laws[row].probe
-        if probe == COMMAND or probe == AMPLIFIER or probe == RAMP or probe == COIL_TIME:
+        if (
+            probe == COMMAND
+            or probe == AMPLIFIER
+            or probe == RAMP
+            or probe == COIL_TIME
+            or probe == FLOW_FORCE
+        ):
             return True
     return False

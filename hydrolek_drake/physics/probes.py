@@ -27,11 +27,14 @@ class Probe(NamedTuple):
     back_b: float  # the same from side B
     ramp: float  # added to the time that the voltage takes for each volt [s/V]
     coil_time: float  # added to the time constant of the coils' currents [s]
+    flow_force: (
+        float  # added to the share of opening area times pressure drop with which oil closes the spool
+    )
 
 
 PROBES = Probe._fields
 COMMAND, AMPLIFIER, VALVE, SUPPLY, CYLINDER, LOAD, SENSOR, FLOW = range(8)
-CAPACITY_A, CAPACITY_B, BACK_A, BACK_B, RAMP, COIL_TIME = range(8, len(PROBES))
+CAPACITY_A, CAPACITY_B, BACK_A, BACK_B, RAMP, COIL_TIME, FLOW_FORCE = range(8, len(PROBES))
 """Their places."""
 
 NO_PROBE = np.zeros((0, len(PROBES)))
@@ -40,7 +43,7 @@ NO_PROBE = np.zeros((0, len(PROBES)))
 @njit
 def no_probe() -> Probe:
     """Nothing from outside."""
-    return Probe(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return Probe(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit
@@ -67,6 +70,7 @@ def probe_at(time: float, begin: float, spacing: float, values: np.ndarray) -> P
         a[11] + f * (b[11] - a[11]),
         a[12] + f * (b[12] - a[12]),
         a[13] + f * (b[13] - a[13]),
+        a[14] + f * (b[14] - a[14]),
     )
 
 
@@ -88,4 +92,5 @@ def added(probe: Probe, at: float, value: float) -> Probe:
         probe.back_b + (value if at == 11.0 else 0.0),
         probe.ramp + (value if at == 12.0 else 0.0),
         probe.coil_time + (value if at == 13.0 else 0.0),
+        probe.flow_force + (value if at == 14.0 else 0.0),
     )

@@ -1,7 +1,7 @@
 """Solenoids and the spool between them, equations (4.5), (4.6); and a servo valve's spool.
 
-The spool depends on the command alone, so it is advanced on its own: `advance` is the one-step method that
-both executions use.
+The spool depends on the command, and on pressures only as far as flow forces go, so it is advanced on its own:
+`advance` is the one-step method that both executions use.
 """
 
 import math
@@ -11,6 +11,7 @@ from numba import njit
 
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.parameters import Parameter, Stage
+from hydrolek_drake.physics.valve import openings
 
 STAGE = Stage(
     "solenoid",
@@ -74,7 +75,15 @@ def solenoid_force(current: float, stroke: float, constant: float, gap_constant:
 
 
 @njit
-def spool_acceleration(x: float, v: float, drive_a: float, drive_b: float, joint: Any) -> tuple[float, float]:
+def spool_acceleration(
+    x: float,
+    v: float,
+    drive_a: float,
+    drive_b: float,
+    joint: Any,
+    closing_a: float = 0.0,
+    closing_b: float = 0.0,
+) -> tuple[float, float]:
     """Acceleration of the spool [m/s^2] and its slope over velocity [1/s], equations (4.5), (4.6).
 
     Args:
@@ -83,6 +92,8 @@ def spool_acceleration(x: float, v: float, drive_a: float, drive_b: float, joint
         drive_a: what drives towards A: coil current [A], or voltage [V] of a servo valve.
         drive_b: what drives towards B.
         joint: parameter record.
+        closing_a: flow force where it is wholly open towards A, `valve.flow_forces` [N].
+        closing_b: where it is towards B [N].
     """
     p = joint.solenoid
     if p.variant == SERVO_VALVE:
@@ -97,15 +108,26 @@ def spool_acceleration(x: float, v: float, drive_a: float, drive_b: float, joint
         - p.spring * x
         - friction
     )
+    if closing_a > 0.0 or closing_b > 0.0:
+        open_a, open_b = openings(x, joint)
+        force -= closing_a * open_a - closing_b * open_b
     per_mass = 1.0 / p.moving_mass
     return force * per_mass, -(p.damping + friction_slope) * per_mass
 
 
 @njit
 def advance(
-    x: float, v: float, drive_a: float, drive_b: float, h: float, steps: int, joint: Any
+    x: float,
+    v: float,
+    drive_a: float,
+    drive_b: float,
+    h: float,
+    steps: int,
+    joint: Any,
+    closing_a: float = 0.0,
+    closing_b: float = 0.0,
 ) -> tuple[float, float]:
-    """Spool position and velocity after `h` seconds of a held drive, in `steps` Rosenbrock-W steps.
+    """Spool position and velocity after `h` seconds of a held drive and flow force, in `steps` Rosenbrock-W steps.
 
     A spool with dry friction takes `STEPS_WHERE_STICKING` as many.
     """
@@ -116,10 +138,12 @@ def advance(
         steps *= STEPS_WHERE_STICKING
     dt = h / steps
     for _ in range(steps):
-        acceleration, slope = spool_acceleration(x, v, drive_a, drive_b, joint)
+        acceleration, slope = spool_acceleration(x, v, drive_a, drive_b, joint, closing_a, closing_b)
         scale = 1.0 / (1.0 - GAMMA * dt * slope)
         x1, v1 = v, acceleration * scale
-        acceleration, _ = spool_acceleration(x + dt * x1, v + dt * v1, drive_a, drive_b, joint)
+        acceleration, _ = spool_acceleration(
+            x + dt * x1, v + dt * v1, drive_a, drive_b, joint, closing_a, closing_b
+        )
         x2, v2 = v + dt * v1 - 2.0 * x1, (acceleration - 2.0 * v1) * scale
         x, v = x + dt * (1.5 * x1 + 0.5 * x2), v + dt * (1.5 * v1 + 0.5 * v2)
     return x, v

@@ -26,6 +26,13 @@ STAGE = Stage(
             Parameter("max_area_a", "m^2", "largest orifice area when A is fed, A_max in (4.7)", lowest=0.0),
             Parameter("max_area_b", "m^2", "largest orifice area when B is fed, A_max in (4.7)", lowest=0.0),
             Parameter("discharge", "1", "contraction coefficient C_q in (4.7)", lowest=0.0),
+            Parameter(
+                "flow_force",
+                "1",
+                "share of opening area times pressure drop with which oil closes the spool; 0 where compensated",
+                neutral=0.0,
+                lowest=0.0,
+            ),
         ),
         "pressure_compensated": (
             Parameter("overlap_a", "m", "spool travel before P opens to A", lowest=0.0),
@@ -68,6 +75,31 @@ def openings(x: float, joint: Any) -> tuple[float, float]:
 def _opened(beyond: float, travel: float) -> float:
     """Share of full opening of a land that is `beyond` its overlap, out of the `travel` to full opening [m]."""
     return min(max(beyond / travel, 0.0), 1.0) if beyond > 0.0 else 0.0
+
+
+@njit
+def flow_forces(p_supply: float, p_a: float, p_b: float, more: float, joint: Any) -> tuple[float, float]:
+    """Forces [N] with which the oil would close the spool if it were wholly open towards A, and towards B.
+
+    The steady-state flow force F = f A dp of each edge, f = 0.43 for a sharp one (Merritt, Hydraulic Control Systems,
+    1967, section 5.6); towards A two are open, P-A and B-T, towards B P-B and A-T.
+
+    Args:
+        p_supply: pressure at port P [Pa].
+        p_a: pressure at port A [Pa].
+        p_b: pressure at port B [Pa].
+        more: added to the rig's f.
+        joint: parameter record.
+    """
+    p = joint.valve
+    if p.variant != PLAIN or p.flow_force + more <= 0.0:
+        return 0.0, 0.0
+    share = p.flow_force + more
+    p_tank = joint.supply.tank_pressure
+    return (
+        share * p.max_area_a * (abs(p_supply - p_a) + abs(p_b - p_tank)),
+        share * p.max_area_b * (abs(p_supply - p_b) + abs(p_a - p_tank)),
+    )
 
 
 @njit

@@ -47,6 +47,7 @@ UNITS = {
     "back_b": "1",
     "ramp": "s/V",
     "coil_time": "s",
+    "flow_force": "1",
 }
 """Inputs that a law may give -> their units; of a vane and of a sliding load the second one."""
 

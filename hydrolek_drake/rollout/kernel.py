@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from hydrolek_drake.physics import amplifier, command, hooks, load, sensor, solenoid
+from hydrolek_drake.physics import amplifier, command, hooks, load, sensor, solenoid, supply, valve
 from hydrolek_drake.physics.amplifier import Currents
-from hydrolek_drake.physics.law import before_the_spool
+from hydrolek_drake.physics.law import up_to_the_spool
 from hydrolek_drake.physics.probes import Probe, probe_at
 from hydrolek_drake.physics.solenoid import GAMMA
 from hydrolek_drake.rollout.rates import State, Turned, felt_at, rates, turned
@@ -144,7 +144,7 @@ def integrate(
         longest_step: [s].
         spool_steps: spool steps within one step.
         probe_spacing: of the samples of the probes, which begin at the first of `times` [s].
-        probe_values: `PROBES` over time, shape (k, 14); no rows for none.
+        probe_values: `PROBES` over time, shape (k, 15); no rows for none.
         pull_time: with this time constant reading and pressures are pulled to what was measured, as in an
             observer [s]; zero or less for a free rollout.
         measured: `PULLED` at `times`, NaN where there is no value, shape (n, 3); no rows for a free rollout.
@@ -159,7 +159,7 @@ def integrate(
     s = State(state[2], state[3], state[4], state[5], state[6], state[7], state[8], state[9], state[10])
     playing = hooks.linkage_gap(joint) > 0.0
     rocking = hooks.base_stiffness(joint) > 0.0
-    early = before_the_spool(law)
+    early = up_to_the_spool(law) or (law is not None and joint.valve.flow_force > 0.0)
     delay = command.transport_delay(joint)
     rod = load.reflected_rod_inertia(joint)
     begin = times[0]
@@ -202,8 +202,15 @@ def integrate(
                     )
                     probe_next = probe_at(t + (i + 1) * h, begin, probe_spacing, probe_values)
                     gain += 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
+                    closing_a, closing_b = valve.flow_forces(
+                        supply.supply_pressure(s.flow, joint) + now.supply,
+                        s.p_a,
+                        s.p_b,
+                        now.flow_force,
+                        joint,
+                    )
                     x_next, xd = solenoid.advance(
-                        x, xd, gain * driving.a, gain * driving.b, h, spool_steps, joint
+                        x, xd, gain * driving.a, gain * driving.b, h, spool_steps, joint, closing_a, closing_b
                     )
                     inertia = _inertia_at(time, rod, joint)
                     s = _step(s, x, x_next, drive, time, h, inertia, probe, probe_next, law, near, joint)

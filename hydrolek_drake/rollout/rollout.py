@@ -147,7 +147,7 @@ def roll_out(
         longest_step: upper bound of the integration step [s].
         spool_steps: steps of the spool within one step of the rest.
         probes: inputs from outside the model, `probes.PROBES`: spacing of their samples [s], and the samples,
-            shape (k, 14), the first at the first of `times`; None for none.
+            shape (k, 15), the first at the first of `times`; None for none.
         pull: reading and pressures are pulled to what was measured, as in an observer: time constant [s], and
             `kernel.PULLED` at `times`, NaN where there is no value, shape (n, 3); None for a free rollout.
         law: how inputs from outside follow from the state, rows of `law.LAW`, shape (k,), besides the law that the

@@ -283,6 +283,9 @@ def _wire_hydraulics(
     builder.Connect(supply.pressure, valve.supply)
     builder.Connect(valve.flow, supply.flow)
     builder.Connect(valve.flow, actuator.flow)
+    if spool.feels_oil:
+        builder.Connect(actuator.pressure, spool.pressure)
+        builder.Connect(supply.pressure, spool.supply)
     builder.Connect(parts.linkage.rod_motion, actuator.motion)
     builder.Connect(actuator.force, parts.linkage.force)
     builder.ExportInput(supply.available, "pressure_available")

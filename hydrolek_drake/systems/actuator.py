@@ -63,7 +63,7 @@ class Actuator(LeafSystem):
     Ports:
         in `oil_flow` (3n) [m^3/s].
         in `rod_motion` (2n): strokes [m], then velocities [m/s]; angles for vane and motor.
-        in `outside` (14 n): what a law adds, or open.
+        in `outside` (15 n): what a law adds, or open.
         out `pressure` (2n): chambers A, then B [Pa]; the continuous state.
         out `rod_force` (n): positive pushes out [N]; moments [N m] for vane and motor.
     """

@@ -32,7 +32,7 @@ class CommandRamp(LeafSystem):
 
     Ports:
         in `voltage` (n): positive towards chamber A [V].
-        in `outside` (14 n): what a law adds, or open.
+        in `outside` (15 n): what a law adds, or open.
         out `voltage_ramped` (n): its mean over the step [V].
     """
 

@@ -44,7 +44,7 @@ class FourWayValve(LeafSystem):
         in `spool_position` (n) [m].
         in `pressure` (2n): chambers A, then B [Pa].
         in `supply_pressure` (1) [Pa].
-        in `outside` (14 n): what a law adds, or open.
+        in `outside` (15 n): what a law adds, or open.
         out `oil_flow` (3n): into chambers A, into chambers B (leakage past the piston included), and drawn
             from the supply [m^3/s].
     """

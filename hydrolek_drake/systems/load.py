@@ -42,7 +42,7 @@ class Load(LeafSystem):
     Ports:
         in `plant_state` (all positions and velocities of the plant).
         in `moment` (n): of the actuators [N m]; may stay open if all of them act at their mounts.
-        in `outside` (14 n): what a law adds, or open.
+        in `outside` (15 n): what a law adds, or open.
         out `joint_torque` (velocities of the plant): generalized forces [N m or N].
     """
 

@@ -46,7 +46,7 @@ class Potentiometer(LeafSystem):
 
     Ports:
         in `motion` (2n): joint positions, then velocities.
-        in `outside` (14 n): what a law adds, or open.
+        in `outside` (15 n): what a law adds, or open.
         out `position_measured` (n) [rad or m].
         out `position_ideal` (n): the same without noise and resolution; ground truth of the sensor's errors.
         out `potentiometer_voltage` (n) [V]; NaN for a joint without a potentiometer.

@@ -37,7 +37,7 @@ class ProportionalAmplifier(LeafSystem):
 
     Ports:
         in `voltage_delayed` (n) [V].
-        in `outside` (14 n): what a law adds, or open.
+        in `outside` (15 n): what a law adds, or open.
         out `coil_current` (2n): coils A, then coils B [A], means over a step that begins with the voltage; of a servo
             valve the voltage itself [V].
     """

@@ -37,7 +37,7 @@ def _outside(
     row[4], row[5], row[6], row[7] = added.cylinder, added.load, added.sensor, added.flow
     row[8], row[9] = added.capacity_a, added.capacity_b
     row[10], row[11] = added.back_a, added.back_b
-    row[12], row[13] = added.ramp, added.coil_time
+    row[12], row[13], row[14] = added.ramp, added.coil_time, added.flow_force
 
 
 class ShortLaw(LeafSystem):
@@ -48,7 +48,7 @@ class ShortLaw(LeafSystem):
         in `rod_motion` (2n): strokes, then velocities; open in a machine without oil, as the next two are.
         in `pressure` (2n): chambers A, then B [Pa].
         in `spool_position` (n) [m].
-        out `outside` (14 n): `probes.PROBES` of the first joint, then of the next.
+        out `outside` (15 n): `probes.PROBES` of the first joint, then of the next.
     """
 
     def __init__(self, joints: np.ndarray):
@@ -84,13 +84,13 @@ class Outside:
     """
 
     def __init__(self, system: LeafSystem, joints: int):
-        """Declare the port `outside` (14 n) of a system."""
+        """Declare the port `outside` (15 n) of a system."""
         self.port = system.DeclareVectorInputPort("outside", joints * len(PROBES))
         self._shape = (joints, len(PROBES))
         self._none = np.zeros(self._shape)
 
     def eval(self, context: Context) -> np.ndarray:
-        """One row for each joint, `probes.PROBES`. # (n, 14)."""
+        """One row for each joint, `probes.PROBES`. # (n, 15)."""
         if not self.port.HasValue(context):
             return self._none
         return self.port.Eval(context).reshape(self._shape)

@@ -30,7 +30,7 @@ class Supply(LeafSystem):
         in `oil_flow` (3n): its last n entries are drawn from the supply [m^3/s].
         in `pressure_available` (1): share of the pump's pressure that is there, 1 when healthy, 0 when a hose
             has burst; 1 if unconnected.
-        in `outside` (14 n): what laws add, or open; all joints feel it.
+        in `outside` (15 n): what laws add, or open; all joints feel it.
         out `supply_pressure` (1) [Pa].
     """
 

@@ -70,7 +70,7 @@ class TransportDelay(LeafSystem):
 
     Ports:
         in `command` (n): recorded or commanded voltage [V].
-        in `outside` (14 n): what a law adds to the command that has arrived, or open.
+        in `outside` (15 n): what a law adds to the command that has arrived, or open.
         out `voltage_delayed` (n): at the amplifiers, positive towards chamber A, limited; its mean over the
             running step [V].
         out `voltage_arriving` (n): the sample that arrives within the step that begins now [V], for what is

@@ -41,9 +41,13 @@ def test_it_reproduces_the_practice_recordings_to_the_noise(pair: str) -> None:
 
 @pytest.mark.parametrize(
     ("own", "path", "value"),
-    [({"ramp_v_per_s": 60.0}, "command.ramp", 1 / 60.0), ({"coil_s": 0.03}, "amplifier.coil_time", 0.03)],
+    [
+        ({"ramp_v_per_s": 60.0}, "command.ramp", 1 / 60.0),
+        ({"coil_s": 0.03}, "amplifier.coil_time", 0.03),
+        ({"flow_force": 0.1}, "valve.flow_force", 0.1),
+    ],
 )
-def test_a_slow_command_is_that_of_the_diagnosing_rollout(
+def test_what_takes_its_time_or_closes_the_spool_is_that_of_the_diagnosing_rollout(
     own: dict[str, float], path: str, value: float
 ) -> None:
     """Two formulations: within Runge-Kutta of 20 us there, in closed form over a step here."""

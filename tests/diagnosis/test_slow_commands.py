@@ -26,7 +26,7 @@ def test_a_ramp_and_slow_coils_are_told_from_each_other(bench, recorded, probe, 
         nominal = fit_baseline(workbench)
         scales = natural_scales(bench, "joint", training)
         inputs = inputs_of(scales, bench.value("supply.pressure"), 10.0, "rad")
-        early = [given for given in inputs if given.lasts]
+        early = [given for given in inputs if given.one_sided]
         laws = promising(workbench, nominal, early, span, 4.0 * workbench.fine)
         tried = [(glance(workbench, nominal, law, span, 2.0 * workbench.fine), law) for law in laws]
         (_, *at), law = min(tried, key=lambda each: each[0][0])
@@ -38,7 +38,7 @@ def test_a_ramp_and_slow_coils_are_told_from_each_other(bench, recorded, probe, 
 
 
 def test_what_takes_a_time_depends_on_nothing() -> None:
-    ramp = Input("command", "ramp", "time for each volt", "s/V", 0.03, lasts=True)
+    ramp = Input("command", "ramp", "time for each volt", "s/V", 0.03, one_sided=True)
     assert [term for term in TERMS if term.meant_for(ramp)] == [Term(TERMS[0].stages)]
 
 

@@ -80,3 +80,14 @@ def test_servo_valve_is_a_second_order_lag_with_a_limited_stroke(slide_joint):
     assert_allclose(acceleration, 300.0**2 * (target - x) - 2 * 0.8 * 300.0 * v, rtol=1e-13)
     assert_allclose(slope, -2 * 0.8 * 300.0, rtol=1e-13)
     assert_allclose(advance(0.0, 0.0, 14.0, 0.0, 0.5, 1000, joint)[0], 1e-3, rtol=1e-9)
+
+
+def test_a_spool_comes_to_rest_where_magnet_spring_and_the_oil_balance(bench_joint):
+    """Towards B; the oil closes it, in proportion to its opening."""
+    joint = bench_joint({"solenoid.gap_constant": 0.0})
+    closing = 2.3
+    x, v = advance(0.0, 0.0, 0.0, 0.28, 1.0, 4000, joint, 1.1, closing)
+    opening = (-x - 0.06e-3) / (0.35e-3 - 0.06e-3)
+    assert 0.0 < opening < 1.0
+    assert_allclose(30.0 * 0.28**2, -K * x + closing * opening, rtol=1e-9)
+    assert abs(v) < 1e-12

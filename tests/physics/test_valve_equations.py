@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from hydrolek_drake.physics.valve import chamber_flows, openings
+from hydrolek_drake.physics.valve import chamber_flows, flow_forces, openings
 
 P_S, P_T = 16e6, 0.2e6
 UNEQUAL = {
@@ -128,3 +128,19 @@ def test_what_a_way_back_conducts_more_flows_there_alone(bench_joint) -> None:
     assert less[0] == pytest.approx(0.75 * plain[0], rel=1e-12)
     assert less[1:3] == pytest.approx(plain[1:3], rel=1e-12)
     assert chamber_flows(*args, -1.5, 0.0)[0] == 0.0
+
+
+def test_flow_forces_are_0_43_of_opening_area_times_both_edges_pressure_drops(bench_joint):
+    """Merritt 1967, section 5.6: F = 2 C_d C_v A dp cos(69 deg), 0.43 A dp for a sharp edge."""
+    joint = bench_joint(
+        {
+            "valve.flow_force": 0.4,
+            "valve.max_area_a": 0.7e-6,
+            "valve.max_area_b": 0.5e-6,
+            "supply.tank_pressure": 2e5,
+        }
+    )
+    towards_a, towards_b = flow_forces(16e6, 9e6, 3e6, 0.03, joint)
+    assert_allclose(towards_a, 0.43 * 0.7e-6 * (7e6 + 2.8e6), rtol=1e-13)
+    assert_allclose(towards_b, 0.43 * 0.5e-6 * (13e6 + 8.8e6), rtol=1e-13)
+    assert flow_forces(16e6, 9e6, 3e6, -0.5, joint) == (0.0, 0.0)  # oil opens no spool

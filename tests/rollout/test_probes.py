@@ -96,12 +96,20 @@ def test_a_way_back_that_is_shut_holds_the_rod(probe: str, volts: float) -> None
 
 
 @pytest.mark.parametrize(
-    ("probe", "path", "size"), [("ramp", "command.ramp", 0.02), ("coil_time", "amplifier.coil_time", 0.04)]
+    ("probe", "path", "size"),
+    [
+        ("ramp", "command.ramp", 0.02),
+        ("coil_time", "amplifier.coil_time", 0.04),
+        ("flow_force", "valve.flow_force", 0.43),
+    ],
 )
-def test_a_slow_command_s_probe_is_the_rig_s_own_number(probe: str, path: str, size: float) -> None:
-    of_the_rig = _run({path: size})
-    assert _run(probe=probe, size=size).position == pytest.approx(of_the_rig.position, abs=1e-12)
-    assert np.abs(of_the_rig.position - _run().position).max() > np.radians(0.5)
+def test_the_probe_of_what_a_machine_has_is_the_rig_s_own_number(probe: str, path: str, size: float) -> None:
+    partly_open = 0.5 * COMMAND  # a force on the spool shows nothing where the valve is wholly open
+    of_the_rig = _run({path: size}, command=partly_open)
+    assert _run(probe=probe, size=size, command=partly_open).position == pytest.approx(
+        of_the_rig.position, abs=1e-12
+    )
+    assert np.abs(of_the_rig.position - _run(command=partly_open).position).max() > np.radians(0.5)
 
 
 def test_a_ramp_is_the_command_ramped_by_hand() -> None:

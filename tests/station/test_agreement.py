@@ -40,6 +40,7 @@ def test_every_effect_agrees_with_its_rollout(number, effect):
         ("hydrolek_right_j3", {"command.ramp": 0.03}),
         ("hydrolek_left_j2", {"amplifier.coil_time": 0.04}),
         ("emps", {"command.ramp": 0.05}),  # a motor takes the voltage itself
+        ("hydrolek_right_j4", {"valve.flow_force": 0.05}),
     ],
 )
 def test_a_command_that_takes_time_agrees_with_its_rollout(joint, slow):

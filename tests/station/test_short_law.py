@@ -32,6 +32,7 @@ LAWS = {
     "back_b": (Term((), speed="v"), -0.4),
     "ramp": (Term(()), 0.02),
     "coil_time": (Term(()), 0.03),
+    "flow_force": (Term(()), 0.43),
 }
 
 
