@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from hydrolek_drake.diagnosis.attempt import PREDICTED
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.effort import NOISE_KNOWN
 from hydrolek_drake.diagnosis.gains import GAIN_NEEDED, gain_needed
@@ -14,6 +15,18 @@ from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 BETTER = 0.8
 """A law must take the held-out error below this share of what it was, or it is no law of this machine. So must it that
 of the training data, unless it explains them: what helps the held-out data alone may do so by chance."""
+
+
+def ahead_to_beat(over_noise: float) -> float:
+    """What a law must leave less of held-out data than, over the noise.
+
+    Where a model predicts these as well as a right one would, no share of that is there to be taken: less will do, and
+    the training data decide.
+
+    Args:
+        over_noise: that the model without the law leaves of them.
+    """
+    return max(BETTER * over_noise, min(over_noise, PREDICTED))
 
 
 def helping(bench: Workbench, left: Hypothesis, laws: Sequence[FoundLaw], step: float) -> list[FoundLaw]:

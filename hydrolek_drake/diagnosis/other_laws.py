@@ -15,7 +15,7 @@ from hydrolek_drake.diagnosis.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.effort import AT_NOISE
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_at_a_joint import followed_worst, left_at, one_joint
-from hydrolek_drake.diagnosis.law_naming import BETTER
+from hydrolek_drake.diagnosis.law_naming import ahead_to_beat
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
 from hydrolek_drake.diagnosis.law_search import STEADY, promising
 from hydrolek_drake.diagnosis.laws import BUILT, TERMS
@@ -75,7 +75,7 @@ def _asked_for(
         laws = worth_it(laws, MOST * (left.fit.objective - left.fit.counted))
     counted = sum(experiment.counted for experiment in held_out)
     ahead = Judged(left, bench.residuals(left, held_out, bench.fine), counted)
-    law = best_of(bench, asked, laws, BETTER * ahead.over_noise)
+    law = best_of(bench, asked, laws, ahead_to_beat(ahead.over_noise))
     if law is None or not predicting(law):
         return None
     return law if law.law.periodic or law.fit.over_noise <= AT_NOISE else None

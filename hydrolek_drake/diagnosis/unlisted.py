@@ -19,7 +19,7 @@ from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_counterpart import counterpart
 from hydrolek_drake.diagnosis.law_fit import STEPS, fitted, glance
 from hydrolek_drake.diagnosis.law_growing import grown
-from hydrolek_drake.diagnosis.law_naming import BETTER, helping, likeliest
+from hydrolek_drake.diagnosis.law_naming import ahead_to_beat, helping, likeliest
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, left_in_all, records_of
 from hydrolek_drake.diagnosis.law_search import STEADY, promising
 from hydrolek_drake.diagnosis.laws import CONSTANT, Input, Span, inputs_of, span_of
@@ -63,7 +63,7 @@ def find_law(
     """
     asked = Asked.of(bench, named.hypothesis, held_out, scales)
     laws = promising(bench, asked.left, asked.inputs, asked.span, asked.step)
-    return best_of(bench, asked, laws, BETTER * named.over_noise)
+    return best_of(bench, asked, laws, ahead_to_beat(named.over_noise))
 
 
 @dataclass(frozen=True)
