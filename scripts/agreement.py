@@ -32,6 +32,13 @@ SIZES = Path(__file__).parent / "agreement_effects.json"
 BLOWS = "linkage.backlash"
 """Each closing of a play is a blow of a small inertia on a stiff spring, which takes 0.2 ms."""
 
+RUBBING_BESIDE = {
+    "cylinder.friction_asymmetry": "cylinder.coulomb_friction",
+    "load.friction_asymmetry": "load.coulomb_friction",
+}
+"""What differs between the directions is a part of a friction. Alone it pushes in one of them, and feeds what rings
+until a hair's breadth decides."""
+
 BOUNCES = ("hydrolek_left_j4", BLOWS)
 """A light joint, a vane: it bounces where a hair's breadth decides, and both executions are of first order there."""
 
@@ -58,6 +65,8 @@ def with_effect(rig: Rig, effect: str | None, joint: int = 0) -> Rig:
     """The rig with one effect on at one joint, at a size that is plainly visible, relative to the rig's own numbers."""
     if effect is None:
         return rig
+    if effect in RUBBING_BESIDE:
+        rig = with_effect(rig, RUBBING_BESIDE[effect], joint)
     sizes = json.loads(SIZES.read_text())[effect]
     record = rig.records()[joint]
     scale = {

@@ -27,7 +27,7 @@ def enlarged_rig(rig: Rig, hypothesis: Hypothesis, law: FoundLaw | None) -> Rig:
         full = enlarged.full_path(path)
         entries[full] = replace(entries[full], source=SOURCE)
     enlarged = replace(enlarged, entries=entries)
-    if law is None:
+    if law is None or not law.of_the_machine:
         return enlarged
     rows = records_of(law.law, law.span, law.values)
     source = f"{SOURCE}; its phase is the first recording's" if law.law.periodic else SOURCE

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -124,6 +125,27 @@ class FoundLaw:
     ahead: tuple[np.ndarray, ...]
     joint: str
     rivals: tuple[str, ...] = ()
+
+    of_the_machine: ClassVar[bool] = True
+    """Whether a rig can hold it."""
+
+    @property
+    def condition(self) -> str:
+        """When it acts, as far as its form tells; empty if it does not."""
+        return f"periodic, {self.values[2]:.3g} Hz" if self.law.periodic else ""
+
+    def signals(
+        self, experiment: Experiment, records: np.ndarray, step: float, values: np.ndarray
+    ) -> Signals:
+        """What a model with the law does.
+
+        Args:
+            experiment: whose commands it is given.
+            records: of all joints of the rig. # (joints,)
+            step: of the integration [s].
+            values: the law's on this recording.
+        """
+        return experiment.simulate(records, step, law=records_of(self.law, self.span, values)).signals
 
     @property
     def amplitudes(self) -> list[float]:

@@ -149,8 +149,8 @@ def locate_law(bench: Workbench, best: Hypothesis, baseline: Hypothesis, law: Fo
     before, _ = left_at(law.joint, best.fit.residuals, bench.training)
     share = (before - law.fit.chi_squared) / total
     condition = told_condition(experiment.time, law.difference, holds)
-    if law.law.periodic:
-        condition = f"periodic, {law.values[2]:.3g} Hz; {condition}"
+    if law.condition:
+        condition = f"{law.condition}; {condition}"
     return Location(
         stage=law.law.input.stage,
         joint=experiment.joint,

@@ -12,13 +12,15 @@ from dataclasses import dataclass
 
 from hydrolek_drake.diagnosis.attempt import PREDICTED, predicting
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED
-from hydrolek_drake.diagnosis.effort import AT_NOISE
+from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, AT_NOISE, NEAR
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_at_a_joint import followed_worst, left_at, one_joint
+from hydrolek_drake.diagnosis.law_fit import glance
 from hydrolek_drake.diagnosis.law_naming import ahead_to_beat
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
 from hydrolek_drake.diagnosis.law_search import STEADY, promising
 from hydrolek_drake.diagnosis.laws import BUILT, TERMS
+from hydrolek_drake.diagnosis.lost_commands import lost_commands
 from hydrolek_drake.diagnosis.unlisted import Asked, best_of
 from hydrolek_drake.diagnosis.weighing import weighted_by
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -28,6 +30,10 @@ from hydrolek_drake.identification.experiment import Experiment
 MOST = 0.5
 """Before a second effect a law must promise this share of what the nominal model leaves above the noise, or it is not
 fitted."""
+
+HOPEFUL, GLANCED = 0.05, 2
+"""A nominal model that has bent its numbers far lets a constant promise little. The first few that promise this share
+are fitted with a few steps, and on if that explains what it sees."""
 
 
 @dataclass(frozen=True)
@@ -72,13 +78,33 @@ def _asked_for(
     first = effects == 1
     laws = promising(bench, left, asked.inputs, asked.span, asked.step, BUILT if first else TERMS)
     if first:
-        laws = worth_it(laws, MOST * (left.fit.objective - left.fit.counted))
+        above = left.fit.objective - left.fit.counted
+        laws = [*worth_it(laws, MOST * above), *_better_than_promised(bench, asked, laws, above)]
     counted = sum(experiment.counted for experiment in held_out)
     ahead = Judged(left, bench.residuals(left, held_out, bench.fine), counted)
     law = best_of(bench, asked, laws, ahead_to_beat(ahead.over_noise))
     if law is None or not predicting(law):
-        return None
+        return _lost(bench, asked) if first and left.fit.over_noise > NEAR else None
     return law if law.law.periodic or law.fit.over_noise <= AT_NOISE else None
+
+
+def _lost(bench: Workbench, asked: Asked) -> FoundLaw | None:
+    """Commands that got lost, if that explains the data to the noise: windows could make up for a little of much."""
+    left = asked.left
+    needed = MOST * (left.fit.objective - left.fit.counted)
+    lost = lost_commands(bench, left, asked.held_out, asked.span, asked.step, needed)
+    return lost if lost is not None and predicting(lost) and lost.fit.over_noise <= ABOVE_NOISE else None
+
+
+def _better_than_promised(bench: Workbench, asked: Asked, laws: Sequence[Law], above: float) -> list[Law]:
+    """Constants that promise too little to be fitted, and explain the beginning of the data by a few steps."""
+    hopeful = [law for law in laws if _built(law) and HOPEFUL * above < law.gain <= MOST * above]
+    tried = sorted(hopeful, key=lambda law: -law.gain)[:GLANCED]
+    if not tried:
+        return []
+    begun = bench.side_by_side(lambda law: glance(bench, asked.left, law, asked.span, asked.step), tried)
+    most = EXPLAINED**2 * sum(experiment.counted for experiment in bench.beginning())
+    return [law for law, (objective, *_) in zip(tried, begun, strict=True) if objective < most]
 
 
 def _at_one_joint(
@@ -113,5 +139,10 @@ def worth_it(laws: Sequence[Law], needed: float) -> list[Law]:
     All sines, if one promises what is needed, and the constants that do, at inputs that say how the machine is built.
     """
     sines = [law for law in laws if law.periodic]
-    built = [law for law in laws if not law.periodic and law.input.probe in STEADY and law.gain > needed]
+    built = [law for law in laws if _built(law) and law.gain > needed]
     return [*(sines if any(law.gain > needed for law in sines) else ()), *built]
+
+
+def _built(law: Law) -> bool:
+    """Whether it is a constant that says how the machine is built."""
+    return not law.periodic and law.input.probe in STEADY

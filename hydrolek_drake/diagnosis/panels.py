@@ -3,7 +3,7 @@
 import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
-from hydrolek_drake.diagnosis.law_problem import FoundLaw, records_of
+from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.workbench import Hypothesis
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.replay.display import display_factor, display_unit
@@ -80,11 +80,8 @@ def _simulated(
     held_out = [held for held in diagnosis.held_out if held.joint == law.joint]
     place = next((i for i, held in enumerate(held_out) if held is experiment), None)
     own = law.values if place is None else law.ahead[place]
-    return experiment.simulate(
-        parameters.records(parameters.unit(law.parameters)),
-        diagnosis.step,
-        law=records_of(law.law, law.span, own),
-    ).signals
+    records = parameters.records(parameters.unit(law.parameters))
+    return law.signals(experiment, records, diagnosis.step, own)
 
 
 def _stack(

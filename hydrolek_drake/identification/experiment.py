@@ -136,6 +136,24 @@ class Experiment:
             offsets.append(self.start_error * counts * response / deviation)
         return without_offset(np.concatenate(parts), np.concatenate(offsets))
 
+    def without_command(self, windows: np.ndarray, neutral: float) -> "Experiment":
+        """The same experiment with commands that did not arrive.
+
+        Args:
+            windows: begin and end of each [s]. # (k, 2)
+            neutral: command that acts meanwhile [V].
+        """
+        times, command = self.command_times, self.command
+        for begin, end in windows.tolist():
+            before, after = np.searchsorted(times, (begin, end), side="left")
+            resumed = np.searchsorted(times, end, side="right") - 1
+            if resumed < 0:  # it ends before the first command
+                continue
+            after = max(after, resumed + 1)
+            times = np.concatenate([times[:before], [begin, end], times[after:]])
+            command = np.concatenate([command[:before], [neutral, command[resumed]], command[after:]])
+        return replace(self, command_times=times, command=command)
+
     def until(self, seconds: float) -> "Experiment":
         """The beginning of the experiment, up to so many seconds after its first sample."""
         count = int(np.searchsorted(self.time, self.time[0] + seconds, side="right"))

@@ -1,6 +1,6 @@
 """Short recordings of the bench, made by its own rollout."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,8 @@ def bench() -> Rig:
 
 @pytest.fixture(scope="session")
 def recorded() -> Callable[..., list[Experiment]]:
-    """(machine, fitted rig, seed, noise, largest volts, pressures, unknown input, frequency, law) -> 12 s of it."""
+    """(machine, fitted rig, seed, noise, largest volts, pressures, unknown input, frequency, law, lost commands)
+    -> 12 s of it."""
 
     def make(
         machine: Rig,
@@ -31,6 +32,7 @@ def recorded() -> Callable[..., list[Experiment]]:
         unknown: tuple[str, float] | None = None,
         unknown_Hz: float = 0.0,
         law: Callable[[Experiment], np.ndarray] | None = None,
+        lost_s: Sequence[tuple[float, float]] = (),
     ) -> list[Experiment]:
         rng = np.random.default_rng(seed)
         time = np.arange(0.0, 12.0, 0.01)
@@ -50,7 +52,8 @@ def recorded() -> Callable[..., list[Experiment]]:
             rows[:, PROBES.index(unknown[0])] = unknown[1] * course
             probes = (0.01, rows)
         experiment = experiments_of(machine, blank)[0]
-        played = experiment.simulate(
+        arrived = experiment.without_command(np.array(lost_s).reshape(-1, 2), 0.0)
+        played = arrived.simulate(
             machine.records(), 1e-4, probes, law=None if law is None else law(experiment)
         ).signals
         angle = played.reading + np.radians(noise_deg) * rng.standard_normal(time.size)

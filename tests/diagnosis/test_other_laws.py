@@ -12,6 +12,7 @@ from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.law_naming import BETTER, ahead_to_beat
 from hydrolek_drake.diagnosis.laws import BUILT, TERMS
 from hydrolek_drake.diagnosis.other_laws import OtherLaws, worth_it
+from hydrolek_drake.diagnosis.unlisted import Asked
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -83,8 +84,9 @@ def test_what_is_no_sine_must_come_to_the_noise(
     law = SimpleNamespace(law=form, fit=SimpleNamespace(over_noise=left), held_out_over_noise=ahead)
     tried, beaten = [], []
     monkeypatch.setattr(other_laws, "weighted_by", lambda bench, nominal, experiments: experiments)
-    monkeypatch.setattr(other_laws.Asked, "of", lambda *_: SimpleNamespace(inputs=(), span=None, step=1e-3))
+    monkeypatch.setattr(Asked, "of", lambda *given: Asked(given[1], (), (), None, 1e-3))
     monkeypatch.setattr(other_laws, "promising", lambda *given: tried.append(given[-1]) or [form])
+    monkeypatch.setattr(other_laws, "lost_commands", lambda *_: None)
     monkeypatch.setattr(other_laws, "best_of", lambda *given: beaten.append(given[-1]) or law)
     nominal = SimpleNamespace(fit=SimpleNamespace(objective=2000.0, counted=1000, over_noise=1.4))
     bench = SimpleNamespace(

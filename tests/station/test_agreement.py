@@ -29,7 +29,7 @@ def test_every_instrumented_joint_agrees_with_its_rollout(joint):
 def test_every_effect_agrees_with_its_rollout(number, effect):
     joint = agreement.JOINTS[number % len(agreement.JOINTS)]
     rig = agreement.with_effect(load_rig(joint), effect)
-    assert rig.effects_on(joint.removeprefix("hydrolek_")) == (effect,)
+    assert effect in rig.effects_on(joint.removeprefix("hydrolek_"))
     [(_, largest)] = agreement.compare(rig, 3.0, STEP, number)
     assert largest <= REQUIRED_DEG
 

@@ -1,0 +1,92 @@
+"""Commands that got lost are found where they were, and nowhere else."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.diagnosis.baseline import fit_baseline
+from hydrolek_drake.diagnosis.enlarged import enlarged_rig
+from hydrolek_drake.diagnosis.lost_commands import GAIN, WINDOW_S, lost_commands, merged, picked
+from hydrolek_drake.diagnosis.unlisted import Asked
+from hydrolek_drake.diagnosis.words import law_sentence, where_sentence
+from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.parameter_set import free_parameters
+
+LOST_S, AHEAD_S = ((3.27, 3.41), (8.14, 8.26)), ((8.08, 8.22),)
+
+
+def _asked_for(bench, training, held_out):
+    with ThreadPoolExecutor(2) as pool:
+        workbench = Workbench(bench, free_parameters(bench), training, pool)
+        nominal = fit_baseline(workbench)
+        asked = Asked.of(workbench, nominal, held_out, natural_scales(bench, "joint", training))
+        needed = 0.5 * (nominal.fit.objective - nominal.fit.counted)
+        return nominal, lost_commands(workbench, nominal, held_out, asked.span, asked.step, needed)
+
+
+def _named(name, experiments):
+    [experiment] = experiments
+    return [Experiment(**{**experiment.__dict__, "name": name})]
+
+
+def test_commands_that_got_lost_are_found_in_both_recordings(bench, recorded) -> None:
+    training = _named("train", recorded(bench, bench, seed=1, largest_V=5.0, lost_s=LOST_S))
+    held_out = _named("ahead", recorded(bench, bench, seed=2, largest_V=5.0, lost_s=AHEAD_S))
+    nominal, found = _asked_for(bench, training, held_out)
+    assert nominal.fit.over_noise > 2.0
+    assert found is not None
+    assert (
+        found.fit.over_noise < 1.06
+    )  # the deviation of 1200 samples of noise is known to 2 %; three times that
+    assert found.held_out_over_noise < 1.1
+    # a valve passes a command on within 25 ms, and a joint moves by what both ends of a window are apart
+    np.testing.assert_allclose(found.windows["train"], LOST_S, atol=0.02)
+    np.testing.assert_allclose(found.windows["ahead"], AHEAD_S, atol=0.02)
+    told = law_sentence(found) + where_sentence(found)
+    assert "in train at 3.2" in told and "in ahead at 8.0" in told
+    assert enlarged_rig(bench, nominal, found).laws == {}  # the machine has no law
+
+
+def test_a_machine_with_friction_has_lost_nothing(bench, recorded) -> None:
+    machine = bench.with_values({"effects.cylinder.coulomb_friction.coulomb_N": 600.0})
+    training, held_out = (recorded(machine, bench, seed=seed, largest_V=5.0) for seed in (1, 2))
+    nominal, found = _asked_for(bench, training, held_out)
+    assert nominal.fit.over_noise > 1.5
+    assert found is None or found.fit.over_noise > 1.1
+
+
+def test_a_command_is_neutral_within_a_window_and_itself_after(bench, recorded) -> None:
+    [experiment] = recorded(bench, bench)
+    times = np.arange(0.0, 11.9, 0.001)
+
+    def held(of):
+        return of.command[np.maximum(np.searchsorted(of.command_times, times, side="right") - 1, 0)]
+
+    windows = np.array([[2.003, 2.0155], [4.0, 4.5]])
+    arrived = experiment.without_command(windows, 0.25)
+    assert np.all(np.diff(arrived.command_times) > 0.0)
+    inside = np.any([(times >= begin) & (times < end) for begin, end in windows], axis=0)
+    np.testing.assert_array_equal(held(arrived), np.where(inside, 0.25, held(experiment)))
+
+
+def test_windows_are_picked_by_what_they_explain() -> None:
+    rng = np.random.default_rng(4)
+    columns = rng.standard_normal((500, 40))
+    columns[:, 7] *= 30.0  # what moves much is not what explains much
+    rest = rng.standard_normal(500) - 3.0 * columns[:, 11] - 0.8 * columns[:, 30] + 2.0 * columns[:, 20]
+    chosen, multiples, promised = picked(columns, rest)
+    assert chosen[0] == 11 and set(chosen) >= {11, 30} and 20 not in chosen  # no window gives a command back
+    assert dict(zip(chosen, multiples, strict=True))[11] == pytest.approx(3.0, abs=0.5)
+    assert promised > 9.0 * 500 * 0.8
+    assert picked(columns, rng.standard_normal(500))[0] == []  # of 40 none reaches five standard deviations
+    assert GAIN == 25.0
+
+
+def test_windows_that_touch_are_one() -> None:
+    [lost, later] = merged([(1.0, 0.4), (1.1, 0.8), (3.0, 0.5)])
+    assert lost == pytest.approx([1.0 + WINDOW_S * 2 / 3 + 0.05 - 0.06, 1.0 + WINDOW_S * 2 / 3 + 0.05 + 0.06])
+    assert later == pytest.approx([3.025, 3.075])
+    assert merged([(1.0, 0.01)]).shape == (0, 2)  # a millisecond
