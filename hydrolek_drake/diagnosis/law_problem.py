@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -133,6 +133,15 @@ class FoundLaw:
     def condition(self) -> str:
         """When it acts, as far as its form tells; empty if it does not."""
         return f"periodic, {self.values[2]:.3g} Hz" if self.law.periodic else ""
+
+    @property
+    def acts(self) -> tuple[tuple[float, float], ...]:
+        """When it acts in the first training recording [s], if its form tells; empty if it always may."""
+        return ()
+
+    def more(self) -> dict[str, Any]:
+        """What `report.json` tells of it beside its amplitudes."""
+        return {}
 
     def signals(
         self, experiment: Experiment, records: np.ndarray, step: float, values: np.ndarray

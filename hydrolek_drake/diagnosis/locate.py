@@ -148,13 +148,11 @@ def locate_law(bench: Workbench, best: Hypothesis, baseline: Hypothesis, law: Fo
     total = max(baseline.fit.chi_squared - baseline.fit.counted, np.finfo(float).tiny)
     before, _ = left_at(law.joint, best.fit.residuals, bench.training)
     share = (before - law.fit.chi_squared) / total
-    condition = told_condition(experiment.time, law.difference, holds)
-    if law.condition:
-        condition = f"{law.condition}; {condition}"
+    parts = [law.condition, "" if law.acts else told_condition(experiment.time, law.difference, holds)]
     return Location(
         stage=law.law.input.stage,
         joint=experiment.joint,
         share=float(np.clip(share, 0.0, 1.0)),
-        when=growing_spans(experiment.time, law.difference, experiment.channels[0].noise),
-        condition=condition,
+        when=law.acts or growing_spans(experiment.time, law.difference, experiment.channels[0].noise),
+        condition="; ".join(part for part in parts if part),
     )

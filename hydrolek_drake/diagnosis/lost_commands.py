@@ -9,7 +9,7 @@ long they last is then fitted together with the nominal parameters.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy.optimize import nnls
@@ -76,6 +76,15 @@ class LostCommands(FoundLaw):
     def condition(self) -> str:
         """When it acts."""
         return "while commands are lost"
+
+    @property
+    def acts(self) -> tuple[tuple[float, float], ...]:
+        """When commands were lost in the first training recording [s]."""
+        return tuple((begin, end) for begin, end in next(iter(self.windows.values())).tolist())
+
+    def more(self) -> dict[str, Any]:
+        """When commands were lost in each recording [s]."""
+        return {"windows_s": {name: lost.tolist() for name, lost in self.windows.items()}}
 
     def equation(self) -> str:
         """What was lost, and when."""
@@ -373,7 +382,7 @@ def _fitted(
         bench.evaluations += problem.evaluations
         kept = {name: lost[needed[name]] for name, lost in windows.items()}
         if all(each.all() for each in needed.values()):
-            return fit, {name: _sorted(lost, NONE) for name, lost in kept.items()}
+            return fit, {name: joined(lost) for name, lost in kept.items()}
         problem = problem.about(kept)
 
 
@@ -415,6 +424,17 @@ def _driven(experiment: Experiment, beside: Windows, neutral: float) -> list[flo
 def _sorted(some: Windows, more: Windows) -> Windows:
     both = np.concatenate([some, more])
     return both[np.argsort(both[:, 0])]
+
+
+def joined(windows: Windows) -> Windows:
+    """The same time in windows that do not touch, in their order."""
+    apart: list[list[float]] = []
+    for begin, end in windows[np.argsort(windows[:, 0])].tolist():
+        if apart and begin < apart[-1][1] + SHORTEST_S:
+            apart[-1][1] = max(apart[-1][1], end)
+        else:
+            apart.append([begin, end])
+    return np.array(apart).reshape(-1, 2)
 
 
 def _too_much(windows: Windows, experiment: Experiment) -> bool:

@@ -97,6 +97,7 @@ def _law_json(diagnosis: Diagnosis, law: FoundLaw) -> dict[str, Any]:
         "probability": round(_law_posterior(diagnosis, law) * reliability("law") / (1 + len(law.rivals)), 4),
         "parameters": parameters,
         "holdout_over_noise": law.held_out_over_noise,
+        **law.more(),
         "sentence": f"{law_sentence(law)}{where_sentence(law)}",
     }
 

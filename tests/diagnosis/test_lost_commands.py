@@ -7,7 +7,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig
-from hydrolek_drake.diagnosis.lost_commands import GAIN, WINDOW_S, lost_commands, merged, picked
+from hydrolek_drake.diagnosis.lost_commands import GAIN, WINDOW_S, joined, lost_commands, merged, picked
 from hydrolek_drake.diagnosis.unlisted import Asked
 from hydrolek_drake.diagnosis.words import law_sentence, where_sentence
 from hydrolek_drake.diagnosis.workbench import Workbench
@@ -45,6 +45,7 @@ def test_commands_that_got_lost_are_found_in_both_recordings(bench, recorded) ->
     # a valve passes a command on within 25 ms, and a joint moves by what both ends of a window are apart
     np.testing.assert_allclose(found.windows["train"], LOST_S, atol=0.02)
     np.testing.assert_allclose(found.windows["ahead"], AHEAD_S, atol=0.02)
+    np.testing.assert_allclose(found.acts, found.windows["train"])
     told = law_sentence(found) + where_sentence(found)
     assert "in train at 3.2" in told and "in ahead at 8.0" in told
     assert enlarged_rig(bench, nominal, found).laws == {}  # the machine has no law
@@ -90,3 +91,10 @@ def test_windows_that_touch_are_one() -> None:
     assert lost == pytest.approx([1.0 + WINDOW_S * 2 / 3 + 0.05 - 0.06, 1.0 + WINDOW_S * 2 / 3 + 0.05 + 0.06])
     assert later == pytest.approx([3.025, 3.075])
     assert merged([(1.0, 0.01)]).shape == (0, 2)  # a millisecond
+
+
+def test_windows_that_were_fitted_side_by_side_are_told_as_one() -> None:
+    np.testing.assert_array_equal(
+        joined(np.array([[5.0, 5.1], [1.0, 1.09], [1.095, 1.2], [5.02, 5.05]])), [[1.0, 1.2], [5.0, 5.1]]
+    )
+    assert joined(np.zeros((0, 2))).shape == (0, 2)
