@@ -4,6 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
+from hydrolek_drake.diagnosis import law_search
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
 from hydrolek_drake.diagnosis.law_search import promising
@@ -12,6 +13,12 @@ from hydrolek_drake.diagnosis.unlisted import worth_trying
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
+
+
+@pytest.fixture(autouse=True)
+def in_less_time(monkeypatch) -> None:
+    """Sines are not what these tests are about."""
+    monkeypatch.setattr(law_search, "HIGHEST_HZ", 2.0)
 
 
 @pytest.mark.parametrize(("side", "share"), [("back_a", -0.1), ("back_b", -0.2)])

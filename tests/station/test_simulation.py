@@ -165,14 +165,17 @@ def test_divergence_is_told_with_a_remedy():
 # --- ports, feedthrough, interruption ------------------------------------------------------------------------
 
 N = 14
-OUTSIDE = {"outside": 14 * N}  # what a law for physics in no list adds; open where a rig has none
+OUTSIDE = {"outside": 15 * N}  # what a law for physics in no list adds; open where a rig has none
 ENDS = 18  # ten linear cylinders push two links each, but those of joint 1 stand on the fixed base
 PORTS = {
     "operator_computer": ({"signal_commanded": N}, {"channel_voltage": 32}),
     "field_point": ({"channel_voltage": 32}, {"command": N}),
     "transport_delay": ({"command": N, **OUTSIDE}, {"voltage_delayed": N, "voltage_arriving": N}),
     "proportional_amplifier": ({"voltage_delayed": N, **OUTSIDE}, {"coil_current": 2 * N}),
-    "solenoid_spool": ({"coil_current": 2 * N}, {"spool_position": N}),
+    "solenoid_spool": (
+        {"coil_current": 2 * N, "pressure": 2 * N, "supply_pressure": 1, **OUTSIDE},
+        {"spool_position": N},
+    ),
     "four_way_valve": (
         {"spool_position": N, "pressure": 2 * N, "supply_pressure": 1, **OUTSIDE},
         {"oil_flow": 3 * N},
