@@ -7,7 +7,8 @@ import pytest
 
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig
-from hydrolek_drake.diagnosis.lost_commands import GAIN, WINDOW_S, joined, lost_commands, merged, picked
+from hydrolek_drake.diagnosis.lost_commands import lost_commands, names_of
+from hydrolek_drake.diagnosis.lost_windows import GAIN, WINDOW_S, joined, merged, picked, recording_of
 from hydrolek_drake.diagnosis.unlisted import Asked
 from hydrolek_drake.diagnosis.words import law_sentence, where_sentence
 from hydrolek_drake.diagnosis.workbench import Workbench
@@ -43,9 +44,10 @@ def test_commands_that_got_lost_are_found_in_both_recordings(bench, recorded) ->
     )  # the deviation of 1200 samples of noise is known to 2 %; three times that
     assert found.held_out_over_noise < 1.1
     # a valve passes a command on within 25 ms, and a joint moves by what both ends of a window are apart
-    np.testing.assert_allclose(found.windows["train"], LOST_S, atol=0.02)
-    np.testing.assert_allclose(found.windows["ahead"], AHEAD_S, atol=0.02)
-    np.testing.assert_allclose(found.acts, found.windows["train"])
+    np.testing.assert_allclose(found.windows[recording_of(training[0])], LOST_S, atol=0.02)
+    np.testing.assert_allclose(found.windows[recording_of(held_out[0])], AHEAD_S, atol=0.02)
+    np.testing.assert_allclose(found.acts, LOST_S, atol=0.02)
+    assert list(found.more()["windows_s"]) == ["train", "ahead"]
     told = law_sentence(found) + where_sentence(found)
     assert "in train at 3.2" in told and "in ahead at 8.0" in told
     assert enlarged_rig(bench, nominal, found).laws == {}  # the machine has no law
@@ -84,6 +86,18 @@ def test_windows_are_picked_by_what_they_explain() -> None:
     assert promised > 9.0 * 500 * 0.8
     assert picked(columns, rng.standard_normal(500))[0] == []  # of 40 none reaches five standard deviations
     assert GAIN == 25.0
+
+
+def test_recordings_of_one_name_and_one_command_are_two(bench, recorded) -> None:
+    first, again, other = (
+        recorded(bench, bench, seed=seed, largest_V=volts)[0]
+        for seed, volts in ((1, 5.0), (1, 5.0), (2, 5.0))
+    )
+    repeated = Experiment(**{**again.__dict__, "channels": other.channels})
+    blocks = first.split(first.time < 3.0)
+    assert recording_of(blocks) == recording_of(first)
+    assert len({recording_of(each) for each in (first, repeated, other)}) == 3
+    assert list(names_of([first, repeated, blocks, other]).values()) == ["made", "made (2)", "made (3)"]
 
 
 def test_windows_that_touch_are_one() -> None:

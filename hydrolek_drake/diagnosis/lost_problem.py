@@ -1,0 +1,108 @@
+"""Recordings fitted with the nominal parameters and the windows in which commands were lost."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.lost_windows import (
+    GAIN,
+    LONGEST_S,
+    NONE,
+    SHORTEST_S,
+    WINDOW_S,
+    Windows,
+    recording_of,
+)
+from hydrolek_drake.diagnosis.workbench import SPREAD
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.parameter_set import ParameterSet
+from hydrolek_drake.identification.problem import Problem
+
+
+class LostProblem(Problem):
+    """Residuals as a function of the nominal parameters and of when commands were lost."""
+
+    def __init__(
+        self,
+        parameters: ParameterSet,
+        experiments: Sequence[Experiment],
+        step: float,
+        begun: Mapping[str, Windows],
+        neutral: float,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            parameters: nominal ones.
+            experiments: what must be followed.
+            step: of the rollouts [s].
+            begun: recording -> windows about which those of the fit lie.
+            neutral: command that acts in them [V].
+        """
+        prior = np.where([".effects." in path for path in parameters.paths], np.inf, SPREAD)
+        super().__init__(parameters, experiments, step, prior=prior)
+        self.begun, self.neutral = begun, neutral
+        self._nominal = len(parameters)
+        own = 2 * sum(len(lost) for lost in begun.values())
+        self._prior_mean = np.concatenate([self._prior_mean, np.full(own, 0.5)])
+        self._prior_weight = np.concatenate([self._prior_weight, np.zeros(own)])
+
+    def start(self, nominal: np.ndarray) -> np.ndarray:
+        """Unit vector for nominal parameters and the windows about which the fit's lie."""
+        lengths = np.concatenate([np.diff(lost, axis=1).ravel() for lost in self.begun.values()])
+        own = np.stack([np.full(lengths.size, 0.5), np.minimum(lengths / LONGEST_S, 1.0)], axis=1)
+        return np.concatenate([nominal, own.ravel()])
+
+    def windows(self, unit: np.ndarray) -> dict[str, Windows]:
+        """Recording -> windows, at a place in the unit cube."""
+        own = unit[self._nominal :].reshape(-1, 2)
+        found, at = {}, 0
+        for name, lost in self.begun.items():
+            part = own[at : at + len(lost)]
+            at += len(lost)
+            middle = lost.mean(axis=1) + (part[:, 0] - 0.5) * 2.0 * WINDOW_S
+            half = 0.5 * LONGEST_S * part[:, 1]
+            found[name] = np.stack([middle - half, middle + half], axis=1)
+        return found
+
+    def about(self, windows: Mapping[str, Windows]) -> "LostProblem":
+        """The same with other windows about which those of the fit lie."""
+        assert self.longest_step is not None
+        return LostProblem(self.parameters, self.experiments, self.longest_step, windows, self.neutral)
+
+    def needed(self, fit: Fit, windows: Mapping[str, Windows], name: str) -> np.ndarray:
+        """Which of a recording's windows explain what chance does not, and last. # (k,) truth values.
+
+        While a command is neutral, or too small to open a valve, nobody sees that it is lost.
+        """
+        records = self.parameters.records(fit.unit[: self._nominal])
+        lost = windows[name]
+        most = fit.chi_squared + GAIN * max(fit.chi_squared / max(fit.counted, 1), 1.0)
+        kept = np.diff(lost, axis=1).ravel() >= SHORTEST_S
+        for number in np.flatnonzero(kept).tolist():
+            kept[number] = False
+            without = self.left(records, {**windows, name: lost[kept]})
+            kept[number] = float(without @ without) > most
+        return kept
+
+    def residuals(self, unit: np.ndarray) -> np.ndarray:
+        """Measured minus model over noise, of all experiments."""
+        return self.left(self.parameters.records(unit[: self._nominal]), self.windows(unit))
+
+    def left(self, records: np.ndarray, windows: Mapping[str, Windows]) -> np.ndarray:
+        """Measured minus model over noise, of all experiments, with some windows."""
+        self.evaluations += 1
+        return self.bounded(
+            [
+                e.residuals(
+                    e.without_command(windows.get(recording_of(e), NONE), self.neutral)
+                    .simulate(records, self.longest_step)
+                    .signals
+                )
+                for e in self.experiments
+            ]
+        )
+
+    def _keep(self, unit: np.ndarray, base: np.ndarray) -> None:
+        """Nothing is kept: windows are no part of a joint's record."""
