@@ -129,6 +129,9 @@ class FoundLaw:
     of_the_machine: ClassVar[bool] = True
     """Whether a rig can hold it."""
 
+    remark: ClassVar[str] = ""
+    """What is to be said of it where it has no letters to explain."""
+
     @property
     def condition(self) -> str:
         """When it acts, as far as its form tells; empty if it does not."""

@@ -59,6 +59,9 @@ class LostCommands(FoundLaw):
     neutral: float = 0.0
 
     of_the_machine: ClassVar[bool] = False
+    remark: ClassVar[str] = (
+        "This is the recordings' own: the fitted rig runs as if every command had arrived."
+    )
 
     @property
     def condition(self) -> str:

@@ -127,8 +127,8 @@ def law_sentence(law: FoundLaw) -> str:
 
 def where_sentence(law: FoundLaw) -> str:
     """What the letters of a law mean; nothing for one that has none."""
-    if not law.of_the_machine:
-        return " This is the recordings' own: the fitted rig runs as if every command had arrived."
+    if law.remark:
+        return f" {law.remark}"
     names = " ".join(law.names)
     reach = law.span.at(law.law.input.probe)
     rod = reach is law.span.rod

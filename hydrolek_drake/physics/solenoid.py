@@ -92,7 +92,8 @@ def spool_acceleration(
         drive_a: what drives towards A: coil current [A], or voltage [V] of a servo valve.
         drive_b: what drives towards B.
         joint: parameter record.
-        closing_a: flow force where it is wholly open towards A, `valve.flow_forces` [N].
+        closing_a: flow force where it is wholly open towards A, `valve.flow_forces` [N]; a servo valve's position loop
+            makes up for it.
         closing_b: where it is towards B [N].
     """
     p = joint.solenoid

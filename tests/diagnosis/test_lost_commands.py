@@ -8,7 +8,7 @@ import pytest
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig
 from hydrolek_drake.diagnosis.lost_commands import lost_commands, names_of
-from hydrolek_drake.diagnosis.lost_windows import GAIN, WINDOW_S, joined, merged, picked, recording_of
+from hydrolek_drake.diagnosis.lost_windows import WINDOW_S, joined, merged, picked, recording_of
 from hydrolek_drake.diagnosis.unlisted import Asked
 from hydrolek_drake.diagnosis.words import law_sentence, where_sentence
 from hydrolek_drake.diagnosis.workbench import Workbench
@@ -85,7 +85,6 @@ def test_windows_are_picked_by_what_they_explain() -> None:
     assert dict(zip(chosen, multiples, strict=True))[11] == pytest.approx(3.0, abs=0.5)
     assert promised > 9.0 * 500 * 0.8
     assert picked(columns, rng.standard_normal(500))[0] == []  # of 40 none reaches five standard deviations
-    assert GAIN == 25.0
 
 
 def test_recordings_of_one_name_and_one_command_are_two(bench, recorded) -> None:
