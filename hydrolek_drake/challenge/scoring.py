@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.challenge.build import BENCH
-from hydrolek_drake.challenge.cases import SHOWS
+from hydrolek_drake.challenge.drawing import SHOWS
 from hydrolek_drake.diagnosis.effort import ABOVE_NOISE
 
 BINS = (0.0, 0.5, 0.7, 0.9, 0.99, 1.0 + 1e-9)
@@ -111,7 +111,7 @@ def summaries(results: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, Any]]
     groups["arms"] = [r for r in results if r["rig"] != BENCH]
     for name in sorted({r["rig"] for r in groups["arms"]}):
         groups[name] = [r for r in results if r["rig"] == name]
-    return {name: summary(members) for name, members in groups.items() if members}
+    return {name: summary(members) for name, members in groups.items() if members or name == "all"}
 
 
 def summaries_markdown(told_by: Mapping[str, Mapping[str, Any]]) -> str:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -28,22 +29,27 @@ def challenge(
     workers: Annotated[
         int | None, typer.Option(help="threads; as many as there are cores by default")
     ] = None,
+    earlier: Annotated[
+        Path | None,
+        typer.Option(
+            help="summary.json of the same command elsewhere: what is scored there is not run again"
+        ),
+    ] = None,
     out: Annotated[Path, typer.Option(metavar="DIR", help="folder for cases and results")] = Path(
         "out/challenge"
     ),
 ) -> None:
     """Draw machines with concealed effects, diagnose them, then open the labels and score.
 
-    Finished cases are kept: the same command goes on where it was interrupted.
+    Machines drawn and finished cases are kept and scored: the same command goes on where it was interrupted.
     """
     from concurrent.futures import ThreadPoolExecutor
 
     from hydrolek_drake.challenge.build import BENCH, rig_names
-    from hydrolek_drake.challenge.calibration import calibration_png
-    from hydrolek_drake.challenge.cases import KINDS, digest, draw_cases, labels_of, read_case, record
-    from hydrolek_drake.challenge.confusion import confusion_markdown
-    from hydrolek_drake.challenge.scoring import markdown, score, summaries, summaries_markdown
-    from hydrolek_drake.challenge.visibility import visibility_markdown
+    from hydrolek_drake.challenge.cases import digest, labels_of, read_case, record
+    from hydrolek_drake.challenge.drawing import KINDS, draw_cases
+    from hydrolek_drake.challenge.results import earlier_scores, write_results
+    from hydrolek_drake.challenge.scoring import score, summaries_markdown
     from hydrolek_drake.cli.output import console, progress
     from hydrolek_drake.diagnosis.diagnosis import diagnose
     from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
@@ -66,41 +72,46 @@ def challenge(
     sample = f"{cases}_{seed}" if rig == BENCH else f"{rig}_{cases}_{seed}"
     sample = sample if kind == "all" else f"{kind}_{sample}"
     kept = out / f"labels_{sample}.json"
-    with progress("starting") as tell:
-        if kept.exists():
-            labels = kept.read_text()
-        else:
-            tell("drawing machines (sizes are found by simulation) ...")
-            labels = labels_of(draw_cases([rigs[name] for name in drawn_of], cases, seed, kinds))
-            write_whole(kept, labels)
-    output.print(f"sha256 of the labels: {digest(labels)}")
+    if kept.exists():
+        labels = kept.read_text()
+    else:
+        drawn_so_far = out / f"labels_{sample}"
+        prepare_folder(drawn_so_far)
+        with progress("starting") as tell, ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
+            machines = [rigs[name] for name in drawn_of]
+            labels = labels_of(draw_cases(machines, cases, seed, kinds, drawn_so_far, pool, tell))
+        write_whole(kept, labels)
+        shutil.rmtree(drawn_so_far)
+    sha256 = digest(labels)
+    output.print(f"sha256 of the labels: {sha256}")
     told: list[dict[str, Any]] = json.loads(labels)[:first]
-    results = []
-    with progress("starting") as tell, ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
-        for number, label in enumerate(told, start=1):
-            tell(f"case {number} of {len(told)} ...")
-            folder = out / f"{label['name']}_{sample}"
-            report = folder / "report.json"
-            if not report.exists():
-                case = read_case(label)
-                machine = rigs[case.rig]
-                record(machine, case, folder)
-                recordings = [
-                    read_recording(folder / f"{side}.csv", machine.columns) for side in ("train", "holdout")
-                ]
-                done = diagnose(machine, recordings[:1], recordings[1:], pool)
-                if INTERRUPTED in done.reasons:
-                    raise KeyboardInterrupt
-                write_whole(report, json.dumps(as_json(done), indent=1))
-            answered = json.loads(report.read_text())
-            tell(f"case {number} of {len(told)}: {answered['verdict']}")
-            results.append(score(label, answered))
-    told_by = summaries(results)
-    write_whole(out / "summary.json", json.dumps({"summary": told_by, "cases": results}, indent=1))
-    write_whole(out / "summary.md", summaries_markdown(told_by))
-    write_whole(out / "cases.md", markdown(results))
-    write_whole(out / "confusion.md", confusion_markdown(results))
-    write_whole(out / "visibility.md", visibility_markdown(results))
-    write_whole(out / "calibration.png", calibration_png(told_by["all"]["calibration"]))
+    scored = earlier_scores(earlier, sha256) if earlier else {}
+    results: list[dict[str, Any]] = []
+    try:
+        with progress("starting") as tell, ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
+            for number, label in enumerate(told, start=1):
+                if label["name"] in scored:
+                    results.append(scored[label["name"]])
+                    continue
+                tell(f"case {number} of {len(told)} ...")
+                folder = out / f"{label['name']}_{sample}"
+                report = folder / "report.json"
+                if not report.exists():
+                    case = read_case(label)
+                    machine = rigs[case.rig]
+                    record(machine, case, folder)
+                    recordings = [
+                        read_recording(folder / f"{side}.csv", machine.columns)
+                        for side in ("train", "holdout")
+                    ]
+                    done = diagnose(machine, recordings[:1], recordings[1:], pool)
+                    if INTERRUPTED in done.reasons:
+                        raise KeyboardInterrupt
+                    write_whole(report, json.dumps(as_json(done), indent=1))
+                answered = json.loads(report.read_text())
+                tell(f"case {number} of {len(told)}: {answered['verdict']}")
+                results.append(score(label, answered))
+    finally:  # interrupted too: what is known by then
+        told_by = write_results(out, sha256, results)
     output.print(summaries_markdown(told_by), markup=False, soft_wrap=True)
     output.print(f"cases, confusion, visibility and calibration: {out}", markup=False, soft_wrap=True)

@@ -1,6 +1,7 @@
 """Cases are drawn alike from a seed, labels are hashed, and scores count what they say."""
 
 import json
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -8,19 +9,9 @@ import pytest
 
 from hydrolek_drake.challenge.build import ARM_JOINTS, BENCH, build_of, rig_names
 from hydrolek_drake.challenge.calibration import calibration_png
-from hydrolek_drake.challenge.cases import (
-    FRICTIONS,
-    TRAIN_S,
-    _in_turn,
-    _shown,
-    digest,
-    drafted,
-    draw_cases,
-    labels_of,
-    read_case,
-    record,
-)
+from hydrolek_drake.challenge.cases import TRAIN_S, digest, labels_of, read_case, record
 from hydrolek_drake.challenge.confusion import confusion_markdown, confusions
+from hydrolek_drake.challenge.drawing import FRICTIONS, _in_turn, _shown, drafted, draw_cases
 from hydrolek_drake.challenge.listed import with_effects
 from hydrolek_drake.challenge.scoring import markdown, score, summaries, summaries_markdown, summary
 from hydrolek_drake.challenge.visibility import visibility_markdown
@@ -220,6 +211,22 @@ def test_cases_of_joints_are_drawn_alike_and_recorded_with_their_noise(tmp_path)
     )  # nothing moves in the first half second
     # 50 samples know their deviation to 10 %; three times that, and the resolution's rounding
     assert noise * 0.7 < np.sqrt(np.mean(rest**2)) < noise * 1.35
+
+
+def test_a_drawing_goes_on_where_it_ended(tmp_path) -> None:
+    rigs = [load_rig(BENCH, {})]
+    told: list[str] = []
+    healthy = (("healthy", 1.0),)
+    with ThreadPoolExecutor(2) as pool:
+        labels = labels_of(draw_cases(rigs, 4, 5, healthy, tmp_path, pool, told.append))
+    assert labels == labels_of(draw_cases(rigs, 4, 5, healthy))  # one after the other they are the same
+    assert len(told) == 4 and "machine 4 of 4" in told[-1]
+    kept = tmp_path / "case_002.json"
+    kept.write_text(json.dumps(json.loads(kept.read_text()) | {"seed": 77}))  # to be seen again
+    (tmp_path / "case_003.json").unlink()
+    again = draw_cases(rigs, 4, 5, healthy, tmp_path)
+    assert again[1].seed == 77
+    assert labels_of([again[2]]) == labels_of(draw_cases(rigs, 4, 5, healthy)[2:3])
 
 
 def test_what_an_effect_shows_is_counted_beside_the_others() -> None:
