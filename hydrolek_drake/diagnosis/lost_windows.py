@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import nnls
+from scipy.optimize import lsq_linear
 
 from hydrolek_drake.diagnosis.score import Across
 from hydrolek_drake.diagnosis.workbench import Workbench
@@ -32,6 +32,10 @@ MOST_SHARE = 0.1
 GAIN = 25.0
 """Fall of the squared residuals, over what is left of each value on average, that a window must promise: five standard
 deviations, since hundreds are tried."""
+
+WHOLE = 1.0
+"""Multiple of what a window does that is lost as a whole: there is no more in it to be lost. What would ask for more is
+something else, or lies beside it."""
 
 Windows = np.ndarray
 """Begin and end of each [s], increasing. # (k, 2)"""
@@ -113,13 +117,14 @@ def picked(columns: np.ndarray, rest: np.ndarray) -> tuple[list[int], np.ndarray
     multiples, left = np.zeros(0), rest
     while len(chosen) < columns.shape[1]:
         along = -(columns.T @ left)
-        gains = np.where(along > 0.0, along**2 / squares, 0.0)
+        lost = np.clip(along / squares, 0.0, WHOLE)
+        gains = lost * (2.0 * along - lost * squares)
         gains[chosen] = 0.0
         best = int(gains.argmax())
         if gains[best] < GAIN * max(float(left @ left) / left.size, 1.0):
             break
         chosen.append(best)
-        multiples, _ = nnls(columns[:, chosen], -rest)
+        multiples = lsq_linear(columns[:, chosen], -rest, (0.0, WHOLE)).x
         left = rest + columns[:, chosen] @ multiples
     return chosen, multiples, float(rest @ rest - left @ left)
 

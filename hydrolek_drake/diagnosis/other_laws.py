@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from hydrolek_drake.diagnosis.attempt import PREDICTED, predicting
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED
-from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, AT_NOISE, NEAR
+from hydrolek_drake.diagnosis.effort import AT_NOISE, NEAR
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_at_a_joint import followed_worst, left_at, one_joint
 from hydrolek_drake.diagnosis.law_fit import glance
@@ -89,11 +89,11 @@ def _asked_for(
 
 
 def _lost(bench: Workbench, asked: Asked) -> FoundLaw | None:
-    """Commands that got lost, if that explains the data to the noise: windows could make up for a little of much."""
+    """Commands that got lost, if that explains the data: windows could make up for a little of much."""
     left = asked.left
     needed = MOST * (left.fit.objective - left.fit.counted)
     lost = lost_commands(bench, left, asked.held_out, asked.span, asked.step, needed)
-    return lost if lost is not None and predicting(lost) and lost.fit.over_noise <= ABOVE_NOISE else None
+    return lost if lost is not None and predicting(lost) and lost.fit.over_noise <= EXPLAINED else None
 
 
 def _better_than_promised(bench: Workbench, asked: Asked, laws: Sequence[Law], above: float) -> list[Law]:

@@ -48,6 +48,9 @@ MOST_GROWN = 5
 """So many times at most one effect more is added. What is pruned again may have led the rest to a better place, from
 which others promise more."""
 
+LAW_COSTS = 2
+"""A law costs as much as so many listed effects: where it enters and what it depends on are both chosen among many."""
+
 FIRST_SHARE = 0.1
 """A first effect must take this share of the squared residuals of a nominal model that is far from the noise, or no
 second one is looked for: of two effects, one alone takes much of what both do."""
@@ -118,7 +121,8 @@ def _go_on(
         while found.rounds < MOST_GROWN and _worth_going_on(found, material):
             candidates, beam = _grown(bench, found, beam, candidates, say)
             if other is not None and _something_else_may_do(found, material):
-                found.law = other(found.baseline, found.rounds)
+                law = other(found.baseline, found.rounds)
+                found.law = law if law is not None and outdoes(law, found.best) else None
             if found.law is not None:
                 return
         beam = exchanged(bench, found, candidates)
@@ -161,6 +165,19 @@ def _grown(
     if found.best.ids not in {h.ids for h in near}:
         near = [found.best, *near]
     return candidates, near[:BEAM]
+
+
+def outdoes(law: FoundLaw, best: Hypothesis) -> bool:
+    """Whether a law beside the nominal model explains the training data better than listed effects do, at its cost.
+
+    A small sine can make up for what a small effect does to one recording.
+
+    Args:
+        law: fitted to the training data.
+        best: the model with effects that explains them best.
+    """
+    left, needed = law.fit.over_noise**2 * best.fit.counted, gain_needed(best.fit)
+    return left + needed * LAW_COSTS < best.fit.objective + needed * len(best.effects)
 
 
 def _words(count: int) -> str:

@@ -140,14 +140,14 @@ class Experiment:
         """The same experiment with commands that did not arrive.
 
         Args:
-            windows: begin and end of each [s]. # (k, 2)
+            windows: begin and end of each [s]; one without length changes nothing. # (k, 2)
             neutral: command that acts meanwhile [V].
         """
         times, command = self.command_times, self.command
         for begin, end in windows.tolist():
             before, after = np.searchsorted(times, (begin, end), side="left")
             resumed = np.searchsorted(times, end, side="right") - 1
-            if resumed < 0:  # it ends before the first command
+            if resumed < 0 or not begin < end:  # it ends before the first command, or with its own begin
                 continue
             after = max(after, resumed + 1)
             times = np.concatenate([times[:before], [begin, end], times[after:]])

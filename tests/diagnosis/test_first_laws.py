@@ -1,4 +1,4 @@
-"""Which laws are tried, and which of the first fits go on."""
+"""Which laws are tried, which of the first fits go on, and which stand in place of effects."""
 
 from types import SimpleNamespace
 
@@ -9,7 +9,10 @@ from hydrolek_drake.diagnosis import unlisted
 from hydrolek_drake.diagnosis.law_naming import helping
 from hydrolek_drake.diagnosis.law_problem import Law
 from hydrolek_drake.diagnosis.laws import Input, Term
+from hydrolek_drake.diagnosis.search import outdoes
 from hydrolek_drake.diagnosis.unlisted import FITTED, TRIED, Asked, best_of, followed, worth_trying
+from hydrolek_drake.diagnosis.workbench import Hypothesis
+from hydrolek_drake.identification.least_squares import Fit
 
 CONSTANT, GROWING = Term(()), Term((), time="t/T")
 
@@ -88,3 +91,26 @@ def test_where_the_training_data_are_explained_a_law_must_gain_there_what_chance
     refitted = SimpleNamespace(fit=SimpleNamespace(objective=before, counted=4000, unsure=0.0))
     bench = SimpleNamespace(refit=lambda *_, **__: refitted)
     assert helping(bench, left, [law], 1e-3) == ([law] if helps else [])
+
+
+def _with_effects(count, over_noise):
+    fit = Fit(
+        np.zeros(1), np.full(1000, over_noise), np.zeros(1), np.zeros((1000, 1)), np.zeros((1, 1)), 1000, 1
+    )
+    return Hypothesis(tuple(SimpleNamespace(size_path=str(n), free=()) for n in range(count)), {}, fit, 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("law", "effects", "left", "better"),
+    [
+        (0.96, 1, 0.93, False),  # a small effect, and a sine that makes up for a part of it
+        (1.00, 1, 1.001, False),  # no more than chance brings
+        (1.00, 1, 1.20, True),  # a pump's ripple, and what comes nearest of the list
+        (1.00, 2, 1.01, True),  # one thing for two
+        (1.00, 3, 1.00, True),  # one thing for three
+        (1.30, 2, 1.00, False),
+    ],
+)
+def test_a_law_in_place_of_effects_must_outdo_them(law, effects, left, better) -> None:
+    found = SimpleNamespace(fit=SimpleNamespace(over_noise=law))
+    assert outdoes(found, _with_effects(effects, left)) is better

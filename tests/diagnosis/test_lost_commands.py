@@ -75,16 +75,38 @@ def test_a_command_is_neutral_within_a_window_and_itself_after(bench, recorded) 
     np.testing.assert_array_equal(held(arrived), np.where(inside, 0.25, held(experiment)))
 
 
+@pytest.mark.parametrize("at", [2.003, 2.0])  # between two commands, and with one
+def test_a_window_without_length_loses_nothing(bench, recorded, at: float) -> None:
+    """A fit may narrow a window down to nothing."""
+    [experiment] = recorded(bench, bench)
+    arrived = experiment.without_command(np.array([[at, at]]), 0.25)
+    np.testing.assert_array_equal(arrived.command_times, experiment.command_times)
+    np.testing.assert_array_equal(arrived.command, experiment.command)
+
+
 def test_windows_are_picked_by_what_they_explain() -> None:
     rng = np.random.default_rng(4)
     columns = rng.standard_normal((500, 40))
     columns[:, 7] *= 30.0  # what moves much is not what explains much
-    rest = rng.standard_normal(500) - 3.0 * columns[:, 11] - 0.8 * columns[:, 30] + 2.0 * columns[:, 20]
+    rest = rng.standard_normal(500) - 0.9 * columns[:, 11] - 0.6 * columns[:, 30] + 0.7 * columns[:, 20]
     chosen, multiples, promised = picked(columns, rest)
     assert chosen[0] == 11 and set(chosen) >= {11, 30} and 20 not in chosen  # no window gives a command back
-    assert dict(zip(chosen, multiples, strict=True))[11] == pytest.approx(3.0, abs=0.5)
-    assert promised > 9.0 * 500 * 0.8
+    # each of 500 values tells a multiple with the deviation of all that is left, here 1.2
+    assert dict(zip(chosen, multiples, strict=True))[11] == pytest.approx(0.9, abs=3.0 * 1.2 / np.sqrt(500.0))
+    assert promised > 0.8 * (0.9**2 + 0.6**2) * 500
     assert picked(columns, rng.standard_normal(500))[0] == []  # of 40 none reaches five standard deviations
+
+
+def test_no_more_is_lost_in_a_window_than_all_of_it() -> None:
+    """A window in which hardly anything was commanded explains much only as its own multiple, which it cannot be."""
+    rng = np.random.default_rng(5)
+    lost, tiny = 20.0 * rng.standard_normal((2, 500))
+    tiny *= 0.01
+    rest = rng.standard_normal(500) - lost - 100.0 * tiny
+    chosen, multiples, promised = picked(np.stack([tiny, lost], axis=1), rest)
+    assert chosen[0] == 1
+    np.testing.assert_allclose(multiples, 1.0)
+    assert promised < float(rest @ rest) - 0.9 * float((rest + lost) @ (rest + lost))
 
 
 def test_recordings_of_one_name_and_one_command_are_two(bench, recorded) -> None:
