@@ -1,18 +1,24 @@
 """Which laws are tried, which of the first fits go on, and which stand in place of effects."""
 
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis import unlisted
+from hydrolek_drake.diagnosis import law_search, unlisted
+from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.law_naming import helping
 from hydrolek_drake.diagnosis.law_problem import Law
+from hydrolek_drake.diagnosis.law_search import promising
 from hydrolek_drake.diagnosis.laws import Input, Term
 from hydrolek_drake.diagnosis.search import outdoes
 from hydrolek_drake.diagnosis.unlisted import FITTED, TRIED, Asked, best_of, followed, worth_trying
-from hydrolek_drake.diagnosis.workbench import Hypothesis
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.parameter_set import free_parameters
 
 CONSTANT, GROWING = Term(()), Term((), time="t/T")
 
@@ -34,6 +40,25 @@ def test_a_constant_is_tried_where_an_input_says_how_the_machine_is_built() -> N
     assert [law.input.probe for law in tried[:3]] == ["supply", "back_a", "back_a"]
     assert tried[2].terms == (CONSTANT,)
     assert quiet[2] not in tried
+
+
+def test_both_frequencies_are_told_that_the_beginning_and_the_whole_speak_for(
+    bench, recorded, monkeypatch
+) -> None:
+    """Later on, a model that has made up for a disturbance may be wrong by more, and at another frequency."""
+    monkeypatch.setattr(law_search, "SCAN_S", 6.0)
+    monkeypatch.setattr(law_search, "HIGHEST_HZ", 4.0)  # a matter of time
+    [plain] = recorded(bench, bench)
+    reading = plain.channels[0]
+    early, later = (np.sin(2.0 * np.pi * hz * plain.time) for hz in (1.3, 2.9))
+    shaken = reading.measured + reading.noise * np.where(plain.time < 6.0, 3.0 * early + later, 10.0 * later)
+    training = [replace(plain, channels=(replace(reading, measured=shaken), *plain.channels[1:]))]
+    with ThreadPoolExecutor(2) as pool:
+        workbench = Workbench(bench, free_parameters(bench), training, pool)
+        asked = Asked.of(workbench, fit_baseline(workbench), [], natural_scales(bench, "joint", training))
+        sensor = [given for given in asked.inputs if given.probe == "sensor"]
+        laws = promising(workbench, asked.left, sensor, asked.span, asked.step, ())
+    assert [law.frequency for law in laws] == pytest.approx([2.9, 1.3], abs=0.5 / 6.0)
 
 
 def test_one_law_of_every_input_goes_on_where_first_fits_are_not_told_apart() -> None:
