@@ -10,8 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.law_inputs import Input
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, records_of
-from hydrolek_drake.diagnosis.laws import Input, law_record
+from hydrolek_drake.diagnosis.laws import law_record
 from hydrolek_drake.rollout.one_point import law_along, stroke_and_lever
 from hydrolek_drake.rollout.rollout import Signals
 

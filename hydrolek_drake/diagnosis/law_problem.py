@@ -7,15 +7,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.laws import (
-    CONSTANT,
-    FIRST_REACH,
-    Input,
-    Span,
-    Term,
-    law_record,
-    law_records,
-)
+from hydrolek_drake.diagnosis.law_inputs import Input
+from hydrolek_drake.diagnosis.laws import CONSTANT, FIRST_REACH, Span, Term, law_record, law_records
 from hydrolek_drake.diagnosis.workbench import SPREAD
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.law_inputs import Input
 from hydrolek_drake.diagnosis.law_problem import SCAN_S, Law
 from hydrolek_drake.diagnosis.law_terms import TRIED, Fitted, gain_along, terms_scored
-from hydrolek_drake.diagnosis.laws import TERMS, Input, Span, Term, law_record
+from hydrolek_drake.diagnosis.laws import TERMS, Span, Term, law_record
 from hydrolek_drake.diagnosis.score import Across
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment

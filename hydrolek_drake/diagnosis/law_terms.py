@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.laws import TERMS, Input, Span, Term, law_record
+from hydrolek_drake.diagnosis.law_inputs import Input
+from hydrolek_drake.diagnosis.laws import TERMS, Span, Term, law_record
 from hydrolek_drake.diagnosis.score import Across, gain_of
 from hydrolek_drake.diagnosis.workbench import Workbench
 

@@ -11,86 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.effects.scales import Scales
+from hydrolek_drake.diagnosis.law_inputs import Input
 from hydrolek_drake.physics.law import BELOW, BEYOND, LAW, NEAR, OTHERS, PLACED, PLACES, SPEEDS, TIMES
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rollout.one_point import stroke_and_lever
 from hydrolek_drake.rollout.rollout import Signals
-
-
-@dataclass(frozen=True)
-class Input:
-    """One unknown input.
-
-    Attributes:
-        stage: where it enters.
-        probe: as what; one of `probes.PROBES`.
-        symbol: how a law names it.
-        unit: SI unit, "1" for a relative change.
-        scale: a large amplitude for this machine.
-        one_sided: whether it is a constant of the machine that cannot be less than none: a time that something takes,
-            or a share.
-    """
-
-    stage: str
-    probe: str
-    symbol: str
-    unit: str
-    scale: float
-    one_sided: bool = False
-
-
-def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str) -> tuple[Input, ...]:
-    """The unknown inputs of a joint; those of the hydraulics are left out where there are none (NaN scales).
-
-    Args:
-        scales: natural scales of the joint.
-        pressure: of the supply [Pa].
-        limit: largest command [V].
-        position_unit: rad or m.
-    """
-    moment = "N m" if position_unit == "rad" else "N"
-    inputs = [
-        Input("command", "command", "voltage added to the command", "V", 0.3 * limit),
-        Input("load", "load", "moment added at the joint" if moment == "N m" else "force added at the load", moment,
-              0.3 * scales.load_force),
-        Input("sensor", "sensor", "added to the reading", position_unit, 0.1 * scales.travel),
-        Input("command", "ramp", "time that a ramp of the voltage takes for each volt", "s/V",
-              0.3 * scales.travel_time / limit, one_sided=True),
-    ]  # fmt: skip
-    if math.isfinite(scales.conductance):
-        inputs += [
-            Input("supply", "supply", "added to the supply pressure", "Pa", 0.3 * pressure),
-            Input("amplifier", "amplifier", "relative change of the coil currents", "1", 0.3),
-            Input("valve", "valve", "relative change of the valve's opening", "1", 0.6),
-            Input("valve", "back_a", "relative change of what flows from side A to the tank", "1", 0.6),
-            Input("valve", "back_b", "relative change of what flows from side B to the tank", "1", 0.6),
-            Input(
-                "amplifier",
-                "coil_time",
-                "time constant of the coils' currents, added",
-                "s",
-                0.3 * scales.travel_time,
-                one_sided=True,
-            ),
-            Input(
-                "valve",
-                "flow_force",
-                "force of the oil that closes the spool, as a share of opening area times pressure drop, added",
-                "1",
-                0.3,
-                one_sided=True,
-            ),
-            Input("cylinder", "cylinder", "force added at the rod", "N", 0.3 * scales.force),
-            Input(
-                "fluid", "capacity_a", "volume taken per pressure on side A, added", "m^3/Pa", scales.capacity
-            ),
-            Input(
-                "fluid", "capacity_b", "volume taken per pressure on side B, added", "m^3/Pa", scales.capacity
-            ),
-        ]
-    return tuple(sorted(inputs, key=lambda i: PROBES.index(i.probe)))
-
 
 CONSTANT = "1"
 """Name of the term that does not vary."""

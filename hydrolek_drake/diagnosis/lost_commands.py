@@ -10,8 +10,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.law_inputs import Input
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
-from hydrolek_drake.diagnosis.laws import Input, Span, Term
+from hydrolek_drake.diagnosis.laws import Span, Term
 from hydrolek_drake.diagnosis.lost_problem import LostProblem
 from hydrolek_drake.diagnosis.lost_windows import (
     LONGEST_S,

@@ -19,10 +19,11 @@ from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_counterpart import counterpart
 from hydrolek_drake.diagnosis.law_fit import STEPS, fitted, glance
 from hydrolek_drake.diagnosis.law_growing import grown
+from hydrolek_drake.diagnosis.law_inputs import Input, inputs_of
 from hydrolek_drake.diagnosis.law_naming import ahead_to_beat, helping, likeliest
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, left_in_all, records_of
 from hydrolek_drake.diagnosis.law_search import STEADY, promising
-from hydrolek_drake.diagnosis.laws import CONSTANT, Input, Span, inputs_of, span_of
+from hydrolek_drake.diagnosis.laws import CONSTANT, Span, span_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiment import Experiment

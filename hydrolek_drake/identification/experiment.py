@@ -4,20 +4,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.errors import UninformativeError
 from hydrolek_drake.identification.channel import Channel, faithful
-from hydrolek_drake.identification.neighbours import effects_of_others, rows_at
-from hydrolek_drake.identification.start import resting_position, without_offset
+from hydrolek_drake.identification.neighbours import rows_at
+from hydrolek_drake.identification.start import without_offset
 from hydrolek_drake.identification.thinning import Blocks, block_size
-from hydrolek_drake.recordings import Recording, require
-from hydrolek_drake.replay.noise import noise_level
-from hydrolek_drake.replay.readings import measured_position, position_key
-from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.kernel import PULLED
 from hydrolek_drake.rollout.rollout import Outcome, Signals, rest_state_at_reading, roll_out
-
-CONSTANT = 1e-12
-"""A command that varies by less than this fraction of its size says nothing about the machine."""
 
 
 @dataclass(frozen=True)
@@ -221,91 +213,3 @@ class Experiment:
         used = np.ones(blocks.time.size, dtype=bool)
         used[0] = False  # a single sample, with which the rollout begins
         return replace(self, time=blocks.time, channels=channels, used=used, block=size)
-
-
-def experiments_of(
-    rig: Rig,
-    recording: Recording,
-    signals: tuple[str, ...] = ("position", "pressure_a", "pressure_b", "supply_pressure"),
-) -> list[Experiment]:
-    """One experiment for each joint of the rig that has a command in the recording.
-
-    A recording that is sampled far faster than the rig is integrated is averaged over blocks (`thinning`).
-
-    Args:
-        rig: the machine.
-        recording: read with the rig's `columns`.
-        signals: which of position, pressure_a, pressure_b, supply_pressure are to be followed, where recorded; the
-            last for a rig of one joint only, since all joints draw from the supply and a rollout knows one.
-
-    Raises:
-        InputError: no command, no position, a command that never changes, or a signal without noise level.
-    """
-    driven = [joint for joint in rig.joints if f"{joint}.command" in recording.signals]
-    if not driven:
-        require(recording, [f"{rig.joints[0]}.command"])
-    experiments = [_experiment(rig, joint, recording, signals).thinned() for joint in driven]
-    others = effects_of_others(rig, {e.joint: _moved(rig, e, recording) for e in experiments})
-    return [replace(e, others=others.get(e.joint)) for e in experiments]
-
-
-def _moved(rig: Rig, experiment: Experiment, recording: Recording) -> tuple[np.ndarray, np.ndarray]:
-    """Times and measured positions of a joint."""
-    for channel in experiment.channels:
-        if channel.model == "reading":
-            return experiment.time, channel.measured
-    return recording.time, np.asarray(measured_position(rig, experiment.joint, recording), dtype=float)
-
-
-def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, ...]) -> Experiment:
-    key = f"{joint}.command"
-    require(recording, [], complete=[key], units={key: "V"})
-    command = np.asarray(recording.signal(key), dtype=float)
-    if np.ptp(command) <= CONSTANT * max(float(np.abs(command).max()), 1.0):
-        raise UninformativeError(
-            f"{recording.source}: {key} is constant at {command[0]:g} V, so nothing can be identified; "
-            "record the joint while its command changes"
-        )
-    channels = []
-    place = position_key(rig, joint)
-    position = np.asarray(measured_position(rig, joint, recording), dtype=float)
-    if not np.isfinite(position).any():
-        raise UninformativeError(f"{recording.source}: {place} has no value at all")
-    if "position" in wanted:
-        unit = "m" if place.endswith(".position") else "rad"
-        noise = _noise(position, rig, joint, "noise")
-        channels.append(Channel(place, unit, "reading", position, noise))
-    if rig.variant(joint, "cylinder") != "electric_motor":
-        for quantity in ("pressure_a", "pressure_b"):
-            name = f"{joint}.{quantity}"
-            if quantity in wanted and name in recording.signals:
-                measured = np.asarray(recording.signal(name), dtype=float)
-                noise = _noise(measured, rig, joint, "pressure_noise")
-                channels.append(Channel(name, "Pa", quantity, measured, noise))
-        if "supply_pressure" in wanted and "supply.pressure" in recording.signals and len(rig.joints) == 1:
-            measured = np.asarray(recording.signal("supply.pressure"), dtype=float)
-            noise = _noise(measured, rig, joint, "pressure_noise")
-            channels.append(Channel("supply.pressure", "Pa", "supply_pressure", measured, noise))
-    start, start_error = None, 0.0
-    if rig.initial_position == "recording":
-        start, start_error = resting_position(position, command, _noise(position, rig, joint, "noise"))
-    return Experiment(
-        name=recording.name,
-        joint=joint,
-        index=rig.joints.index(joint),
-        time=np.ascontiguousarray(recording.time, dtype=float),
-        command_times=np.ascontiguousarray(recording.time, dtype=float),
-        command=command,
-        channels=tuple(channels),
-        start=start,
-        start_error=start_error,
-        longest_step=rig.value("integration.longest_step"),
-        spool_steps=int(rig.value("integration.spool_steps")),
-        used=np.ones(recording.time.size, dtype=bool),
-    )
-
-
-def _noise(measured: np.ndarray, rig: Rig, joint: str, name: str) -> float:
-    """Noise of a channel from the recording itself, or from the rig if the recording shows none."""
-    level = noise_level(measured) or rig.value(f"joints.{joint}.sensor.{name}")
-    return max(level, faithful(measured), np.finfo(float).tiny)

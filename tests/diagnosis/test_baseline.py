@@ -11,9 +11,9 @@ from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.diagnosis import _nominal
 from hydrolek_drake.diagnosis.effort import COARSE, LOOK
 from hydrolek_drake.diagnosis.workbench import Workbench
-from hydrolek_drake.identification.experiment import experiments_of
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
+from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import load_rig
 

@@ -10,9 +10,10 @@ import pytest
 from hydrolek_drake.diagnosis import law_search
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
+from hydrolek_drake.diagnosis.law_inputs import Input, inputs_of
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
 from hydrolek_drake.diagnosis.law_search import promising
-from hydrolek_drake.diagnosis.laws import Input, Term, inputs_of, law_record, law_records, span_of
+from hydrolek_drake.diagnosis.laws import Term, law_record, law_records, span_of
 from hydrolek_drake.diagnosis.words import where_sentence
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales

@@ -9,10 +9,11 @@ import pytest
 
 from hydrolek_drake.diagnosis import law_search, unlisted
 from hydrolek_drake.diagnosis.baseline import fit_baseline
+from hydrolek_drake.diagnosis.law_inputs import Input
 from hydrolek_drake.diagnosis.law_naming import helping
 from hydrolek_drake.diagnosis.law_problem import Law
 from hydrolek_drake.diagnosis.law_search import promising
-from hydrolek_drake.diagnosis.laws import Input, Term
+from hydrolek_drake.diagnosis.laws import Term
 from hydrolek_drake.diagnosis.search import outdoes
 from hydrolek_drake.diagnosis.unlisted import FITTED, TRIED, Asked, best_of, followed, worth_trying
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench

@@ -11,13 +11,14 @@ import pytest
 from hydrolek_drake.diagnosis import baseline, evidence
 from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, FAR, NEAR
 from hydrolek_drake.diagnosis.judged import Judged
+from hydrolek_drake.diagnosis.law_inputs import inputs_of
 from hydrolek_drake.diagnosis.law_problem import Law, LawProblem
-from hydrolek_drake.diagnosis.laws import inputs_of, span_of
+from hydrolek_drake.diagnosis.laws import span_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.experiment import experiments_of
 from hydrolek_drake.identification.least_squares import Fit, fit_from
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
+from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.identification.valleys import along_valleys
 from hydrolek_drake.recordings import read_recording
 

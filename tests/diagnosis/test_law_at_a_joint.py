@@ -14,8 +14,8 @@ from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_at_a_joint import followed_worst, law_at_a_joint, left_at
 from hydrolek_drake.diagnosis.workbench import Workbench
-from hydrolek_drake.identification.experiment import experiments_of
 from hydrolek_drake.identification.parameter_set import free_parameters
+from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rollout.rollout import roll_out
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.law_counterpart import counterpart
+from hydrolek_drake.diagnosis.law_inputs import inputs_of
 from hydrolek_drake.diagnosis.law_problem import Law
-from hydrolek_drake.diagnosis.laws import Term, inputs_of, law_records, span_of
+from hydrolek_drake.diagnosis.laws import Term, law_records, span_of
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.rollout.one_point import law_along, stroke_and_lever
 

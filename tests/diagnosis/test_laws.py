@@ -14,10 +14,11 @@ from hydrolek_drake.diagnosis.enlarged import enlarged_rig
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
 from hydrolek_drake.diagnosis.law_growing import LONGEST
+from hydrolek_drake.diagnosis.law_inputs import Input, inputs_of
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, records_of
 from hydrolek_drake.diagnosis.law_search import promising
 from hydrolek_drake.diagnosis.law_terms import gain_along
-from hydrolek_drake.diagnosis.laws import Input, Term, inputs_of, law_record, law_records, span_of
+from hydrolek_drake.diagnosis.laws import Term, law_record, law_records, span_of
 from hydrolek_drake.diagnosis.panels import after
 from hydrolek_drake.diagnosis.score import gain_of
 from hydrolek_drake.diagnosis.unlisted import find_law

@@ -8,9 +8,10 @@ import pytest
 from hydrolek_drake.diagnosis.effort import NOISE_KNOWN
 from hydrolek_drake.diagnosis.gains import GAIN_NEEDED
 from hydrolek_drake.diagnosis.judged import flatter
+from hydrolek_drake.diagnosis.law_inputs import Input
 from hydrolek_drake.diagnosis.law_naming import likeliest
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
-from hydrolek_drake.diagnosis.laws import Input, Term
+from hydrolek_drake.diagnosis.laws import Term
 
 COUNTED, PARAMETERS = 7000, 11
 RUBS, PUSHES = Term((), speed="sign(v)"), Term((), place="z")

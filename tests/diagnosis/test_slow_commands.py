@@ -7,8 +7,9 @@ import pytest
 from hydrolek_drake.diagnosis import law_search
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
+from hydrolek_drake.diagnosis.law_inputs import Input, inputs_of
 from hydrolek_drake.diagnosis.law_search import promising
-from hydrolek_drake.diagnosis.laws import TERMS, Input, Term, inputs_of, span_of
+from hydrolek_drake.diagnosis.laws import TERMS, Term, span_of
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters

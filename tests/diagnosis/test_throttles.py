@@ -8,8 +8,9 @@ import pytest
 from hydrolek_drake.diagnosis import law_search
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
+from hydrolek_drake.diagnosis.law_inputs import inputs_of
 from hydrolek_drake.diagnosis.law_search import promising
-from hydrolek_drake.diagnosis.laws import Term, inputs_of, law_records, span_of
+from hydrolek_drake.diagnosis.laws import Term, law_records, span_of
 from hydrolek_drake.diagnosis.unlisted import worth_trying
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.together import felt_together
-from hydrolek_drake.identification.experiment import Experiment, experiments_of
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import StepSizes, make_station

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from hydrolek_drake.identification.experiment import experiments_of
+from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.identification.thinning import STEPS, Blocks, block_size
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig, load_rig

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.identification.experiment import experiments_of
 from hydrolek_drake.identification.fit.rig_objective import RigObjective
 from hydrolek_drake.identification.genetic.settings import GeneticSettings
 from hydrolek_drake.identification.identifiability import Identifiability, identifiability
 from hydrolek_drake.identification.least_squares import Fit, multi_start
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.identification.search.cluster import ClusterWorkers
 from hydrolek_drake.identification.search.evaluation import Mapping
 from hydrolek_drake.identification.search.journal import Journal

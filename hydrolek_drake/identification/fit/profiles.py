@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.identification.experiment import experiments_of
 from hydrolek_drake.identification.fit.fitting import SIGNALS, RigFit
 from hydrolek_drake.identification.parameter_set import Free
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.profile import CONFIDENCE, Profile, profile
+from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
 
