@@ -29,7 +29,6 @@ from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit, fit_from
 from hydrolek_drake.identification.parameter_set import ParameterSet
-from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.rollout.rollout import Signals
 
 ROUNDS = 3
@@ -141,20 +140,16 @@ def lost_commands(
         at = Across(fit)
     if not any(len(lost) for lost in windows.values()):
         return None
-    total, every = 0.0, dict(windows)
+    every = dict(windows)
     for experiment in held_out:
         if recording_of(experiment) not in every:  # blocks of a recording that is fitted too have its windows
             every[recording_of(experiment)] = _in_held_out(
                 bench, parameters, experiment, unit, finer, neutral
             )
-        arrived = experiment.without_command(every[recording_of(experiment)], neutral)
-        residual = Problem.bounded(
-            [experiment.residuals(arrived.simulate(parameters.records(unit), finer).signals)]
-        )
-        total += float(residual @ residual)
+    records = parameters.records(unit)
+    ahead = LostProblem(parameters, held_out, finer, every, neutral).left(records, every)
     counted = sum(experiment.counted for experiment in held_out)
     first = bench.training[0]
-    records = parameters.records(unit)
     difference = (
         first.without_command(windows[recording_of(first)], neutral).simulate(records, finer).signals.reading
         - first.simulate(records, finer).signals.reading
@@ -165,7 +160,7 @@ def lost_commands(
         values=np.array([float(np.median(lasted))]),
         parameters=parameters.values(unit),
         fit=fit,
-        held_out_over_noise=float(np.sqrt(total / max(counted, 1))),
+        held_out_over_noise=float(np.sqrt(ahead @ ahead / max(counted, 1))),
         difference=difference,
         span=span,
         ahead=tuple(every[recording_of(e)].ravel() for e in held_out),
