@@ -1,5 +1,6 @@
 """Laws for physics in no list: what they mean, and that a planted one is found at its stage."""
 
+import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from types import SimpleNamespace
@@ -227,6 +228,7 @@ def test_a_friction_over_the_stroke_is_found_at_the_rod_as_a_law_of_several_term
         assert friction(u) == pytest.approx(dry + tight * u**2, abs=0.15 * (dry + tight))
 
 
+@pytest.mark.skipif(os.environ.get("HYDROLEK_PAIRS") != "all", reason="takes a minute: HYDROLEK_PAIRS=all")
 @pytest.mark.usefixtures("in_less_time")
 def test_a_friction_at_one_place_of_the_stroke_is_found_there(bench, recorded) -> None:
     """A scored bore: between two of the places that terms have, and wider than either."""
