@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from hydrolek_drake.diagnosis.attempt import PREDICTED, predicting
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED
-from hydrolek_drake.diagnosis.effort import AT_NOISE, NEAR
+from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, NEAR
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_at_a_joint import followed_worst, left_at, one_joint
 from hydrolek_drake.diagnosis.law_fit import glance
@@ -85,7 +85,7 @@ def _asked_for(
     law = best_of(bench, asked, laws, ahead_to_beat(ahead.over_noise))
     if law is None or not predicting(law):
         return _lost(bench, asked) if first and left.fit.over_noise > NEAR else None
-    return law if law.law.periodic or law.fit.over_noise <= AT_NOISE else None
+    return law if law.law.periodic or law.fit.over_noise <= ABOVE_NOISE else None
 
 
 def _lost(bench: Workbench, asked: Asked) -> FoundLaw | None:

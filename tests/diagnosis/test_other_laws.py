@@ -9,6 +9,7 @@ import pytest
 from hydrolek_drake.diagnosis import law_search, other_laws, search, unlisted
 from hydrolek_drake.diagnosis.attempt import PREDICTED, predicting
 from hydrolek_drake.diagnosis.baseline import fit_baseline
+from hydrolek_drake.diagnosis.effort import NOISE_KNOWN
 from hydrolek_drake.diagnosis.law_naming import BETTER, ahead_to_beat
 from hydrolek_drake.diagnosis.laws import BUILT, TERMS
 from hydrolek_drake.diagnosis.other_laws import OtherLaws, worth_it
@@ -136,3 +137,26 @@ def test_something_else_is_asked_for_before_a_second_and_a_third_effect(
     monkeypatch.setattr(search, "_worth_going_on", lambda *_: goes_on)
     found = SimpleNamespace(rounds=rounds, best=SimpleNamespace(fit=SimpleNamespace(over_noise=left)))
     assert search._something_else_may_do(found, 0.3) == asked
+
+
+@pytest.mark.parametrize(
+    ("periodic", "left", "told"),
+    [
+        (False, 1.0 + 1.9 * NOISE_KNOWN, True),
+        (False, 1.0 + 2.1 * NOISE_KNOWN, False),  # something that is not quite this, or two effects
+        (True, 1.0 + 2.1 * NOISE_KNOWN, True),  # no effect repeats itself in time
+    ],
+)
+def test_what_is_no_sine_must_leave_no_more_than_the_noise_may_be(monkeypatch, periodic, left, told) -> None:
+    law = SimpleNamespace(
+        law=SimpleNamespace(periodic=periodic),
+        fit=SimpleNamespace(over_noise=left),
+        held_out_over_noise=1.0,
+    )
+    asked = SimpleNamespace(inputs=(), span=None, step=1e-3)
+    monkeypatch.setattr(other_laws, "Asked", SimpleNamespace(of=lambda *given: asked))
+    monkeypatch.setattr(other_laws, "promising", lambda *given: [])
+    monkeypatch.setattr(other_laws, "best_of", lambda *given: law)
+    bench = SimpleNamespace(residuals=lambda *given: 2.0 * np.ones(10), fine=1e-3)
+    found = other_laws._asked_for(bench, None, [SimpleNamespace(counted=10)], None, 2)
+    assert (found is law) is told
