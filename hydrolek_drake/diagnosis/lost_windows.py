@@ -23,8 +23,12 @@ WINDOW_S = 0.1
 LONGEST_S = 5.0 * WINDOW_S
 """A command that is lost for longer is a recording of two pieces."""
 
-SHORTEST_S = 0.1 * WINDOW_S
-"""What is lost for less is about one sample of a controller, and moves nothing."""
+SHORTEST_S = 0.01 * WINDOW_S
+"""Two steps of the integration. A joint at full speed that misses its command for a few of them is off by more than
+its noise from then on, but shorter ones are no time that a rollout resolves."""
+
+TOUCHING_S = 0.1 * WINDOW_S
+"""Windows that are fitted and lie no farther apart than about one sample of a controller are one."""
 
 MOST_SHARE = 0.1
 """So much of a recording may be lost at most: a line that loses more is not in use."""
@@ -173,7 +177,7 @@ def joined(windows: Windows) -> Windows:
     """The same time in windows that do not touch, in their order."""
     apart: list[list[float]] = []
     for begin, end in windows[np.argsort(windows[:, 0])].tolist():
-        if apart and begin < apart[-1][1] + SHORTEST_S:
+        if apart and begin < apart[-1][1] + TOUCHING_S:
             apart[-1][1] = max(apart[-1][1], end)
         else:
             apart.append([begin, end])

@@ -31,6 +31,10 @@ MOST = 0.5
 """Before a second effect a law must promise this share of what the nominal model leaves above the noise, or it is not
 fitted."""
 
+MOST_LOST = 0.25
+"""So much windows without a command must promise together. They are picked by first order, beside a nominal model that
+has bent its numbers, and hold far more or nothing once they are fitted."""
+
 HOPEFUL, GLANCED = 0.05, 2
 """A nominal model that has bent its numbers far lets a constant promise little. The first few that promise this share
 are fitted with a few steps, and on if that explains what it sees."""
@@ -91,7 +95,7 @@ def _asked_for(
 def _lost(bench: Workbench, asked: Asked) -> FoundLaw | None:
     """Commands that got lost, if that explains the data: windows could make up for a little of much."""
     left = asked.left
-    needed = MOST * (left.fit.objective - left.fit.counted)
+    needed = MOST_LOST * (left.fit.objective - left.fit.counted)
     lost = lost_commands(bench, left, asked.held_out, asked.span, asked.step, needed)
     return lost if lost is not None and predicting(lost) and lost.fit.over_noise <= EXPLAINED else None
 

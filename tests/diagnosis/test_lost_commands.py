@@ -125,7 +125,9 @@ def test_windows_that_touch_are_one() -> None:
     [lost, later] = merged([(1.0, 0.4), (1.1, 0.8), (3.0, 0.5)])
     assert lost == pytest.approx([1.0 + WINDOW_S * 2 / 3 + 0.05 - 0.06, 1.0 + WINDOW_S * 2 / 3 + 0.05 + 0.06])
     assert later == pytest.approx([3.025, 3.075])
-    assert merged([(1.0, 0.01)]).shape == (0, 2)  # a millisecond
+    [brief] = merged([(1.0, 0.07)])  # less than a sample of a controller, at full speed a joint misses it
+    assert brief == pytest.approx([1.0465, 1.0535])
+    assert merged([(1.0, 0.005)]).shape == (0, 2)  # half a millisecond
 
 
 def test_windows_that_were_fitted_side_by_side_are_told_as_one() -> None:
