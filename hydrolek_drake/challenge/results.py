@@ -49,6 +49,7 @@ def earlier_scores(path: Path, sha256: str) -> dict[str, dict[str, Any]]:
         contents = json.loads(path.read_text())
         theirs = contents["labels_sha256"]
         scores = {score["name"]: score for score in contents["cases"]}
+        summaries(list(scores.values()))  # has all that results are told from
     except OSError as error:
         raise InputError(f"--earlier {path}: cannot be read: {error.strerror or error}") from None
     except (ValueError, KeyError, TypeError):

@@ -86,12 +86,10 @@ def challenge(
     output.print(f"sha256 of the labels: {sha256}")
     told: list[dict[str, Any]] = json.loads(labels)[:first]
     scored = earlier_scores(earlier, sha256) if earlier else {}
-    results: list[dict[str, Any]] = []
     try:
         with progress("starting") as tell, ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
             for number, label in enumerate(told, start=1):
                 if label["name"] in scored:
-                    results.append(scored[label["name"]])
                     continue
                 tell(f"case {number} of {len(told)} ...")
                 folder = out / f"{label['name']}_{sample}"
@@ -110,8 +108,9 @@ def challenge(
                     write_whole(report, json.dumps(as_json(done), indent=1))
                 answered = json.loads(report.read_text())
                 tell(f"case {number} of {len(told)}: {answered['verdict']}")
-                results.append(score(label, answered))
+                scored[label["name"]] = score(label, answered)
     finally:  # interrupted too: what is known by then
-        told_by = write_results(out, sha256, results)
+        known_by_now = [scored[label["name"]] for label in told if label["name"] in scored]
+        told_by = write_results(out, sha256, known_by_now)
     output.print(summaries_markdown(told_by), markup=False, soft_wrap=True)
     output.print(f"cases, confusion, visibility and calibration: {out}", markup=False, soft_wrap=True)

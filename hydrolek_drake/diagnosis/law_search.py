@@ -129,9 +129,9 @@ def promising(
         here = at[given.probe] if given.probe in at else gains(given, short, frequencies)
         around = np.arange(-0.5 * spacing, 0.5 * spacing, SPACING / longest)
         best = sorted(here, key=_promised)[: -FOLLOWED - 1 : -1]
-        near = [max(gains(given, longer, law.frequency + around), key=_promised) for law in best]
-        loudest = max(near, key=_promised)
-        return [loudest] if loudest is near[0] else [loudest, near[0]]
+        near = gains(given, longer, np.concatenate([law.frequency + around for law in best]))
+        loudest, at_first = max(near, key=_promised), max(near[: around.size], key=_promised)
+        return [loudest] if loudest is at_first else [loudest, at_first]
 
     shaken = [given for given in inputs if given.probe not in STEADY]
     through = [given for given in shaken if given.probe in SCANNED] or shaken

@@ -176,6 +176,7 @@ def outdoes(law: FoundLaw, best: Hypothesis) -> bool:
         law: fitted to the training data.
         best: the model with effects that explains them best.
     """
+    # the law's data are weighed by what the nominal model leaves, so that multiples of the noise are compared
     left, needed = law.fit.over_noise**2 * best.fit.counted, gain_needed(best.fit)
     return left + needed * LAW_COSTS < best.fit.objective + needed * len(best.effects)
 

@@ -41,7 +41,12 @@ def test_scores_of_other_labels_are_refused_in_one_line(tmp_path) -> None:
         earlier_scores(tmp_path / "summary.json", "b" * 64)
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{}", json.dumps({"labels_sha256": "a", "cases": [1]}), None])
+NAMES_ALONE = json.dumps({"labels_sha256": "a" * 64, "cases": [{"name": "case_001"}]})
+
+
+@pytest.mark.parametrize(
+    "text", ["", "[]", "{}", json.dumps({"labels_sha256": "a", "cases": [1]}), NAMES_ALONE, None]
+)
 def test_what_is_no_summary_is_refused_in_one_line(tmp_path, text: str | None) -> None:
     path = tmp_path / "summary.json"
     if text is not None:
@@ -61,6 +66,19 @@ def test_what_was_scored_elsewhere_is_not_run_again(tmp_path) -> None:
     challenge(cases=2, seed=3, kind="healthy", earlier=tmp_path / "elsewhere" / "summary.json", out=out)
     told = json.loads((out / "summary.json").read_text())
     assert (told["labels_sha256"], told["cases"]) == (digest(labels), scores)
-    assert (
-        sorted(path.name for path in out.iterdir() if path.is_dir()) == []
-    )  # no case, no machines half drawn
+    assert not [path for path in out.iterdir() if path.is_dir()]  # no case, no machines half drawn
+
+
+def test_an_interrupt_loses_no_score_of_an_earlier_run(tmp_path, monkeypatch) -> None:
+    """Also where the earlier results are those that are written to."""
+    labels = labels_of(draw_cases([load_rig(BENCH, {})], 2, 3, (("healthy", 1.0),)))
+    second = SCORED | {"name": "case_002"}
+    write_results(tmp_path, digest(labels), [second])
+
+    def interrupted(*given):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("hydrolek_drake.diagnosis.diagnosis.diagnose", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        challenge(cases=2, seed=3, kind="healthy", earlier=tmp_path / "summary.json", out=tmp_path)
+    assert json.loads((tmp_path / "summary.json").read_text())["cases"] == [second]
