@@ -9,13 +9,14 @@ from hydrolek_drake.diagnosis.conclusion import EXPLAINED, Conclusion, conclude
 from hydrolek_drake.diagnosis.effort import FAR, LOOK
 from hydrolek_drake.diagnosis.evidence import even, judge
 from hydrolek_drake.diagnosis.found import Search
+from hydrolek_drake.diagnosis.gains import cost_of, gain_needed
 from hydrolek_drake.diagnosis.hollows import deepest, strayed
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
-from hydrolek_drake.diagnosis.search import Other, search, search_on
+from hydrolek_drake.diagnosis.search import LAW_COSTS, Other, search, search_on
 from hydrolek_drake.diagnosis.splitting import mixed
 from hydrolek_drake.diagnosis.weighing import NEARER, weighted_by
-from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 
 FAR_AHEAD = 2.0
@@ -179,16 +180,58 @@ def by_both(known: Known, candidates: Sequence[Candidate], say: Callable[[str], 
     Raises:
         KeyboardInterrupt: it was interrupted.
     """
-    best = known.conclusion.best
-    if not strayed(best):
+    if not strayed(known.conclusion.best):
         return None
     say(
         "the model that explains the training data fails on the held-out data: looking for what explains both"
     )
+    return _from_elsewhere(
+        known, candidates, deepest(known.bench, known.judged, candidates, known.held_out), say
+    )
+
+
+def in_place_of_law(
+    known: Known, law: FoundLaw, candidates: Sequence[Candidate], say: Callable[[str], None]
+) -> Known | None:
+    """The same where a law was found, if effects explain both data better from other places than it does.
+
+    Training data that hang by a hair's breadth may have led the right effect into the wrong hollow, which predicts
+    nothing, and a small sine makes up for a little of everything. None where no effects explain the training data.
+
+    Args:
+        known: what was found before the law.
+        law: beside the nominal model.
+        candidates: every effect that may be missing.
+        say: told what is being done.
+
+    Raises:
+        KeyboardInterrupt: it was interrupted.
+    """
+    elsewhere = deepest(known.bench, known.judged, candidates, known.held_out, most_models=1)
+    if not elsewhere:
+        return None
+    best = elsewhere[0]
+    ahead = known.bench.residuals(best, known.held_out, known.bench.fine)
+    counted = sum(experiment.counted for experiment in known.held_out)
+    # the law's data are weighed by what the nominal model leaves, so that multiples of the noise are compared
+    by_law = law.fit.over_noise**2 * best.fit.counted + law.held_out_over_noise**2 * counted
+    if cost_of(best) + float(ahead @ ahead) >= by_law + LAW_COSTS * gain_needed(best.fit):
+        return None
+    say("known effects explain both recordings better than a law does: going on from there")
+    return _from_elsewhere(known, candidates, elsewhere, say)
+
+
+def _from_elsewhere(
+    known: Known,
+    candidates: Sequence[Candidate],
+    elsewhere: Sequence[Hypothesis],
+    say: Callable[[str], None],
+) -> Known | None:
+    """The search in parts of both data, from fits that leave little of both; None where it does no better."""
+    best = known.conclusion.best
     both, kept = mixed(known.bench.training, known.held_out)
     again = known.bench.with_training(both)
     found = Search(scores=known.found.scores)
-    elsewhere = deepest(known.bench, known.judged, candidates, known.held_out)
     for fitted in again.side_by_side(
         lambda h: again.refit(h, again.fine, LOOK), [known.found.baseline, *elsewhere]
     ):

@@ -19,7 +19,7 @@ from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
 from hydrolek_drake.identification.experiment import Experiment
 
 MOST_MODELS = 3
-"""So many models that explain the training data are fitted elsewhere, each also with what contains its effects."""
+"""So many models that explain the training data are fitted elsewhere at most, each also with what contains it."""
 
 MOST_STARTS = 9
 """From at most so many places each, evenly among those where searches of its effects begin."""
@@ -35,6 +35,7 @@ def deepest(
     judged: Sequence[Judged],
     candidates: Sequence[Candidate],
     held_out: Sequence[Experiment],
+    most_models: int = MOST_MODELS,
 ) -> list[Hypothesis]:
     """Of each model that explains the training data, and of what contains it, the fit that leaves least of both data.
 
@@ -43,6 +44,7 @@ def deepest(
         judged: models, of which those with effects are fitted again.
         candidates: every effect that there is.
         held_out: recordings that choose among the fits of a model.
+        most_models: so many models that explain the training data are fitted elsewhere.
 
     Returns:
         one fit for each set of effects, the one that leaves least first.
@@ -52,7 +54,7 @@ def deepest(
         key=cost_of,
     )
     sets: dict[frozenset[str], tuple[tuple[Candidate, ...], Hypothesis]] = {}
-    for hypothesis in explaining[:MOST_MODELS]:
+    for hypothesis in explaining[:most_models]:
         wider = (changed for _, _, changed in widenings(hypothesis.effects, candidates))
         for effects in (hypothesis.effects, *wider):
             sets.setdefault(key_of(effects), (effects, hypothesis))

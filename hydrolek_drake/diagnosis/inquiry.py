@@ -10,6 +10,7 @@ from hydrolek_drake.diagnosis.attempt import (
     by_both,
     by_more_data,
     by_their_noise,
+    in_place_of_law,
     law_first,
     predicting,
 )
@@ -88,10 +89,18 @@ class Inquiry:
             if conclusion.verdict == "unlisted_physics":  # not every known effect has been tried
                 conclusion = replace(conclusion, verdict="ambiguous")
             return Answer(known, conclusion, None, (INTERRUPTED,))
-        if known.found.law is not None:
-            return Answer(known, alone(known.conclusion, known.judged, known.found.law), known.found.law)
         answer = Answer(known, known.conclusion)
-        questions = (self._by_a_law_at_once, self._by_more_data, self._by_a_law, self._by_other_weights)
+        questions: tuple[Callable[[Answer], Answer], ...] = (
+            self._by_a_law_at_once,
+            self._by_effects_elsewhere,
+            self._by_more_data,
+            self._by_a_law,
+            self._by_other_weights,
+        )
+        if known.found.law is not None:
+            law = known.found.law
+            answer = Answer(known, alone(known.conclusion, known.judged, law), law)
+            questions = (self._by_effects_elsewhere,)
         for question in questions:
             try:
                 answer = question(answer)
@@ -111,6 +120,13 @@ class Inquiry:
             return answer
         with_a_law = self._by_a_law(answer)
         return with_a_law if with_a_law.law is not None and predicting(with_a_law.law) else answer
+
+    def _by_effects_elsewhere(self, answer: Answer) -> Answer:
+        """Known effects in place of a law, if from other places they explain both recordings better."""
+        if answer.law is None:
+            return answer
+        other = in_place_of_law(answer.known, answer.law, self.candidates, self.say)
+        return answer if other is None else Answer(other, other.conclusion, None, (BY_BOTH,))
 
     def _by_more_data(self, answer: Answer) -> Answer:
         """What only the held-out data show, or decide, unless a law predicts them."""
