@@ -13,6 +13,7 @@ from hydrolek_drake.diagnosis.gains import cost_of, gain_needed
 from hydrolek_drake.diagnosis.hollows import deepest, strayed
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
+from hydrolek_drake.diagnosis.overlooked import overlooked, wanting
 from hydrolek_drake.diagnosis.search import LAW_COSTS, Other, search, search_on
 from hydrolek_drake.diagnosis.splitting import mixed
 from hydrolek_drake.diagnosis.weighing import NEARER, weighted_by
@@ -228,21 +229,51 @@ def _from_elsewhere(
     say: Callable[[str], None],
 ) -> Known | None:
     """The search in parts of both data, from fits that leave little of both; None where it does no better."""
-    best = known.conclusion.best
     both, kept = mixed(known.bench.training, known.held_out)
     again = known.bench.with_training(both)
+    return _gone_on(known, again, [known.found.baseline, *elsewhere], kept, candidates, say)
+
+
+def by_what_was_overlooked(
+    known: Known, candidates: Sequence[Candidate], say: Callable[[str], None]
+) -> Known | None:
+    """The search gone on with from an effect that promised nothing, see `overlooked`.
+
+    None where the best model lacks nothing ahead, and where no effect does better there.
+
+    Raises:
+        KeyboardInterrupt: it was interrupted.
+    """
+    best, bench = known.conclusion.best, known.bench
+    if not wanting(best):
+        return None
+    say("the held-out data leave more than noise: fitting every effect, whether it promises anything or not")
+    better = overlooked(bench, best.hypothesis, candidates, known.held_out)
+    if not better:
+        return None
+    fits = [known.found.baseline, best.hypothesis, *better]
+    return _gone_on(known, bench, fits, known.held_out, candidates, say)
+
+
+def _gone_on(
+    known: Known,
+    bench: Workbench,
+    fits: Sequence[Hypothesis],
+    held_out: Sequence[Experiment],
+    candidates: Sequence[Candidate],
+    say: Callable[[str], None],
+) -> Known | None:
+    """A search from the best of some fits; None where what it ends with explains the held-out data no better."""
     found = Search(scores=known.found.scores)
-    for fitted in again.side_by_side(
-        lambda h: again.refit(h, again.fine, LOOK), [known.found.baseline, *elsewhere]
-    ):
+    for fitted in bench.side_by_side(lambda h: bench.refit(h, bench.fine, LOOK), fits):
         found.keep(fitted)
     found.weighed_at = found.baseline.fit.over_noise
     second = _whole(
-        _attempted(again, found, lambda: search_on(again, candidates, found, found.best, say), kept, say)
+        _attempted(bench, found, lambda: search_on(bench, candidates, found, found.best, say), held_out, say)
     )
     if second.conclusion.verdict == "unlisted_physics":
         return None
-    return second if second.conclusion.best.unaccounted < best.unaccounted else None
+    return second if second.conclusion.best.unaccounted < known.conclusion.best.unaccounted else None
 
 
 def _whole(known: Known) -> Known:

@@ -10,6 +10,7 @@ from hydrolek_drake.diagnosis.attempt import (
     by_both,
     by_more_data,
     by_their_noise,
+    by_what_was_overlooked,
     in_place_of_law,
     law_first,
     predicting,
@@ -93,6 +94,7 @@ class Inquiry:
         questions: tuple[Callable[[Answer], Answer], ...] = (
             self._by_a_law_at_once,
             self._by_effects_elsewhere,
+            self._by_what_was_overlooked,
             self._by_more_data,
             self._by_a_law,
             self._by_other_weights,
@@ -127,6 +129,13 @@ class Inquiry:
             return answer
         other = in_place_of_law(answer.known, answer.law, self.candidates, self.say)
         return answer if other is None else Answer(other, other.conclusion, None, (BY_BOTH,))
+
+    def _by_what_was_overlooked(self, answer: Answer) -> Answer:
+        """An effect that promised nothing, where the held-out data leave more than noise."""
+        if answer.law is not None or self.several:
+            return answer
+        other = by_what_was_overlooked(answer.known, self.candidates, self.say)
+        return answer if other is None else replace(answer, known=other, conclusion=other.conclusion)
 
     def _by_more_data(self, answer: Answer) -> Answer:
         """What only the held-out data show, or decide, unless a law predicts them."""

@@ -34,7 +34,15 @@ def asked(monkeypatch):
 
             return answer
 
-        for name in ("attempt", "by_more_data", "by_both", "balanced", "by_their_noise"):
+        for name in (
+            "attempt",
+            "in_place_of_law",
+            "by_what_was_overlooked",
+            "by_more_data",
+            "by_both",
+            "balanced",
+            "by_their_noise",
+        ):
             monkeypatch.setattr(inquiry, name, answering(name))
         monkeypatch.setattr(
             inquiry, "with_law", lambda bench, conclusion, *_: answering("with_law")() or (conclusion, None)
@@ -76,7 +84,9 @@ def test_parts_of_the_held_out_data_are_fitted_only_where_these_are_a_recording_
     assert asked(attempt=first, by_both=second, apart=False).remarks == (BY_BOTH,)
 
 
-@pytest.mark.parametrize("question", ["by_more_data", "by_both", "with_law", "balanced"])
+@pytest.mark.parametrize(
+    "question", ["by_what_was_overlooked", "by_more_data", "by_both", "with_law", "balanced"]
+)
 def test_an_interrupt_keeps_what_is_known_and_asks_nothing_more(asked, question):
     first = _known("unlisted_physics")
     answer = asked(attempt=first, **{question: KeyboardInterrupt})
@@ -113,3 +123,28 @@ def test_a_law_that_explains_both_recordings_comes_before_more_data(asked):
     assert asked(law_first=False, explained=True, **how).known is second
     answer = asked(law_first=True, explained=True, **how | {"with_law": KeyboardInterrupt})
     assert answer.known is first and answer.law is None and answer.remarks == (INTERRUPTED,)
+
+
+def test_effects_that_explain_both_recordings_from_elsewhere_come_before_a_law(asked, monkeypatch):
+    law = SimpleNamespace(held_out_over_noise=1.1)
+    monkeypatch.setattr(inquiry, "alone", lambda conclusion, judged, law: conclusion)
+    ended, first, second = (
+        _known("unlisted_physics", law=law),
+        _known("unlisted_physics"),
+        _known("missing_physics"),
+    )
+    at_once = {"attempt": first, "with_law": (first.conclusion, law), "law_first": True, "explained": True}
+    assert asked(in_place_of_law=second, attempt=ended).law is None
+    for how in ({"attempt": ended}, at_once):
+        answer = asked(in_place_of_law=second, **how)
+        assert answer.known is second and answer.remarks == (BY_BOTH,)
+        answer = asked(in_place_of_law=KeyboardInterrupt, **how)
+        assert answer.law is law and answer.remarks == (INTERRUPTED,)
+
+
+def test_what_was_overlooked_is_the_answer_and_other_questions_go_on_from_it(asked):
+    first, second, third = _known("none"), _known("missing_physics"), _known("missing_physics")
+    answer = asked(attempt=first, by_what_was_overlooked=second)
+    assert answer.known is second and answer.conclusion is second.conclusion and answer.remarks == ()
+    answer = asked(attempt=first, by_what_was_overlooked=second, by_both=third)
+    assert answer.known is third and answer.remarks == (BY_BOTH,)

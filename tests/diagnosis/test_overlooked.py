@@ -1,0 +1,84 @@
+"""An effect that promises nothing beside a bent nominal model, and effects that a law would stand for."""
+
+from concurrent.futures import ThreadPoolExecutor
+from types import SimpleNamespace
+
+import pytest
+
+from hydrolek_drake.diagnosis import attempt
+from hydrolek_drake.diagnosis.attempt import Known, by_what_was_overlooked, in_place_of_law
+from hydrolek_drake.diagnosis.baseline import fit_baseline
+from hydrolek_drake.diagnosis.candidates import candidates_of
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED, conclude
+from hydrolek_drake.diagnosis.evidence import judge
+from hydrolek_drake.diagnosis.found import Search
+from hydrolek_drake.diagnosis.overlooked import MORE, wanting
+from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.parameter_set import free_parameters
+
+DRIFT = "sensor.drift"
+TRIED = (DRIFT, "sensor.nonlinearity", "supply.pressure_droop")
+NOISY_deg = 0.25
+SLOW_rad_per_min = 0.025
+
+
+@pytest.fixture
+def nominal_alone(bench, recorded):
+    """(effects of the machine) -> what is known where no effect promised anything, and the candidates."""
+    pool = ThreadPoolExecutor(2)
+
+    def make(machine):
+        training = recorded(bench.with_values(machine), bench, noise_deg=NOISY_deg)
+        held_out = recorded(bench.with_values(machine), bench, seed=7, noise_deg=NOISY_deg)
+        candidates = [
+            c
+            for c in candidates_of(bench, "joint", natural_scales(bench, "joint", training))
+            if c.id in TRIED
+        ]
+        workbench = Workbench(bench, free_parameters(bench), training, pool)
+        found = Search()
+        found.keep(fit_baseline(workbench))
+        judged = judge(workbench, found, held_out)
+        known = Known(workbench, found, tuple(held_out), tuple(judged), conclude(judged), False)
+        return known, candidates
+
+    yield make
+    pool.shutdown()
+
+
+def test_what_promised_nothing_is_found_where_the_held_out_data_leave_more_than_noise(nominal_alone) -> None:
+    known, candidates = nominal_alone({f"effects.{DRIFT}.rate_rad_per_min": SLOW_rad_per_min})
+    nominal = known.conclusion.best
+    assert nominal.hypothesis.fit.over_noise <= EXPLAINED and nominal.over_noise > MORE
+    second = by_what_was_overlooked(known, candidates, lambda text: None)
+    best = second.conclusion.best
+    assert [c.id for c in best.hypothesis.effects] == [DRIFT] and best.over_noise < MORE
+    rate = best.hypothesis.values[f"joints.joint.effects.{DRIFT}.rate_rad_per_min"]
+    assert rate == pytest.approx(SLOW_rad_per_min, rel=0.1)
+
+
+def test_a_healthy_machine_is_not_asked_for_more(nominal_alone) -> None:
+    known, candidates = nominal_alone({})
+    assert not wanting(known.conclusion.best)
+    assert by_what_was_overlooked(known, candidates, lambda text: None) is None
+
+
+def _law(over_noise: float, ahead: float) -> SimpleNamespace:
+    return SimpleNamespace(fit=SimpleNamespace(over_noise=over_noise), held_out_over_noise=ahead)
+
+
+def test_effects_stand_in_place_of_a_law_only_if_they_leave_less_of_both(nominal_alone, monkeypatch) -> None:
+    known, candidates = nominal_alone({})
+    elsewhere = [known.found.baseline]
+    monkeypatch.setattr(attempt, "deepest", lambda *given, **how: elsewhere)
+    monkeypatch.setattr(attempt, "_from_elsewhere", lambda known, candidates, fits, say: fits)
+
+    def asked(law):
+        return in_place_of_law(known, law, candidates, lambda text: None)
+
+    left, ahead = known.found.baseline.fit.over_noise, known.judged[0].over_noise
+    assert asked(_law(1.1 * left, 1.1 * ahead)) is elsewhere
+    assert asked(_law(0.9 * left, 0.9 * ahead)) is None
+    elsewhere = []  # nothing explains the training data
+    assert asked(_law(1.1 * left, 1.1 * ahead)) is None
