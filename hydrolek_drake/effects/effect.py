@@ -16,6 +16,7 @@ HOOKS = {
     "land_shift": "(joint) -> m by which the spool's null is shifted towards B",
     "spool_friction": "(velocity, joint) -> N against the spool, and its slope in N s/m",
     "edge_conductance": "(joint) -> m^3/(s Pa) added to each of the four edges",
+    "port_drop": "(joint) -> pressure drop in the ports over that across a fully open edge",
     "flow_gain": "(time, joint) -> factor on the flow coefficient",
     "viscous_gain": "(time, joint) -> factor on the cylinder's viscous friction",
     "supply_drop": "(flow, joint) -> Pa by which the supply falls",

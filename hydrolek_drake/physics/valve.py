@@ -127,12 +127,13 @@ def edge_conductances(
     bt = leak
     if p.variant == PLAIN:
         coefficient = p.discharge * gain
+        choke = hooks.port_drop(joint)
         if open_a > 0.0:
-            area = open_a * p.max_area_a
+            area = _choked(open_a, choke) * p.max_area_a
             pa += orifice_conductance(area, p_supply - p_a, coefficient, joint)
             bt += orifice_conductance(area, p_b - p_tank, coefficient, joint)
         if open_b > 0.0:
-            area = open_b * p.max_area_b
+            area = _choked(open_b, choke) * p.max_area_b
             pb += orifice_conductance(area, p_supply - p_b, coefficient, joint)
             at += orifice_conductance(area, p_a - p_tank, coefficient, joint)
     elif p.variant == PRESSURE_COMPENSATED:
@@ -143,6 +144,17 @@ def edge_conductances(
             pb += gain * _compensated_conductance(open_b, p_supply - p_b, joint)
             at += gain * _return_conductance(open_b, p_a - p_tank, joint)
     return pa, at, pb, bt
+
+
+@njit
+def _choked(opening: float, port_drop: float) -> float:
+    """Share of full opening of one orifice that stands for an edge and its port in series.
+
+    Both take the same flow Q, the edge with the drop dp_e ~ (Q / s)^2, the port with port_drop s^2 dp_e.
+    """
+    if port_drop == 0.0:
+        return opening
+    return opening / math.sqrt(1.0 + port_drop * opening * opening)
 
 
 @njit

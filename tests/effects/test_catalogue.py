@@ -70,6 +70,7 @@ ON = {
     "load.coulomb_friction": {"force_N": 30.0},
     "load.viscous_friction": {"damping_N_s_per_m": 50.0},
     "load.offset_force": {"force_N": 25.0},
+    "valve.port_restriction": {"ratio": 0.8},
     "load.friction_asymmetry": {"coulomb_N": 20.0, "damping_N_s_per_m": 30.0},
 }
 NEW_EFFECT = """

@@ -1,0 +1,42 @@
+"""The valve's ports choke what its edges let through."""
+
+from typing import Any
+
+from numba import njit
+
+from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.physics.parameters import Parameter
+
+EFFECT = Effect(
+    id="valve.port_restriction",
+    title="flow saturates: the ports choke it",
+    equation="share s of full opening lets through as much as s / sqrt(1 + ratio s^2) without the ports",
+    parameters=(
+        Parameter(
+            "ratio",
+            "1",
+            "pressure drop in the ports over that across the edge when fully open",
+            neutral=0.0,
+            lowest=0.0,
+        ),
+    ),
+    size="ratio",
+    search={
+        "ratio": Search("unity", 4, (0.3, 1.5)),
+    },
+    # a proportional valve's full openings are fitted, and its coils' currents end where they end
+    searched_on={"solenoid": ("servo_valve",)},
+    source="two orifices in series; SAE ARP490 and ISO 10770-1: flow saturation region of servo valves",
+    confused_with={
+        "supply.pressure_droop": "a drooping supply falls with all that is drawn, and slows the joint less in the "
+        "direction that draws less; the ports choke both alike, by the opening",
+    },
+    needs={"valve": ("plain",)},
+)
+
+
+@EFFECT.hook("port_drop")
+@njit
+def port_drop(joint: Any) -> float:
+    """Pressure drop in the ports over that across the edge when fully open."""
+    return joint.effects.valve_port_restriction.ratio
