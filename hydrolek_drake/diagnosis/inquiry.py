@@ -3,18 +3,15 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from hydrolek_drake.diagnosis.attempt import (
-    Known,
-    attempt,
+from hydrolek_drake.diagnosis.again import (
     balanced,
     by_both,
     by_more_data,
     by_their_noise,
     by_what_was_overlooked,
     in_place_of_law,
-    law_first,
-    predicting,
 )
+from hydrolek_drake.diagnosis.attempt import Known, attempt, law_first, predicting
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.effort import FAR

@@ -4,7 +4,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from hydrolek_drake.diagnosis.attempt import Known, by_their_noise
+from hydrolek_drake.diagnosis.again import by_their_noise
+from hydrolek_drake.diagnosis.attempt import Known
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.effort import LOOK

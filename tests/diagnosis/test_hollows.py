@@ -7,8 +7,9 @@ from itertools import pairwise
 import pytest
 from scipy.stats import chi2
 
-from hydrolek_drake.diagnosis import attempt
-from hydrolek_drake.diagnosis.attempt import Known, by_both
+from hydrolek_drake.diagnosis import again
+from hydrolek_drake.diagnosis.again import by_both
+from hydrolek_drake.diagnosis.attempt import Known
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, conclude
@@ -79,7 +80,7 @@ def test_what_contains_the_named_effect_is_found_by_both_data(known_so_far, monk
         fits.extend(deepest(*given))
         return fits
 
-    monkeypatch.setattr(attempt, "deepest", seen)
+    monkeypatch.setattr(again, "deepest", seen)
     second = _again(known, candidates)
     assert [c.id for c in fits[0].effects] == [STRIBECK]
     assert {h.ids for h in fits} >= {named.hypothesis.ids}

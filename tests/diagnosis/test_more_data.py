@@ -4,7 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from hydrolek_drake.diagnosis.attempt import by_more_data, law_first, predicting
+from hydrolek_drake.diagnosis.again import by_more_data
+from hydrolek_drake.diagnosis.attempt import law_first, predicting
 
 
 class _AskedError(Exception):

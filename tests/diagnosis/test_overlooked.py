@@ -5,8 +5,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from hydrolek_drake.diagnosis import attempt
-from hydrolek_drake.diagnosis.attempt import Known, by_what_was_overlooked, in_place_of_law
+from hydrolek_drake.diagnosis import again
+from hydrolek_drake.diagnosis.again import by_what_was_overlooked, in_place_of_law
+from hydrolek_drake.diagnosis.attempt import Known
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, conclude
@@ -71,8 +72,8 @@ def _law(over_noise: float, ahead: float) -> SimpleNamespace:
 def test_effects_stand_in_place_of_a_law_only_if_they_leave_less_of_both(nominal_alone, monkeypatch) -> None:
     known, candidates = nominal_alone({})
     elsewhere = [known.found.baseline]
-    monkeypatch.setattr(attempt, "deepest", lambda *given, **how: elsewhere)
-    monkeypatch.setattr(attempt, "_from_elsewhere", lambda known, candidates, fits, say: fits)
+    monkeypatch.setattr(again, "deepest", lambda *given, **how: elsewhere)
+    monkeypatch.setattr(again, "_from_elsewhere", lambda known, candidates, fits, say: fits)
 
     def asked(law):
         return in_place_of_law(known, law, candidates, lambda text: None)

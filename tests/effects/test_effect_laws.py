@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from hydrolek_drake.physics import amplifier, cylinder, fluid, hooks, sensor, valve
+from hydrolek_drake.physics import amplifier, cylinder, fluid, hooks, sensor
 
 LOWER, UPPER = np.radians(-10.3), np.radians(65.6)
 STEP_UP = ((0.0, 0.2), (0.0, 7.0))
@@ -47,22 +47,6 @@ def test_warm_up_thins_the_oil_on_its_time_course(record):
         assert_allclose(
             cylinder.friction_force(0.1, 0.03, time, joint)[0], 3000 * (1 - share) * 0.03, rtol=1e-13
         )
-
-
-def test_ports_and_edges_are_orifices_in_series(bench, record):
-    """What flows through both: Q = k s sqrt(dp_edge) = k / sqrt(ratio) sqrt(dp_port), the drops adding up."""
-    ratio, p_supply, p_a, p_b = 0.8, 16e6, 9e6, 2e6
-    joint = record({"effects.valve.port_restriction.ratio": ratio})
-    tank = bench.value("supply.tank_pressure")
-    for share in (0.1, 0.5, 1.0):
-        plain = valve.edge_conductances(share, 0.0, p_supply, p_a, p_b, 0.0, bench.records()[0])
-        choked = valve.edge_conductances(share, 0.0, p_supply, p_a, p_b, 0.0, joint)
-        for edge, drop in ((0, p_supply - p_a), (3, p_b - tank)):
-            flow = choked[edge] * drop
-            full = plain[edge] * np.sqrt(drop) / share  # k
-            in_edge, in_port = (flow / (full * share)) ** 2, ratio * (flow / full) ** 2
-            assert_allclose(in_edge + in_port, drop, rtol=1e-9)
-        assert choked[1] == plain[1] == choked[2] == plain[2] == 0.0
 
 
 def test_shifted_null_takes_voltage_from_one_direction_and_gives_it_to_the_other(drive):
