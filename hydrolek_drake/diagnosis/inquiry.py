@@ -122,7 +122,7 @@ class Inquiry:
 
     def _by_effects_elsewhere(self, answer: Answer) -> Answer:
         """Known effects in place of a law, if from other places they explain both recordings better."""
-        if answer.law is None:
+        if answer.law is None or self.several:
             return answer
         other = in_place_of_law(answer.known, answer.law, self.candidates, self.say)
         return answer if other is None else Answer(other, other.conclusion, None, (BY_BOTH,))
