@@ -1,5 +1,6 @@
 """`hydrolek diagnose`: locate the mismatch, name the missing physics, model it, show the fit improve."""
 
+import math
 import os
 from pathlib import Path
 from typing import Annotated
@@ -27,6 +28,10 @@ def diagnose(
     workers: Annotated[
         int | None, typer.Option(help="threads; as many as there are cores by default")
     ] = None,
+    at_most: Annotated[
+        float | None,
+        typer.Option(metavar="MINUTES", help="end the search then, with what is known by that time"),
+    ] = None,
     set_: SetOption = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="folder for report, fitted rig and residuals")
@@ -46,9 +51,12 @@ def diagnose(
     from hydrolek_drake.recordings import read_recording
     from hydrolek_drake.rigs import load_rig
     from hydrolek_drake.runs.report import prepare_folder
+    from hydrolek_drake.runs.time_limit import ended_after
 
     if workers is not None and workers < 1:
         raise InputError(f"--workers {workers}: at least 1 is needed")
+    if at_most is not None and not 0.0 < at_most < math.inf:
+        raise InputError(f"--at-most {at_most:g}: minutes must be more than 0")
     given = [*recordings, *(holdout or [])]
     for path in given:
         if given.count(path) > 1:
@@ -61,7 +69,19 @@ def diagnose(
         prepare_folder(out)
     count = workers or os.cpu_count() or 1
     with progress("starting") as tell, ThreadPoolExecutor(count) as pool:
-        done = run_diagnosis(loaded, train, held, pool, say=lambda text: tell(f"{text} ..."), between=between)
+
+        def say(text: str) -> None:
+            tell(f"{text} ...")
+
+        with ended_after(None if at_most is None else 60.0 * at_most) as limit:
+            try:
+                done = run_diagnosis(loaded, train, held, pool, say=say, between=between)
+            except KeyboardInterrupt:
+                if not limit.reached:
+                    raise
+                raise InputError(
+                    f"--at-most {at_most:g}: not even the nominal model was fitted by then; give it longer"
+                ) from None
         if out is not None:
             tell("writing the report ...")
             page = write_report(done, out)
@@ -69,5 +89,5 @@ def diagnose(
         output.print(line, soft_wrap=True)
     if out is not None:
         output.print(f"\nreport: {page}", markup=False, soft_wrap=True)
-    if INTERRUPTED in done.reasons:
+    if INTERRUPTED in done.reasons and not limit.reached:
         raise KeyboardInterrupt
