@@ -107,9 +107,14 @@ def law_first(known: Known) -> bool:
     return unlisted and unexcited(known.conclusion) and known.found.baseline.fit.over_noise > EXPLAINED
 
 
-def predicting(law: FoundLaw) -> bool:
-    """Whether a law explains the training data and predicts the held-out data as a right model does."""
-    return law.fit.over_noise <= EXPLAINED and law.held_out_over_noise <= PREDICTED
+def predicting(law: FoundLaw, slack: float = 1.0) -> bool:
+    """Whether a law explains the training data and predicts the held-out data as a right model does.
+
+    Args:
+        law: fitted.
+        slack: so many times what a right model may leave.
+    """
+    return law.fit.over_noise <= slack * EXPLAINED and law.held_out_over_noise <= slack * PREDICTED
 
 
 def unexcited(conclusion: Conclusion) -> bool:

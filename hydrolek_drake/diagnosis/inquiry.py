@@ -15,8 +15,15 @@ from hydrolek_drake.diagnosis.attempt import Known, attempt, law_first, predicti
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.effort import FAR
-from hydrolek_drake.diagnosis.law_choice import alone, material, with_law, with_law_at_a_joint
+from hydrolek_drake.diagnosis.law_choice import (
+    alone,
+    material,
+    seen_beside,
+    with_law,
+    with_law_at_a_joint,
+)
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
+from hydrolek_drake.diagnosis.law_told_anew import Told, beside
 from hydrolek_drake.diagnosis.other_laws import OtherLaws
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -97,8 +104,7 @@ class Inquiry:
             self._by_other_weights,
         )
         if known.found.law is not None:
-            law = known.found.law
-            answer = Answer(known, alone(known.conclusion, known.judged, law), law)
+            answer = self._ended_by_a_law(known, known.found.law)
             questions = (self._by_effects_elsewhere,)
         for question in questions:
             try:
@@ -107,6 +113,13 @@ class Inquiry:
                 answer.known.bench.resume()
                 return replace(answer, remarks=(*answer.remarks, INTERRUPTED))
         return answer
+
+    def _ended_by_a_law(self, known: Known, law: FoundLaw) -> Answer:
+        """A law that ended the search, with what several joints do to each other beside it."""
+        if not self.several:
+            return Answer(known, alone(known.conclusion, known.judged, law), law)
+        training, held_out = beside(known.bench, known.found.baseline, law, known.held_out)
+        return _beside(known, Told(law, training, held_out))
 
     @property
     def _alone(self) -> Scales | None:
@@ -151,13 +164,13 @@ class Inquiry:
             return answer
         known = answer.known
         if self._alone is None:
-            conclusion, law = with_law_at_a_joint(
+            told = with_law_at_a_joint(
                 known.bench, answer.conclusion, known.judged, known.held_out, self.scales, self.say
             )
-        else:
-            conclusion, law = with_law(
-                known.bench, answer.conclusion, known.judged, known.held_out, self._alone, self.say
-            )
+            return answer if told is None else replace(_beside(known, told), remarks=answer.remarks)
+        conclusion, law = with_law(
+            known.bench, answer.conclusion, known.judged, known.held_out, self._alone, self.say
+        )
         return replace(answer, conclusion=conclusion, law=law)
 
     def _by_other_weights(self, answer: Answer) -> Answer:
@@ -179,3 +192,12 @@ class Inquiry:
         if own is not None and own.conclusion.verdict != "unlisted_physics":
             return Answer(own, own.conclusion, None, answer.remarks)
         return Answer(alike, material(alike.conclusion, alike.judged, alike.held_out), None, told)
+
+
+def _beside(known: Known, told: Told) -> Answer:
+    """A law at one of several joints, with the data that it belongs to."""
+    bench = known.bench
+    bench.training = told.training
+    judged = tuple(j if j.hypothesis.effects else seen_beside(bench, j, told.held_out) for j in known.judged)
+    known = replace(known, held_out=told.held_out, judged=judged)
+    return Answer(known, alone(known.conclusion, judged, told.law), told.law)

@@ -10,6 +10,7 @@ from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_at_a_joint import law_at_a_joint, left_at
 from hydrolek_drake.diagnosis.law_growing import explains
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, left_in_all
+from hydrolek_drake.diagnosis.law_told_anew import Told, told_anew
 from hydrolek_drake.diagnosis.unlisted import find_law, without_effects
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.effects.scales import Scales
@@ -65,8 +66,8 @@ def with_law_at_a_joint(
     held_out: Sequence[Experiment],
     scales: Mapping[str, Scales],
     say: Callable[[str], None],
-) -> tuple[Conclusion, FoundLaw | None]:
-    """The conclusion with a law at one of several joints that were driven, where known effects do not explain the data.
+) -> Told | None:
+    """A law at one of several joints that were driven, where known effects do not explain the data.
 
     It stands alone, and is told if it leaves no more of all joints than `SIMPLER` times what the effects leave.
 
@@ -79,18 +80,30 @@ def with_law_at_a_joint(
         say: told what is being done.
     """
     if conclusion.verdict != "unlisted_physics":
-        return conclusion, None
+        return None
     nominal = next(j for j in judged if not j.hypothesis.effects)
     say("searching a law at one joint for physics that is in no list")
     law = law_at_a_joint(bench, nominal.hypothesis, held_out, scales)
     if law is None:
-        return conclusion, None
-    there, counted = left_at(law.joint, nominal.held_out, held_out)
-    rest = float(nominal.held_out @ nominal.held_out) - there
-    left = rest + law.held_out_over_noise**2 * counted
-    if left > SIMPLER**2 * float(conclusion.best.held_out @ conclusion.best.held_out):
-        return conclusion, None
-    return alone(conclusion, judged, law), law
+        return None
+    told = told_anew(bench, nominal.hypothesis, law, held_out, scales[law.joint])
+    beside = seen_beside(bench, nominal, told.held_out).held_out
+    there, counted = left_at(law.joint, beside, told.held_out)
+    left = float(beside @ beside) - there + told.law.held_out_over_noise**2 * counted
+    named = conclusion.best.held_out
+    return told if left <= SIMPLER**2 * float(named @ named) else None
+
+
+def seen_beside(bench: Workbench, judged: Judged, held_out: Sequence[Experiment]) -> Judged:
+    """What a judged model leaves of held-out data that were told anew.
+
+    Args:
+        bench: rollouts.
+        judged: by these data as they were told before.
+        held_out: as they are told now.
+    """
+    residuals = bench.residuals(judged.hypothesis, held_out, judged.hypothesis.step)
+    return replace(judged, held_out=residuals, chi_squared=None)
 
 
 def alone(conclusion: Conclusion, judged: Sequence[Judged], law: FoundLaw) -> Conclusion:

@@ -10,6 +10,8 @@ Two do not do: any law. Three effects at once are less likely than one thing tha
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from hydrolek_drake.diagnosis.attempt import PREDICTED, predicting
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, NEAR
@@ -19,6 +21,7 @@ from hydrolek_drake.diagnosis.law_fit import glance
 from hydrolek_drake.diagnosis.law_naming import ahead_to_beat
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
 from hydrolek_drake.diagnosis.law_search import STEADY, promising
+from hydrolek_drake.diagnosis.law_told_anew import told_anew
 from hydrolek_drake.diagnosis.laws import BUILT, TERMS
 from hydrolek_drake.diagnosis.lost_commands import lost_commands
 from hydrolek_drake.diagnosis.unlisted import Asked, best_of
@@ -38,6 +41,11 @@ has bent its numbers, and hold far more or nothing once they are fitted."""
 HOPEFUL, GLANCED = 0.05, 2
 """A nominal model that has bent its numbers far lets a constant promise little. The first few that promise this share
 are fitted with a few steps, and on if that explains what it sees."""
+
+
+SLACK = 1.15
+"""A law at one of several joints, and the others without it, may leave so many times more than what explains them, as
+long as what the joints do to each other is told without the law."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +83,12 @@ class OtherLaws:
 
 
 def _asked_for(
-    bench: Workbench, left: Hypothesis, held_out: Sequence[Experiment], scales: Scales, effects: int
+    bench: Workbench,
+    left: Hypothesis,
+    held_out: Sequence[Experiment],
+    scales: Scales,
+    effects: int,
+    slack: float = 1.0,
 ) -> FoundLaw | None:
     """The law at the only joint of some data that explains them, or None."""
     asked = Asked.of(bench, left, held_out, scales)
@@ -87,9 +100,14 @@ def _asked_for(
     counted = sum(experiment.counted for experiment in held_out)
     ahead = Judged(left, bench.residuals(left, held_out, bench.fine), counted)
     law = best_of(bench, asked, laws, ahead_to_beat(ahead.over_noise))
-    if law is None or not predicting(law):
+    if law is None or not predicting(law, slack):
         return _lost(bench, asked) if first and left.fit.over_noise > NEAR else None
-    return law if law.law.periodic or law.fit.over_noise <= ABOVE_NOISE else None
+    return law if _explaining(law, slack) else None
+
+
+def _explaining(law: FoundLaw, slack: float = 1.0) -> bool:
+    """Whether a law leaves so little of the training data that nothing more is asked."""
+    return law.law.periodic or law.fit.over_noise <= slack * ABOVE_NOISE
 
 
 def _lost(bench: Workbench, asked: Asked) -> FoundLaw | None:
@@ -121,20 +139,43 @@ def _at_one_joint(
     """The law at the joint that is followed worst that explains its data, if the others' are explained without."""
     ahead = bench.residuals(left, held_out, bench.fine)
     joint = followed_worst(ahead, held_out, scales)
-    if joint is None:
-        return None
-    for residuals, experiments, most in (
-        (left.fit.residuals, bench.training, EXPLAINED),
-        (ahead, held_out, PREDICTED),
+    if joint is None or not _others_explained(
+        joint, (left.fit.residuals, bench.training), (ahead, held_out), SLACK
     ):
+        return None
+    one = one_joint(bench, left, held_out, joint, scales[joint])
+    found = _asked_for(one.bench, one.nominal, one.held_out, one.scales, effects, SLACK)
+    bench.evaluations += one.bench.evaluations
+    if found is None:
+        return None
+    told = told_anew(bench, left, one.whole(found), held_out, scales[joint])
+    beside = [
+        bench.residuals(left, experiments, bench.fine) for experiments in (told.training, told.held_out)
+    ]
+    others = _others_explained(joint, (beside[0], told.training), (beside[1], told.held_out))
+    return told.law if others and predicting(told.law) and _explaining(told.law) else None
+
+
+def _others_explained(
+    joint: str,
+    training: tuple[np.ndarray, Sequence[Experiment]],
+    held_out: tuple[np.ndarray, Sequence[Experiment]],
+    slack: float = 1.0,
+) -> bool:
+    """Whether a model explains all joints but one.
+
+    Args:
+        joint: that one.
+        training: residuals and data.
+        held_out: the same of the data that decide.
+        slack: so many times what a right model may leave.
+    """
+    for (residuals, experiments), most in ((training, EXPLAINED), (held_out, PREDICTED)):
         squares, counted = left_at(joint, residuals, experiments)
         rest = sum(experiment.counted for experiment in experiments) - counted
-        if float(residuals @ residuals) - squares > most**2 * rest:
-            return None
-    one = one_joint(bench, left, held_out, joint, scales[joint])
-    law = _asked_for(one.bench, one.nominal, one.held_out, one.scales, effects)
-    bench.evaluations += one.bench.evaluations
-    return None if law is None else one.whole(law)
+        if float(residuals @ residuals) - squares > (slack * most) ** 2 * rest:
+            return False
+    return True
 
 
 def worth_it(laws: Sequence[Law], needed: float) -> list[Law]:

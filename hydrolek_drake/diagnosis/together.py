@@ -34,12 +34,12 @@ def felt_together(rig: Rig, experiments: Sequence[Experiment]) -> list[Experimen
         experiments: of one or more recordings.
     """
     felt: list[Experiment] = []
-    for group in _recordings(experiments):
+    for group in recordings_of(experiments):
         felt += group if group[0].others is None else _simulated(rig, group)
     return felt
 
 
-def _recordings(experiments: Iterable[Experiment]) -> list[list[Experiment]]:
+def recordings_of(experiments: Iterable[Experiment]) -> list[list[Experiment]]:
     """Experiments by the recording that they are of: those of one recording follow each other."""
     groups: list[list[Experiment]] = []
     for experiment in experiments:

@@ -13,6 +13,7 @@ from hydrolek_drake.diagnosis import law_choice, other_laws
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_at_a_joint import followed_worst, law_at_a_joint, left_at
+from hydrolek_drake.diagnosis.law_told_anew import Told
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.parameter_set import free_parameters
 from hydrolek_drake.identification.recorded import experiments_of
@@ -111,6 +112,9 @@ def test_while_a_search_goes_on_the_other_joints_must_be_explained(
         other_laws, "_asked_for", lambda one, *given: asked_at.append(one.training[0].joint) or law
     )
     monkeypatch.setattr(module, "replace", lambda law, **new: SimpleNamespace(**{**vars(law), **new}))
+    monkeypatch.setattr(other_laws, "told_anew", lambda *_: Told(law, tuple(experiments), tuple(experiments)))
+    monkeypatch.setattr(other_laws, "predicting", lambda *_: True)
+    monkeypatch.setattr(other_laws, "_explaining", lambda *_: True)
     found = other_laws._at_one_joint(bench, left, experiments, dict.fromkeys(MOVING, None), 1)
     assert asked_at == (["right_j3"] if asked else [])
     assert (found is not None) == asked
@@ -124,9 +128,10 @@ def test_a_law_is_told_if_all_joints_are_followed_as_well_as_with_the_effects(
     half = replace(nominal, held_out=0.7 * nominal.held_out)
     conclusion = Conclusion("unlisted_physics", half, {}, ())
     law = SimpleNamespace(joint="right_j3", held_out_over_noise=with_law, law=None, rivals=())
+    anew = Told(law, tuple(experiments), tuple(experiments))
     monkeypatch.setattr(law_choice, "law_at_a_joint", lambda *_: law)
-    ended, found = law_choice.with_law_at_a_joint(
-        bench, conclusion, [nominal], experiments, {}, lambda text: None
+    monkeypatch.setattr(law_choice, "told_anew", lambda *_: anew)
+    found = law_choice.with_law_at_a_joint(
+        bench, conclusion, [nominal], experiments, dict.fromkeys(MOVING), lambda text: None
     )
-    assert (found is law) == told
-    assert ended.best is (nominal if told else half)
+    assert (found is anew) == told
