@@ -25,8 +25,9 @@ _HOW_TO = """## How to add an effect: one file and one test
    `cylinder_coulomb_friction.py` is a good pattern. The file is found by itself; the rig files, both
    executions and this page know it at once.
 2. Add its closed form to `tests/effects/test_effect_laws.py` and a size to the tables of
-   `tests/effects/test_catalogue.py` and `tests/rollout/test_bench_recordings.py`, whose tests then check that
-   neutral changes nothing bit for bit, that it shows when on, and that the integration step is fine enough.
+   `tests/effects/test_catalogue.py`, `tests/rollout/test_bench_recordings.py` and `scripts/agreement_effects.json`,
+   whose tests then check that neutral changes nothing bit for bit, that it shows when on, that the integration
+   step is fine enough, and that Diagram and rollout agree.
 
 Then write this page anew:
 

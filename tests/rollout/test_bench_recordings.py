@@ -54,6 +54,7 @@ SIZES = {
     "load.coulomb_friction": {"force_N": 40.0},
     "load.viscous_friction": {"damping_N_s_per_m": 90.0},
     "load.offset_force": {"force_N": 35.0},
+    "valve.port_restriction": {"ratio": 0.8},
     "load.friction_asymmetry": {"coulomb_N": 30.0, "damping_N_s_per_m": 40.0},
 }
 
