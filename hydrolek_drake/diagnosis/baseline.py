@@ -28,12 +28,14 @@ def fit_baseline(bench: Workbench) -> Hypothesis:
     free = _lowest(bench, settled(bench, _fitted_freely(bench, starts)))
     if free.fit.over_noise <= AT_NOISE:
         return free
-    # from the rig's own values again: where the free fit got stuck, pulled rollouts mostly get stuck too
+    # from the rig's own values again: where the free fit got stuck, pulled rollouts mostly get stuck too; which of
+    # their fits leads out of the hollow shows only without the pull
     pulled = bench.side_by_side(
         lambda start: fit_pulled(bench, (), [start], bench.fine, bench.training), starts
     )
-    led = bench.refit(min(pulled, key=lambda h: h.fit.objective), bench.fine, LOOK)
-    return min((free, _lowest(bench, led)), key=lambda h: h.fit.objective)
+    led = bench.side_by_side(lambda near: bench.refit(near, bench.fine, LOOK), pulled)
+    best = min(led, key=lambda h: h.fit.objective)
+    return min((free, _lowest(bench, best)), key=lambda h: h.fit.objective)
 
 
 def _lowest(bench: Workbench, fitted: Hypothesis) -> Hypothesis:
