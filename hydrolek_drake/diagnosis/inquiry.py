@@ -104,8 +104,9 @@ class Inquiry:
             self._by_other_weights,
         )
         if known.found.law is not None:
-            answer = self._ended_by_a_law(known, known.found.law)
-            questions = (self._by_effects_elsewhere,)
+            law = known.found.law
+            answer = Answer(known, alone(known.conclusion, known.judged, law), law)
+            questions = (self._beside_the_others, self._by_effects_elsewhere)
         for question in questions:
             try:
                 answer = question(answer)
@@ -114,12 +115,14 @@ class Inquiry:
                 return replace(answer, remarks=(*answer.remarks, INTERRUPTED))
         return answer
 
-    def _ended_by_a_law(self, known: Known, law: FoundLaw) -> Answer:
+    def _beside_the_others(self, answer: Answer) -> Answer:
         """A law that ended the search, with what several joints do to each other beside it."""
-        if not self.several:
-            return Answer(known, alone(known.conclusion, known.judged, law), law)
-        training, held_out = beside(known.bench, known.found.baseline, law, known.held_out)
-        return _beside(known, Told(law, training, held_out))
+        if answer.law is None or not self.several:
+            return answer
+        known = answer.known
+        return _beside(
+            known, Told(answer.law, *beside(known.bench, known.found.baseline, answer.law, known.held_out))
+        )
 
     @property
     def _alone(self) -> Scales | None:

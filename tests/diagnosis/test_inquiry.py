@@ -25,7 +25,7 @@ def _known(verdict, interrupted=False, law=None):
 def asked(monkeypatch):
     """(answers of the questions, of which one may be an interrupt, whether held-out data are apart) -> answer."""
 
-    def ask(apart=True, law_first=False, explained=False, **answers):
+    def ask(apart=True, law_first=False, explained=False, several=False, **answers):
         def answering(name):
             def answer(*_):
                 if answers.get(name) is KeyboardInterrupt:
@@ -50,7 +50,8 @@ def asked(monkeypatch):
         monkeypatch.setattr(inquiry, "law_first", lambda known: law_first)
         monkeypatch.setattr(inquiry, "predicting", lambda law: explained)
         monkeypatch.setattr(inquiry, "material", lambda conclusion, *_: replace(conclusion, groups=(("m",),)))
-        return Inquiry((), {"joint": SimpleNamespace()}, apart, lambda text: None).answer(_Bench(), ())
+        inquiring = Inquiry((), {"joint": SimpleNamespace()}, apart, lambda text: None, several)
+        return inquiring.answer(_Bench(), ())
 
     return ask
 
@@ -70,6 +71,21 @@ def test_a_law_that_ended_the_search_is_the_answer(asked, monkeypatch):
     answer = asked(attempt=known, with_law=KeyboardInterrupt, by_more_data=KeyboardInterrupt)
     assert answer.law is law and answer.conclusion.groups == (("l",),)
     assert answer.remarks == ()
+
+
+def test_an_interrupt_while_other_joints_are_told_anew_keeps_the_law(asked, monkeypatch):
+    law = SimpleNamespace()
+    known = _known("unlisted_physics", law=law)
+    known.found.baseline = None
+    monkeypatch.setattr(inquiry, "alone", lambda conclusion, judged, law: conclusion)
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(inquiry, "beside", interrupted)
+    answer = asked(attempt=known, several=True)
+    assert answer.law is law and answer.remarks == (INTERRUPTED,)
+    assert asked(attempt=known).remarks == ()  # one joint has no others
 
 
 def test_an_interrupted_search_does_not_tell_physics_in_no_list(asked):
