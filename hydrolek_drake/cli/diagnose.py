@@ -80,7 +80,7 @@ def diagnose(
                 if not limit.reached:
                     raise
                 raise InputError(
-                    f"--at-most {at_most:g}: not even the nominal model was fitted by then; give it longer"
+                    f"--at-most {at_most:g}: ended before anything could be told; give it longer"
                 ) from None
         if out is not None:
             tell("writing the report ...")

@@ -92,18 +92,27 @@ def one_joint(
         joint: its name.
         scales: its natural scales.
     """
-    values = nominal.values
-    own = {path: value for path, value in values.items() if path.startswith(f"joints.{joint}.")}
-    rest = {path: value for path, value in values.items() if path not in own}
-    one = Workbench(
-        bench.rig.with_values(rest),
-        [free for free in bench.nominal if free.path in own],
-        [e for e in bench.training if e.joint == joint],
-        bench.pool,
-    )
-    one.first_s = bench.first_s
+    one = bench_at(bench, nominal, joint)
+    own = {free.path: nominal.values[free.path] for free in one.nominal}
     kept = tuple(e for e in held_out if e.joint == joint)
-    return OneJoint(joint, one, one.fit((), own, one.fine, LOOK), kept, scales, values)
+    return OneJoint(joint, one, one.fit((), own, one.fine, LOOK), kept, scales, nominal.values)
+
+
+def bench_at(bench: Workbench, nominal: Hypothesis, joint: str) -> Workbench:
+    """Data and parameters of a joint, with the rest of the machine as a model has it.
+
+    Args:
+        bench: data of all joints.
+        nominal: the model without effects, fitted to them.
+        joint: its name.
+    """
+    own = [free for free in bench.nominal if free.path.startswith(f"joints.{joint}.")]
+    paths = {free.path for free in own}
+    rest = {path: value for path, value in nominal.values.items() if path not in paths}
+    at_joint = [e for e in bench.training if e.joint == joint]
+    one = Workbench(bench.rig.with_values(rest), own, at_joint, bench.pool)
+    one.first_s = bench.first_s
+    return one
 
 
 def law_at_a_joint(

@@ -86,7 +86,7 @@ def with_law_at_a_joint(
     law = law_at_a_joint(bench, nominal.hypothesis, held_out, scales)
     if law is None:
         return None
-    told = told_anew(bench, nominal.hypothesis, law, held_out, scales[law.joint])
+    told = told_anew(bench, nominal.hypothesis, law, held_out)
     beside = seen_beside(bench, nominal, told.held_out).held_out
     there, counted = left_at(law.joint, beside, told.held_out)
     left = float(beside @ beside) - there + told.law.held_out_over_noise**2 * counted

@@ -10,12 +10,11 @@ from dataclasses import dataclass, replace
 
 from hydrolek_drake.diagnosis.effort import FALLING
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig
-from hydrolek_drake.diagnosis.law_at_a_joint import one_joint
+from hydrolek_drake.diagnosis.law_at_a_joint import bench_at
 from hydrolek_drake.diagnosis.law_fit import fitted
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.together import felt_together, recordings_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
-from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiment import Experiment
 
 ROUNDS = 3
@@ -37,9 +36,7 @@ class Told:
     held_out: tuple[Experiment, ...]
 
 
-def told_anew(
-    bench: Workbench, nominal: Hypothesis, law: FoundLaw, held_out: Sequence[Experiment], scales: Scales
-) -> Told:
+def told_anew(bench: Workbench, nominal: Hypothesis, law: FoundLaw, held_out: Sequence[Experiment]) -> Told:
     """A law that was found at a joint, fitted on with what the others do beside it.
 
     Args:
@@ -47,7 +44,6 @@ def told_anew(
         nominal: that model.
         law: found beside it, with the parameters of the whole machine.
         held_out: what decides.
-        scales: natural scales of the law's joint.
 
     Returns:
         The last turn that left less of both data than the one before; the law as it was found where none did.
@@ -57,22 +53,20 @@ def told_anew(
         return best
     for _ in range(ROUNDS):
         training, kept = beside(bench, nominal, best.law, held_out)
-        again = bench.with_training(training)
-        again.first_s = bench.first_s
-        one = one_joint(again, nominal, kept, law.joint, scales)
-        own = {path: best.law.parameters[path] for path in one.bench.parameters(()).paths}
+        one = bench_at(bench.with_training(training), nominal, law.joint)
+        own = {free.path: best.law.parameters[free.path] for free in one.nominal}
+        at_joint = [experiment for experiment in kept if experiment.joint == law.joint]
         begin = (own, best.law.values)
-        turn = fitted(
-            one.bench, one.nominal, best.law.law, one.held_out, law.span, begin, one.bench.fine, valleys=True
-        )
-        bench.evaluations += one.bench.evaluations
+        turn = fitted(one, nominal, best.law.law, at_joint, law.span, begin, one.fine, valleys=True)
+        bench.evaluations += one.evaluations
         before = best.law
         if (
             turn.fit.over_noise >= before.fit.over_noise
             or turn.held_out_over_noise >= before.held_out_over_noise
         ):
             break
-        best = Told(replace(one.whole(turn), rivals=law.rivals), training, kept)
+        whole = {**nominal.values, **turn.parameters}
+        best = Told(replace(turn, parameters=whole, rivals=law.rivals), training, kept)
         if turn.fit.over_noise - 1.0 > (1.0 - FALLING) * (before.fit.over_noise - 1.0):
             break
     return best

@@ -148,7 +148,7 @@ def _at_one_joint(
     bench.evaluations += one.bench.evaluations
     if found is None:
         return None
-    told = told_anew(bench, left, one.whole(found), held_out, scales[joint])
+    told = told_anew(bench, left, one.whole(found), held_out)
     beside = [
         bench.residuals(left, experiments, bench.fine) for experiments in (told.training, told.held_out)
     ]

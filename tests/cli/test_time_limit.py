@@ -37,7 +37,7 @@ def test_a_run_that_ends_before_is_left_alone() -> None:
 
 
 @pytest.mark.parametrize(
-    ("minutes", "told"), [("1e-4", "not even the nominal model was fitted"), ("0", "must be more than 0")]
+    ("minutes", "told"), [("1e-4", "ended before anything could be told"), ("0", "must be more than 0")]
 )
 def test_a_limit_that_tells_nothing_is_refused_in_one_line(minutes, told, capsys) -> None:
     given = ["diagnose", "joint_bench", str(PAIR / "train.csv"), "--at-most", minutes]

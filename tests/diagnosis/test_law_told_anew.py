@@ -59,7 +59,7 @@ def test_a_shaken_joint_and_the_one_beside_it_are_explained_by_the_diagram_with_
         one = one_joint(bench, nominal, held_out, SHAKEN, None)
         begin = ({}, shakes.begun(np.array([300.0, 100.0])))
         found = one.whole(fitted(one.bench, one.nominal, shakes, one.held_out, SPAN, begin, one.bench.fine))
-        told = told_anew(bench, nominal, found, held_out, None)
+        told = told_anew(bench, nominal, found, held_out)
 
         def over_noise(experiments):
             residuals = bench.residuals(nominal, experiments, bench.fine)
