@@ -12,7 +12,7 @@ from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import cost_of, gain_needed
 from hydrolek_drake.diagnosis.hollows import deepest, strayed
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
-from hydrolek_drake.diagnosis.overlooked import overlooked, wanting
+from hydrolek_drake.diagnosis.overlooked import enlargeable, overlooked
 from hydrolek_drake.diagnosis.search import LAW_COSTS, search_on
 from hydrolek_drake.diagnosis.splitting import mixed
 from hydrolek_drake.diagnosis.weighing import NEARER
@@ -157,16 +157,16 @@ def by_what_was_overlooked(
 ) -> Known | None:
     """The search gone on with from an effect that promised nothing, see `overlooked`.
 
-    None where the best model lacks nothing ahead, and where no effect does better there.
+    None where no effect does better ahead.
 
     Raises:
         KeyboardInterrupt: it was interrupted.
     """
     best, bench = known.conclusion.best, known.bench
-    if not wanting(best):
+    if not enlargeable(best):
         return None
-    say("the held-out data leave more than noise: fitting every effect, whether it promises anything or not")
-    better = overlooked(bench, best.hypothesis, candidates, known.held_out)
+    say("looking for effects that promised nothing")
+    better = overlooked(bench, best, candidates, known.held_out)
     if not better:
         return None
     fits = [known.found.baseline, best.hypothesis, *better]

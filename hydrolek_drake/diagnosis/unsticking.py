@@ -19,8 +19,9 @@ from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import PULLED_STEPS, PULLED_TOLERANCE
 from hydrolek_drake.identification.problem import PULL_S, PULLS_S
 
-TRIED_PULLED = 12
-"""So many of the first fits are tried with pulled rollouts too."""
+TRIED_PULLED = 30
+"""So many of the first fits are tried with pulled rollouts too: every effect of one joint. The one that is missing may
+have got stuck farthest off of all."""
 
 WIDTHS = (0.3, 0.1, 0.03, 0.01)
 """Differences, as fractions of the ranges, from the widest that is not the whole range to what residuals of a

@@ -1,11 +1,12 @@
 """An effect that promises nothing beside a bent nominal model, and effects that a law would stand for."""
 
+import math
 from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
 import pytest
 
-from hydrolek_drake.diagnosis import again
+from hydrolek_drake.diagnosis import again, overlooked
 from hydrolek_drake.diagnosis.again import by_what_was_overlooked, in_place_of_law
 from hydrolek_drake.diagnosis.attempt import Known
 from hydrolek_drake.diagnosis.baseline import fit_baseline
@@ -13,7 +14,7 @@ from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, conclude
 from hydrolek_drake.diagnosis.evidence import judge
 from hydrolek_drake.diagnosis.found import Search
-from hydrolek_drake.diagnosis.overlooked import MORE, wanting
+from hydrolek_drake.diagnosis.overlooked import MORE
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -59,9 +60,16 @@ def test_what_promised_nothing_is_found_where_the_held_out_data_leave_more_than_
     assert rate == pytest.approx(SLOW_rad_per_min, rel=0.1)
 
 
+def test_what_promises_enough_is_found_whatever_the_held_out_data_leave(nominal_alone, monkeypatch) -> None:
+    known, candidates = nominal_alone({f"effects.{DRIFT}.rate_rad_per_min": SLOW_rad_per_min})
+    monkeypatch.setattr(overlooked, "MORE", math.inf)
+    second = by_what_was_overlooked(known, candidates, lambda text: None)
+    assert [c.id for c in second.conclusion.best.hypothesis.effects] == [DRIFT]
+
+
 def test_a_healthy_machine_is_not_asked_for_more(nominal_alone) -> None:
     known, candidates = nominal_alone({})
-    assert not wanting(known.conclusion.best)
+    assert known.conclusion.best.over_noise <= MORE
     assert by_what_was_overlooked(known, candidates, lambda text: None) is None
 
 
