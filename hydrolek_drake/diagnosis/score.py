@@ -24,6 +24,10 @@ SHRUNK = (1.0, 0.1, 0.01)
 """Sizes at which an effect is tried, as multiples of the starts of its search. Under control, where a joint sticks, a
 drift of a tenth of where its search begins may promise hardly anything, and a third of that all it takes."""
 
+ESTIMATING = 0.1
+"""Sizes from this multiple on tell from where an effect is seen: smaller ones may show only what comes with it, such as
+the Coulomb part of Stribeck friction."""
+
 
 @dataclass(frozen=True)
 class Score:
@@ -150,6 +154,8 @@ def _score(
                 best_left, start = remaining, tried
             if gain > best_gain:
                 best_gain, best_change = gain, e
+            if shrink < ESTIMATING:
+                continue
             root = (VISIBLE / power) ** 0.5
             visible = max(visible, size / root) if weakens else min(visible, abs(size) * root)
     bench.evaluations += problem.evaluations
