@@ -7,11 +7,12 @@ from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, Conclusion, conclude
 from hydrolek_drake.diagnosis.evidence import even, judge
 from hydrolek_drake.diagnosis.found import Search
+from hydrolek_drake.diagnosis.gains import gain_needed
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.search import Other, search
 from hydrolek_drake.diagnosis.weighing import weighted_by
-from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 
 FAR_AHEAD = 2.0
@@ -115,6 +116,20 @@ def predicting(law: FoundLaw, slack: float = 1.0) -> bool:
         slack: so many times what a right model may leave.
     """
     return law.fit.over_noise <= slack * EXPLAINED and law.held_out_over_noise <= slack * PREDICTED
+
+
+def asked_for(law: FoundLaw, model: Hypothesis) -> bool:
+    """Whether the training data ask for a law beside known effects, which it costs as much as another one.
+
+    Where a joint sticks and slips, a law that takes nothing of the training data may by chance lead the held-out
+    rollout into the right hollow, which other values of the model's own parameters do as well.
+
+    Args:
+        law: fitted beside the model.
+        model: what it adds to; the nominal model is what it stands in place of.
+    """
+    left = law.fit.over_noise**2 * model.fit.counted
+    return not model.effects or left + gain_needed(model.fit) < model.fit.objective
 
 
 def unexcited(conclusion: Conclusion) -> bool:

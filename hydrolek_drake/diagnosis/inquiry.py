@@ -11,7 +11,7 @@ from hydrolek_drake.diagnosis.again import (
     by_what_was_overlooked,
     in_place_of_law,
 )
-from hydrolek_drake.diagnosis.attempt import Known, attempt, law_first, predicting
+from hydrolek_drake.diagnosis.attempt import Known, asked_for, attempt, law_first, predicting
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.effort import FAR
@@ -134,7 +134,8 @@ class Inquiry:
         if self.several or not (self.apart and law_first(answer.known)):
             return answer
         with_a_law = self._by_a_law(answer)
-        return with_a_law if with_a_law.law is not None and predicting(with_a_law.law) else answer
+        law, best = with_a_law.law, with_a_law.conclusion.best.hypothesis
+        return with_a_law if law is not None and predicting(law) and asked_for(law, best) else answer
 
     def _by_effects_elsewhere(self, answer: Answer) -> Answer:
         """Known effects in place of a law, if from other places they explain both recordings better."""

@@ -1,11 +1,13 @@
 """What is asked one after the other, and what an interrupt leaves."""
 
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 
 from hydrolek_drake.diagnosis import inquiry
+from hydrolek_drake.diagnosis.attempt import asked_for
 from hydrolek_drake.diagnosis.inquiry import BY_BOTH, INTERRUPTED, MIXED, Inquiry
 
 
@@ -17,7 +19,8 @@ class _Bench:
 
 
 def _known(verdict, interrupted=False, law=None):
-    conclusion = inquiry.Conclusion(verdict, None, {}, ())
+    best = SimpleNamespace(hypothesis=SimpleNamespace(effects=()))
+    conclusion = inquiry.Conclusion(verdict, best, {}, ())
     return inquiry.Known(_Bench(), SimpleNamespace(law=law), (), (), conclusion, interrupted)
 
 
@@ -25,7 +28,7 @@ def _known(verdict, interrupted=False, law=None):
 def asked(monkeypatch):
     """(answers of the questions, of which one may be an interrupt, whether held-out data are apart) -> answer."""
 
-    def ask(apart=True, law_first=False, explained=False, several=False, **answers):
+    def ask(apart=True, law_first=False, explained=False, several=False, shown=True, **answers):
         def answering(name):
             def answer(*_):
                 if answers.get(name) is KeyboardInterrupt:
@@ -49,6 +52,7 @@ def asked(monkeypatch):
         )
         monkeypatch.setattr(inquiry, "law_first", lambda known: law_first)
         monkeypatch.setattr(inquiry, "predicting", lambda law: explained)
+        monkeypatch.setattr(inquiry, "asked_for", lambda law, model: shown)
         monkeypatch.setattr(inquiry, "material", lambda conclusion, *_: replace(conclusion, groups=(("m",),)))
         inquiring = Inquiry((), {"joint": SimpleNamespace()}, apart, lambda text: None, several)
         return inquiring.answer(_Bench(), ())
@@ -136,9 +140,17 @@ def test_a_law_that_explains_both_recordings_comes_before_more_data(asked):
     answer = asked(law_first=True, explained=True, **how)
     assert answer.known is first and answer.law is law and answer.remarks == ()
     assert asked(law_first=True, explained=False, **how).known is second
+    assert asked(law_first=True, explained=True, shown=False, **how).known is second
     assert asked(law_first=False, explained=True, **how).known is second
     answer = asked(law_first=True, explained=True, **how | {"with_law": KeyboardInterrupt})
     assert answer.known is first and answer.law is None and answer.remarks == (INTERRUPTED,)
+
+
+@pytest.mark.parametrize(("left", "effects", "needed"), [(0.99, 2, False), (0.9, 2, True), (0.99, 0, True)])
+def test_training_data_ask_for_a_law_beside_effects_if_it_takes_what_one_more_must(left, effects, needed):
+    fit = SimpleNamespace(objective=1000.0, counted=1000, unsure=0.0)  # GAIN_NEEDED of 12 is more than 0.4 %
+    model = SimpleNamespace(fit=fit, effects=(None,) * effects)
+    assert asked_for(SimpleNamespace(fit=SimpleNamespace(over_noise=math.sqrt(left))), model) is needed
 
 
 def test_effects_that_explain_both_recordings_from_elsewhere_come_before_a_law(asked, monkeypatch):
