@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, Conclusion, conclude
-from hydrolek_drake.diagnosis.evidence import even, judge
+from hydrolek_drake.diagnosis.evidence import even, judge, judge_as_fitted
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import gain_needed
 from hydrolek_drake.diagnosis.judged import Judged
@@ -75,7 +75,7 @@ def attempted(
     held_out: Sequence[Experiment],
     say: Callable[[str], None],
 ) -> Known:
-    """See `attempt`; the search fills what is found."""
+    """See `attempt`; the search fills what is found. An interrupt of the judgement leaves a hasty one."""
     interrupted = False
     try:
         searching()
@@ -85,16 +85,29 @@ def attempted(
         interrupted = True
         bench.resume()
     say("holding the models against data that none of them was fitted to")
+    try:
+        weighted, judged = _judged(bench, found, held_out, evenly=not interrupted and found.law is None)
+    except KeyboardInterrupt:
+        interrupted = True
+        bench.resume()
+        weighted = tuple(held_out)
+        judged = tuple(judge_as_fitted(bench, list(found.hypotheses.values()), weighted))
+    return Known(bench, found, weighted, judged, conclude(judged), interrupted)
+
+
+def _judged(
+    bench: Workbench, found: Search, held_out: Sequence[Experiment], *, evenly: bool
+) -> tuple[tuple[Experiment, ...], tuple[Judged, ...]]:
+    """Held-out data weighted by the best model, and what they say; training data are weighted by it too."""
     best = found.best
     weighted = tuple(weighted_by(bench, best, held_out))
-    if not interrupted and found.law is None:
+    if evenly:
         even(bench, found, weighted)
     if found.best is not best:
         best = found.best
         weighted = tuple(weighted_by(bench, best, held_out))
     bench.training = tuple(weighted_by(bench, best, bench.training))
-    judged = tuple(judge(bench, found, weighted))
-    return Known(bench, found, weighted, judged, conclude(judged), interrupted)
+    return weighted, tuple(judge(bench, found, weighted))
 
 
 def law_first(known: Known) -> bool:

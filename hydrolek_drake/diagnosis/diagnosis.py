@@ -151,15 +151,16 @@ def _diagnosed(
     known, conclusion, law, remarks = answer.known, answer.conclusion, answer.law, answer.remarks
     bench, held_out, found, judged = known.bench, known.held_out, known.found, known.judged
     best = conclusion.best.hypothesis
-    places = locate(bench, best, found.baseline, bench.training)
-    if law is not None:
-        places = (locate_law(bench, best, found.baseline, law), *places)
+    places: tuple[Location, ...] = ()
     proposal: Proposal | None = None
     visible: tuple[Visible, ...] = ()
     try:
+        places = locate(bench, best, found.baseline, bench.training)
+        if law is not None:
+            places = (locate_law(bench, best, found.baseline, law), *places)
         proposal = propose(bench, conclusion, [j.hypothesis for j in judged])
         visible = visible_sizes(bench, best, found.left)
-    except KeyboardInterrupt:  # the verdict stands without them
+    except KeyboardInterrupt:  # the verdict stands without what is left
         bench.resume()
         remarks = (*remarks, INTERRUPTED)
     return Diagnosis(

@@ -105,6 +105,19 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
     return judged
 
 
+def judge_as_fitted(
+    bench: Workbench, hypotheses: Sequence[Hypothesis], held_out: Sequence[Experiment]
+) -> list[Judged]:
+    """The same in haste, after an interrupt: one rollout each, and what is uncertain of the parameters counts as error.
+
+    Args:
+        bench: rollouts.
+        hypotheses: as they were fitted when the search ended.
+        held_out: recordings that nothing was fitted to.
+    """
+    return with_probabilities(_looked_at(bench, hypotheses, held_out))
+
+
 def _may_lie_elsewhere(best: Judged) -> bool:
     """Whether the best model is near the noise where it was fitted, and leaves more of what it was not fitted to."""
     return best.hypothesis.fit.over_noise < NEAR and best.over_noise > ABOVE_NOISE

@@ -1,23 +1,34 @@
-"""An interrupt after the judgement costs the visible sizes and not the verdict."""
+"""An interrupt of the judgement, or after it, costs what comes then and not what is known."""
 
 import json
 from pathlib import Path
 
+import pytest
+
 from hydrolek_drake.cli.app import run
-from hydrolek_drake.diagnosis import diagnosis
+from hydrolek_drake.diagnosis import attempt, diagnosis
 
 PAIR = Path(__file__).parents[1] / "data" / "bench" / "practice_01"
 
 
-def test_what_was_judged_is_kept_and_written(tmp_path, monkeypatch) -> None:
+@pytest.mark.parametrize(
+    ("where", "what", "lost"),
+    [
+        (diagnosis, "visible_sizes", ("detectable_from",)),
+        (diagnosis, "locate", ("detectable_from", "locations")),
+        (attempt, "judge", ()),
+    ],
+)
+def test_what_is_known_is_kept_and_written(tmp_path, monkeypatch, where, what, lost) -> None:
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(diagnosis, "visible_sizes", interrupted)
+    monkeypatch.setattr(where, what, interrupted)
     recordings = [str(PAIR / "train.csv"), "--holdout", str(PAIR / "holdout.csv")]
     status = run(["diagnose", "joint_bench", *recordings, "--out", str(tmp_path)])
     report = json.loads((tmp_path / "report.json").read_text())
     assert status == 130
     assert report["verdict"] == "none"
     assert report["fit"]["with_effects"]["holdout_over_noise"] < 1.1
-    assert report["detectable_from"] == {}
+    assert all(not report[part] for part in lost)
+    assert "interrupted" in (tmp_path / "report.html").read_text()
