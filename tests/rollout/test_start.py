@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout.rollout import rest_state_at_reading, rest_tilt_and_lead, roll_out
 
 READING = 0.7
@@ -42,13 +43,26 @@ def test_a_leaning_base_is_allowed_for(bench) -> None:
     assert abs(position - READING) == pytest.approx(lean, rel=1e-6)
 
 
-@pytest.mark.parametrize("rounding", [-2e-14, 0.0, 2e-14])
-def test_a_play_that_nothing_presses_is_not_taken_up(bench, rounding) -> None:
+@pytest.mark.parametrize("slight", [-2e-14, 0.0, 2e-14, -1.0, 1.0])
+def test_a_play_that_next_to_nothing_presses_is_not_taken_up(bench, slight) -> None:
     record = bench.with_values(
         {"effects.linkage.backlash.gap_rad": 0.02, "linkage.play_taken_up": 1.0}
     ).records()[0]
-    assert rest_tilt_and_lead(record, READING, rounding)[1] == READING
+    assert rest_tilt_and_lead(record, READING, slight)[1] == READING
     assert rest_tilt_and_lead(record, READING, 50.0)[1] > READING + 0.01 - 1e-9
+
+
+def test_noise_of_a_start_in_balance_does_not_choose_the_side_of_a_play() -> None:
+    """The wrist begins where its weight has no lever: a start read 0.02 deg off would press a play to either side."""
+    gap, off = 0.01, np.radians(0.02)
+    values = {"effects.linkage.backlash.gap_rad": gap}
+    rig = load_rig(
+        "hydrolek_right_j4", {f"joints.right_j4.{key}": str(value) for key, value in values.items()}
+    )
+    records = rig.records()
+    for reading in (-off, 0.0, off):
+        state = rest_state_at_reading(records, reading)
+        assert state[9] == pytest.approx(reading, abs=1e-3 * gap)
 
 
 def test_nothing_is_driven_before_the_first_command_has_arrived(bench) -> None:
