@@ -7,7 +7,7 @@ from hydrolek_drake.diagnosis.attempt import Known, attempt, attempted, unexcite
 from hydrolek_drake.diagnosis.balance import told, weighed, weights_by
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import conclude
-from hydrolek_drake.diagnosis.effort import FAR, LOOK
+from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, FAR, LOOK
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import cost_of, gain_needed
 from hydrolek_drake.diagnosis.hollows import deepest, strayed
@@ -109,6 +109,31 @@ def by_both(known: Known, candidates: Sequence[Candidate], say: Callable[[str], 
     )
 
 
+def by_both_as_found(
+    known: Known, candidates: Sequence[Candidate], say: Callable[[str], None]
+) -> Known | None:
+    """The search gone on with in parts of both data, from effects that explain the training data and fail ahead.
+
+    Where a joint stuck by a hair's breadth, a small change of the same model explains both. None where it does not:
+    then others, or physics in no list, are looked for.
+
+    Raises:
+        KeyboardInterrupt: it was interrupted.
+    """
+    best = known.conclusion.best
+    if not (best.hypothesis.effects and strayed(best)):
+        return None
+    both, kept = mixed(known.bench.training, known.held_out)
+    again = known.bench.with_training(both)
+    fitted = again.refit(best.hypothesis, again.fine, 2 * LOOK)
+    if (
+        fitted.fit.over_noise > ABOVE_NOISE
+    ):  # what only imitates the missing physics hardly reaches the noise of both
+        return None
+    say("fitted to parts of both recordings the same model explains both: going on from there")
+    return _gone_on(known, again, [known.found.baseline, fitted], kept, candidates, say, accounted=True)
+
+
 def in_place_of_law(
     known: Known, law: FoundLaw, candidates: Sequence[Candidate], say: Callable[[str], None]
 ) -> Known | None:
@@ -180,8 +205,13 @@ def _gone_on(
     held_out: Sequence[Experiment],
     candidates: Sequence[Candidate],
     say: Callable[[str], None],
+    *,
+    accounted: bool = False,
 ) -> Known | None:
-    """A search from the best of some fits; None where what it ends with explains the held-out data no better."""
+    """A search from the best of some fits; None where what it ends with explains the held-out data no better.
+
+    Also what the parameters' uncertainty accounts for is explained, if it is said so.
+    """
     found = Search(scores=known.found.scores)
     for fitted in bench.side_by_side(lambda h: bench.refit(h, bench.fine, LOOK), fits):
         found.keep(fitted)
@@ -189,6 +219,7 @@ def _gone_on(
     second = _whole(
         attempted(bench, found, lambda: search_on(bench, candidates, found, found.best, say), held_out, say)
     )
+    second = replace(second, conclusion=conclude(second.judged, accounted=accounted))
     if second.conclusion.verdict == "unlisted_physics":
         return None
     return second if second.conclusion.best.unaccounted < known.conclusion.best.unaccounted else None

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from hydrolek_drake.diagnosis.again import (
     balanced,
     by_both,
+    by_both_as_found,
     by_more_data,
     by_their_noise,
     by_what_was_overlooked,
@@ -96,6 +97,7 @@ class Inquiry:
             return Answer(known, conclusion, None, (INTERRUPTED,))
         answer = Answer(known, known.conclusion)
         questions: tuple[Callable[[Answer], Answer], ...] = (
+            self._by_both_as_found,
             self._by_a_law_at_once,
             self._by_effects_elsewhere,
             self._by_what_was_overlooked,
@@ -128,6 +130,13 @@ class Inquiry:
     def _alone(self) -> Scales | None:
         """Scales of the only joint that was driven, if there may be a law at it."""
         return None if self.several else next(iter(self.scales.values()), None)
+
+    def _by_both_as_found(self, answer: Answer) -> Answer:
+        """The model that explains the training data, if parts of both lead it to where it explains both."""
+        if self.several or not self.apart:
+            return answer
+        other = by_both_as_found(answer.known, self.candidates, self.say)
+        return answer if other is None else Answer(other, other.conclusion, None, (BY_BOTH,))
 
     def _by_a_law_at_once(self, answer: Answer) -> Answer:
         """A law in place of more data, if it explains both recordings."""

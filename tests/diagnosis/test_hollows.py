@@ -8,7 +8,7 @@ import pytest
 from scipy.stats import chi2
 
 from hydrolek_drake.diagnosis import again
-from hydrolek_drake.diagnosis.again import by_both
+from hydrolek_drake.diagnosis.again import by_both, by_both_as_found
 from hydrolek_drake.diagnosis.attempt import Known
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import candidates_of
@@ -113,6 +113,21 @@ def test_a_model_that_predicts_is_left_as_it_is(known_so_far) -> None:
     known, candidates = known_so_far(COULOMB, {"coulomb_N": 1200.0}, {COULOMB}, **NOISY)
     assert not strayed(known.conclusion.best)
     assert _again(known, candidates) is None
+
+
+def test_only_a_model_that_reaches_the_noise_of_both_data_is_gone_on_with(known_so_far, monkeypatch) -> None:
+    right, candidates = known_so_far(COULOMB, {"coulomb_N": 1200.0}, {COULOMB}, RIVALS[:2], **NOISY)
+    assert by_both_as_found(right, candidates, lambda text: None) is None  # it predicts: nothing is asked
+    gone_on = []
+    monkeypatch.setattr(again, "strayed", lambda judged: True)
+    monkeypatch.setattr(again, "_gone_on", lambda known, bench, fits, *given, **how: gone_on.append(fits[-1]))
+    by_both_as_found(right, candidates, lambda text: None)
+    assert gone_on[0].fit.counted > right.found.best.fit.counted
+    assert gone_on[0].values[gone_on[0].effects[0].size_path] == pytest.approx(1200.0, rel=0.05)
+
+    wrong, candidates = known_so_far(STRIBECK, STICKS, {COULOMB}, RIVALS[:2])
+    by_both_as_found(wrong, candidates, lambda text: None)
+    assert len(gone_on) == 1
 
 
 @pytest.mark.parametrize("count", [1, 9, 10, 27])

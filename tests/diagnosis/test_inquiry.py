@@ -43,6 +43,7 @@ def asked(monkeypatch):
             "by_what_was_overlooked",
             "by_more_data",
             "by_both",
+            "by_both_as_found",
             "balanced",
             "by_their_noise",
         ):
@@ -50,7 +51,9 @@ def asked(monkeypatch):
         monkeypatch.setattr(
             inquiry, "with_law", lambda bench, conclusion, *_: answering("with_law")() or (conclusion, None)
         )
-        monkeypatch.setattr(inquiry, "law_first", lambda known: law_first)
+        monkeypatch.setattr(
+            inquiry, "law_first", lambda known: law_first and known.conclusion.verdict == "unlisted_physics"
+        )
         monkeypatch.setattr(inquiry, "predicting", lambda law: explained)
         monkeypatch.setattr(inquiry, "asked_for", lambda law, model: shown)
         monkeypatch.setattr(inquiry, "material", lambda conclusion, *_: replace(conclusion, groups=(("m",),)))
@@ -144,6 +147,17 @@ def test_a_law_that_explains_both_recordings_comes_before_more_data(asked):
     assert asked(law_first=False, explained=True, **how).known is second
     answer = asked(law_first=True, explained=True, **how | {"with_law": KeyboardInterrupt})
     assert answer.known is first and answer.law is None and answer.remarks == (INTERRUPTED,)
+
+
+def test_a_model_that_explains_both_once_it_is_fitted_to_them_comes_before_a_law(asked):
+    first, second = _known("unlisted_physics"), _known("missing_physics")
+    law = SimpleNamespace(held_out_over_noise=1.1)
+    how = {"attempt": first, "with_law": (first.conclusion, law), "law_first": True, "explained": True}
+    answer = asked(by_both_as_found=second, **how)
+    assert answer.known is second and answer.remarks == (BY_BOTH,)
+    assert asked(by_both_as_found=second, apart=False, **how).known is first
+    answer = asked(by_both_as_found=KeyboardInterrupt, **how)
+    assert answer.known is first and answer.remarks == (INTERRUPTED,) and first.bench.resumed
 
 
 @pytest.mark.parametrize(("left", "effects", "needed"), [(0.99, 2, False), (0.9, 2, True), (0.99, 0, True)])
