@@ -132,7 +132,7 @@ def predicting(law: FoundLaw, slack: float = 1.0) -> bool:
 
 
 def asked_for(law: FoundLaw, model: Hypothesis) -> bool:
-    """Whether the training data ask for a law beside known effects, which it costs as much as another one.
+    """Whether the training data ask for a law beside known effects: it takes of them what one more effect must.
 
     Where a joint sticks and slips, a law that takes nothing of the training data may by chance lead the held-out
     rollout into the right hollow, which other values of the model's own parameters do as well.

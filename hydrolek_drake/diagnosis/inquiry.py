@@ -90,7 +90,7 @@ class Inquiry:
         """
         other = OtherLaws(bench, held_out, self.scales) if self.scales else None
         known = attempt(bench, self.candidates, held_out, self.say, other)
-        if known.interrupted:
+        if known.interrupted and known.found.law is None:
             conclusion = known.conclusion
             if conclusion.verdict == "unlisted_physics":  # not every known effect has been tried
                 conclusion = replace(conclusion, verdict="ambiguous")
@@ -108,6 +108,8 @@ class Inquiry:
         if known.found.law is not None:
             law = known.found.law
             answer = Answer(known, alone(known.conclusion, known.judged, law), law)
+            if known.interrupted:  # while it was judged
+                return replace(answer, remarks=(INTERRUPTED,))
             questions = (self._beside_the_others, self._by_effects_elsewhere)
         for question in questions:
             try:

@@ -21,7 +21,6 @@ from hydrolek_drake.identification.experiment import Experiment
 STARTS = 2
 """From so many of the places where searches of an effect begin: one to either side for what has a sign."""
 
-
 MORE = 1.0 + 4.0 * NOISE_KNOWN
 """A model lacks something ahead if it leaves so many times the noise there, whatever its uncertainty accounts for: four
 times what the noise is known to. Numbers that are bent are uncertain too."""
@@ -57,7 +56,7 @@ def overlooked(
     parent = bench.refit(judged.hypothesis, bench.fine, LOOK)
     needed = gain_needed(parent.fit)
     if judged.over_noise > MORE:
-        begun = _begun(bench, parent, candidates)
+        begun = _begun(bench, parent, candidates)[:FOLLOWED]
     else:
         promising = [s for s in scores_of(bench, parent, candidates, bench.fine) if s.gain > needed]
         begun = bench.side_by_side(
@@ -66,8 +65,7 @@ def overlooked(
             ),
             [s for s in promising if not redundant(parent.effects, s.candidate)][:FOLLOWED],
         )
-    followed = begun[:FOLLOWED]
-    ended = bench.side_by_side(lambda h: bench.refit(h, bench.fine, LOOK), followed)
+    ended = bench.side_by_side(lambda h: bench.refit(h, bench.fine, LOOK), begun)
 
     def ahead(hypothesis: Hypothesis) -> float:
         left = bench.residuals(hypothesis, held_out, bench.fine)

@@ -95,6 +95,14 @@ def test_an_interrupt_while_other_joints_are_told_anew_keeps_the_law(asked, monk
     assert asked(attempt=known).remarks == ()  # one joint has no others
 
 
+def test_an_interrupt_while_a_law_is_judged_keeps_the_law(asked, monkeypatch):
+    law = SimpleNamespace()
+    monkeypatch.setattr(inquiry, "alone", lambda conclusion, judged, law: conclusion)
+    answer = asked(attempt=_known("unlisted_physics", interrupted=True, law=law))
+    assert answer.law is law and answer.conclusion.verdict == "unlisted_physics"
+    assert answer.remarks == (INTERRUPTED,)
+
+
 def test_an_interrupted_search_does_not_tell_physics_in_no_list(asked):
     answer = asked(attempt=_known("unlisted_physics", interrupted=True), by_both=KeyboardInterrupt)
     assert answer.conclusion.verdict == "ambiguous" and answer.remarks == (INTERRUPTED,)

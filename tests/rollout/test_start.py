@@ -55,10 +55,7 @@ def test_a_play_that_next_to_nothing_presses_is_not_taken_up(bench, slight) -> N
 def test_noise_of_a_start_in_balance_does_not_choose_the_side_of_a_play() -> None:
     """The wrist begins where its weight has no lever: a start read 0.02 deg off would press a play to either side."""
     gap, off = 0.01, np.radians(0.02)
-    values = {"effects.linkage.backlash.gap_rad": gap}
-    rig = load_rig(
-        "hydrolek_right_j4", {f"joints.right_j4.{key}": str(value) for key, value in values.items()}
-    )
+    rig = load_rig("hydrolek_right_j4", {"joints.right_j4.effects.linkage.backlash.gap_rad": str(gap)})
     records = rig.records()
     for reading in (-off, 0.0, off):
         state = rest_state_at_reading(records, reading)
