@@ -6,7 +6,7 @@ from dataclasses import replace
 from hydrolek_drake.diagnosis.attempt import Known, attempt, attempted, unexcited
 from hydrolek_drake.diagnosis.balance import told, weighed, weights_by
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.diagnosis.conclusion import conclude
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED, conclude
 from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, FAR, LOOK
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import cost_of, gain_needed
@@ -15,6 +15,7 @@ from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.overlooked import enlargeable, overlooked
 from hydrolek_drake.diagnosis.search import LAW_COSTS, search_on
 from hydrolek_drake.diagnosis.splitting import mixed
+from hydrolek_drake.diagnosis.unsticking import from_other_sizes
 from hydrolek_drake.diagnosis.weighing import NEARER
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -121,15 +122,16 @@ def by_both_as_found(
         KeyboardInterrupt: it was interrupted.
     """
     best = known.conclusion.best
-    if not (best.hypothesis.effects and strayed(best)):
+    explaining = best.hypothesis.effects and best.hypothesis.fit.over_noise <= EXPLAINED
+    if not (explaining and known.conclusion.verdict == "unlisted_physics"):
         return None
     both, kept = mixed(known.bench.training, known.held_out)
     again = known.bench.with_training(both)
     fitted = again.refit(best.hypothesis, again.fine, 2 * LOOK)
-    if (
-        fitted.fit.over_noise > ABOVE_NOISE
-    ):  # what only imitates the missing physics hardly reaches the noise of both
-        return None
+    sized = from_other_sizes(again, fitted, up_to=FAR)
+    fitted = min([fitted, *sized], key=lambda h: h.fit.objective)
+    if fitted.fit.over_noise > ABOVE_NOISE:
+        return None  # what only imitates the missing physics hardly reaches the noise of both
     say("fitted to parts of both recordings the same model explains both: going on from there")
     return _gone_on(known, again, [known.found.baseline, fitted], kept, candidates, say, accounted=True)
 
@@ -210,7 +212,7 @@ def _gone_on(
 ) -> Known | None:
     """A search from the best of some fits; None where what it ends with explains the held-out data no better.
 
-    Also what the parameters' uncertainty accounts for is explained, if it is said so.
+    If it is said so, what the parameters' uncertainty accounts for is explained, and need not do better than before.
     """
     found = Search(scores=known.found.scores)
     for fitted in bench.side_by_side(lambda h: bench.refit(h, bench.fine, LOOK), fits):
@@ -222,7 +224,8 @@ def _gone_on(
     second = replace(second, conclusion=conclude(second.judged, accounted=accounted))
     if second.conclusion.verdict == "unlisted_physics":
         return None
-    return second if second.conclusion.best.unaccounted < known.conclusion.best.unaccounted else None
+    better = second.conclusion.best.unaccounted < known.conclusion.best.unaccounted
+    return second if better or accounted else None
 
 
 def _whole(known: Known) -> Known:

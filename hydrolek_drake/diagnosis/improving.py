@@ -8,6 +8,7 @@ from hydrolek_drake.diagnosis.effort import (
     FAR,
     LOOK,
     MOST_EFFECTS,
+    NEAR,
     NEARLY,
     POLISH,
 )
@@ -16,7 +17,14 @@ from hydrolek_drake.diagnosis.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.lessening import lessened
 from hydrolek_drake.diagnosis.ranges import at_the_end, gain_beyond, replaced, widened
 from hydrolek_drake.diagnosis.score import score_in_place, scores_of
-from hydrolek_drake.diagnosis.unsticking import different, fit_pulled, led_on, own_values, started_again
+from hydrolek_drake.diagnosis.unsticking import (
+    different,
+    fit_pulled,
+    from_other_sizes,
+    led_on,
+    own_values,
+    started_again,
+)
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
 
 EXCHANGED = 3
@@ -137,7 +145,7 @@ def lead_on(bench: Workbench, found: Search) -> None:
     """Fit the best hypothesis again where it is near the noise but not at it.
 
     First from the rig's own values, since the nominal parameters may have gone astray before the effects were there;
-    then see `unsticking.led_on`.
+    then with other sizes of what is sudden, see `unsticking.from_other_sizes`; then see `unsticking.led_on`.
     """
     best = found.best
     if not best.effects or not AT_NOISE < best.fit.over_noise < FAR:
@@ -147,6 +155,8 @@ def lead_on(bench: Workbench, found: Search) -> None:
     for _ in range(2):
         again = bench.refit(again, bench.fine, LOOK)
     found.keep(again)
+    for fitted in from_other_sizes(bench, found.best, up_to=NEAR):
+        found.keep(fitted)
     best = found.best
     if found.smooth or best.fit.over_noise <= AT_NOISE:
         return

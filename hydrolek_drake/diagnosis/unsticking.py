@@ -13,7 +13,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.diagnosis.effort import BEAM, LOOK, POLISH
+from hydrolek_drake.diagnosis.effort import AT_NOISE, BEAM, LOOK, POLISH
+from hydrolek_drake.diagnosis.gains import gain_needed
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, moments_of
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import PULLED_STEPS, PULLED_TOLERANCE
@@ -32,6 +33,13 @@ LED_STEP = 2.0
 
 MOST_LED = 5
 """So many fits are led on, from different places; the better half goes on to the next width."""
+
+SIZED = (0.1, 0.03)
+"""Sizes up to so far from the best one are tried, the narrow ones where the wide ones do not help. A hollow of the size
+is a hundredth or two wide where contacts open and close many times."""
+
+MOST_SIZED = 4
+"""So often at most."""
 
 LED_TO_THE_END = 2
 """At least so many of them."""
@@ -91,6 +99,46 @@ def fit_pulled(
         )
         values = fitted.values
     return fitted
+
+
+def from_other_sizes(bench: Workbench, hypothesis: Hypothesis, up_to: float) -> list[Hypothesis]:
+    """A model with something sudden that is near the noise and not at it, fitted again from sizes near by.
+
+    Under a controller every contact shifts the next one, so that a gap a tenth off is a hollow of its own, from which
+    neither the size nor the joint's own parameters lead out alone. These start as the rig has them, and pulled rollouts
+    bring them to where they belong to that size. The best size is what the next ones lie around (pattern search: Hooke
+    and Jeeves, Journal of the ACM 8, 1961).
+
+    Args:
+        bench: data and fits.
+        hypothesis: the model.
+        up_to: where it leaves more times the noise than this, more is missing.
+
+    Returns:
+        all fits; none where nothing sudden is in the model.
+    """
+    sizes = [candidate.size_path for candidate in hypothesis.effects if candidate.effect.sudden]
+    best, fits, widths = hypothesis, [], list(SIZED)
+    for _ in range(MOST_SIZED):
+        if not (sizes and widths and AT_NOISE < best.fit.over_noise < up_to):
+            break
+        own = own_values(bench, best.effects, best.values)
+        shares = [1.0 + side * widths[0] for side in (-1.0, -0.5, 0.5, 1.0)]
+        starts = [{**own, size: share * own[size]} for size in sizes for share in shares]
+        around = bench.side_by_side(lambda start: _fitted_near(bench, hypothesis.effects, start), starts)
+        fits += around
+        least = min([best, *around], key=lambda h: h.fit.objective)
+        if best.fit.objective - least.fit.objective < gain_needed(best.fit):
+            widths.pop(0)
+        best = least
+    return fits
+
+
+def _fitted_near(bench: Workbench, effects: Sequence[Candidate], start: dict[str, float]) -> Hypothesis:
+    """A fit with pulled rollouts, to the end, and then with free ones."""
+    near = fit_pulled(bench, effects, [start], bench.fine, bench.training)
+    near = bench.fit(effects, near.values, bench.fine, LOOK, pull_time=PULL_S)
+    return bench.refit(near, bench.fine, LOOK)
 
 
 def starts_of(effects: Sequence[Candidate]) -> list[dict[str, float]]:

@@ -2,6 +2,7 @@
 
 import os
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
@@ -117,16 +118,21 @@ def test_a_model_that_predicts_is_left_as_it_is(known_so_far) -> None:
 
 def test_only_a_model_that_reaches_the_noise_of_both_data_is_gone_on_with(known_so_far, monkeypatch) -> None:
     right, candidates = known_so_far(COULOMB, {"coulomb_N": 1200.0}, {COULOMB}, RIVALS[:2], **NOISY)
-    assert by_both_as_found(right, candidates, lambda text: None) is None  # it predicts: nothing is asked
+    predicting = replace(right, conclusion=replace(right.conclusion, verdict="missing_physics"))
+    assert by_both_as_found(predicting, candidates, lambda text: None) is None
     gone_on = []
-    monkeypatch.setattr(again, "strayed", lambda judged: True)
+
+    def failing_ahead(known):
+        return replace(known, conclusion=replace(known.conclusion, verdict="unlisted_physics"))
+
     monkeypatch.setattr(again, "_gone_on", lambda known, bench, fits, *given, **how: gone_on.append(fits[-1]))
-    by_both_as_found(right, candidates, lambda text: None)
+    by_both_as_found(failing_ahead(right), candidates, lambda text: None)
     assert gone_on[0].fit.counted > right.found.best.fit.counted
     assert gone_on[0].values[gone_on[0].effects[0].size_path] == pytest.approx(1200.0, rel=0.05)
 
     wrong, candidates = known_so_far(STRIBECK, STICKS, {COULOMB}, RIVALS[:2])
-    by_both_as_found(wrong, candidates, lambda text: None)
+    assert wrong.found.best.effects
+    by_both_as_found(failing_ahead(wrong), candidates, lambda text: None)
     assert len(gone_on) == 1
 
 
