@@ -19,6 +19,10 @@ AT_NOISE = 1.0 + NOISE_KNOWN
 ABOVE_NOISE = 1.0 + 2.0 * NOISE_KNOWN
 """Where no effect promises anything, a model is taken to lack one only if it leaves more than this."""
 
+MORE_AHEAD = 1.0 + 4.0 * NOISE_KNOWN
+"""A model lacks something ahead if it leaves so many times the noise there, whatever its uncertainty accounts for: four
+times what the noise is known to. Numbers that are bent are uncertain too."""
+
 GLANCE_S = 20.0
 """First fits see so many seconds at least: errors that grow with time are smaller, and so is the work."""
 

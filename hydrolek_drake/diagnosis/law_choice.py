@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from hydrolek_drake.diagnosis.balance import squares_of
 from hydrolek_drake.diagnosis.conclusion import MATERIAL, SURE, Conclusion
-from hydrolek_drake.diagnosis.effort import AT_NOISE
+from hydrolek_drake.diagnosis.effort import AT_NOISE, MORE_AHEAD
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_at_a_joint import law_at_a_joint, left_at
 from hydrolek_drake.diagnosis.law_growing import explains
@@ -21,7 +21,8 @@ SIMPLER = 1.1
 
 MANY = 3
 """So many effects at once are less likely than one in no list, which they may only imitate: where one law leaves no
-more of all data, it is preferred. Of one less the same is asked if they are not sure, or not at the noise."""
+more of all data, it is preferred. Of one less the same is asked if they are not sure, or not at the noise of either
+data."""
 
 
 def with_law(
@@ -167,7 +168,8 @@ def material(conclusion: Conclusion, judged: Sequence[Judged], held_out: Sequenc
 def _imitating(best: Judged) -> bool:
     """Whether the effects of a model may only imitate one in no list."""
     effects = len(best.hypothesis.effects)
-    doubtful = best.probability < SURE or best.hypothesis.fit.over_noise > AT_NOISE
+    far = best.hypothesis.fit.over_noise > AT_NOISE or best.over_noise > MORE_AHEAD
+    doubtful = best.probability < SURE or far
     return effects >= MANY or (doubtful and effects == MANY - 1)
 
 

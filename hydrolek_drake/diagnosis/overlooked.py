@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from hydrolek_drake.diagnosis.candidates import Candidate, redundant
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED
-from hydrolek_drake.diagnosis.effort import GLANCE, LOOK, MOST_EFFECTS, NOISE_KNOWN
+from hydrolek_drake.diagnosis.effort import GLANCE, LOOK, MORE_AHEAD, MOST_EFFECTS
 from hydrolek_drake.diagnosis.gains import cost_of, gain_needed
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.score import scores_of
@@ -20,10 +20,6 @@ from hydrolek_drake.identification.experiment import Experiment
 
 STARTS = 2
 """From so many of the places where searches of an effect begin: one to either side for what has a sign."""
-
-MORE = 1.0 + 4.0 * NOISE_KNOWN
-"""A model lacks something ahead if it leaves so many times the noise there, whatever its uncertainty accounts for: four
-times what the noise is known to. Numbers that are bent are uncertain too."""
 
 FOLLOWED = 5
 """So many effects go on to the end."""
@@ -55,7 +51,7 @@ def overlooked(
     """
     parent = bench.refit(judged.hypothesis, bench.fine, LOOK)
     needed = gain_needed(parent.fit)
-    if judged.over_noise > MORE:
+    if judged.over_noise > MORE_AHEAD:
         begun = _begun(bench, parent, candidates)[:FOLLOWED]
     else:
         promising = [s for s in scores_of(bench, parent, candidates, bench.fine) if s.gain > needed]

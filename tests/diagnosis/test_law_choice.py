@@ -1,5 +1,6 @@
 """When a law for physics in no list is named, and beside which model."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 
 from hydrolek_drake.diagnosis import law_choice
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, EXPLAINED_AHEAD, SURE, Conclusion
-from hydrolek_drake.diagnosis.effort import AT_NOISE
+from hydrolek_drake.diagnosis.effort import AT_NOISE, MORE_AHEAD
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_choice import MANY, SIMPLER, with_law
 
@@ -101,7 +102,8 @@ def test_one_law_that_predicts_as_well_is_preferred_to_many_effects(choose) -> N
     assert law is as_good and conclusion.verdict == "unlisted_physics" and conclusion.best is nominal
     conclusion, law, _ = choose(best, nominal, None, worse, verdict="missing_physics")
     assert law is None and conclusion.verdict == "missing_physics" and conclusion.best is best
-    for doubtful in (_judged(1.0, MANY - 1, 0.99 * SURE), _judged(1.01 * AT_NOISE, MANY - 1)):
+    lacking = replace(_judged(1.0, MANY - 1), held_out=np.full(VALUES, 1.01 * MORE_AHEAD))
+    for doubtful in (_judged(1.0, MANY - 1, 0.99 * SURE), _judged(1.01 * AT_NOISE, MANY - 1), lacking):
         conclusion, law, _ = choose(doubtful, nominal, None, _law(1.0, 1.0), verdict="missing_physics")
         assert law is not None and conclusion.best is nominal
     fewer = _judged(1.0, MANY - 1)

@@ -12,9 +12,9 @@ from hydrolek_drake.diagnosis.attempt import Known
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, conclude
+from hydrolek_drake.diagnosis.effort import MORE_AHEAD
 from hydrolek_drake.diagnosis.evidence import judge
 from hydrolek_drake.diagnosis.found import Search
-from hydrolek_drake.diagnosis.overlooked import MORE
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -52,24 +52,24 @@ def nominal_alone(bench, recorded):
 def test_what_promised_nothing_is_found_where_the_held_out_data_leave_more_than_noise(nominal_alone) -> None:
     known, candidates = nominal_alone({f"effects.{DRIFT}.rate_rad_per_min": SLOW_rad_per_min})
     nominal = known.conclusion.best
-    assert nominal.hypothesis.fit.over_noise <= EXPLAINED and nominal.over_noise > MORE
+    assert nominal.hypothesis.fit.over_noise <= EXPLAINED and nominal.over_noise > MORE_AHEAD
     second = by_what_was_overlooked(known, candidates, lambda text: None)
     best = second.conclusion.best
-    assert [c.id for c in best.hypothesis.effects] == [DRIFT] and best.over_noise < MORE
+    assert [c.id for c in best.hypothesis.effects] == [DRIFT] and best.over_noise < MORE_AHEAD
     rate = best.hypothesis.values[f"joints.joint.effects.{DRIFT}.rate_rad_per_min"]
     assert rate == pytest.approx(SLOW_rad_per_min, rel=0.1)
 
 
 def test_what_promises_enough_is_found_whatever_the_held_out_data_leave(nominal_alone, monkeypatch) -> None:
     known, candidates = nominal_alone({f"effects.{DRIFT}.rate_rad_per_min": SLOW_rad_per_min})
-    monkeypatch.setattr(overlooked, "MORE", math.inf)
+    monkeypatch.setattr(overlooked, "MORE_AHEAD", math.inf)
     second = by_what_was_overlooked(known, candidates, lambda text: None)
     assert [c.id for c in second.conclusion.best.hypothesis.effects] == [DRIFT]
 
 
 def test_a_healthy_machine_is_not_asked_for_more(nominal_alone) -> None:
     known, candidates = nominal_alone({})
-    assert known.conclusion.best.over_noise <= MORE
+    assert known.conclusion.best.over_noise <= MORE_AHEAD
     assert by_what_was_overlooked(known, candidates, lambda text: None) is None
 
 
