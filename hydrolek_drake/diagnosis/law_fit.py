@@ -30,7 +30,7 @@ def glance(
 
     Begun at the fitted values of the model that leaves the mismatch and at the rig's own, which were not bent to
     make up for what is missing. The latter is far off, so that pulled rollouts go ahead; but for a periodic law, which
-    no constant of the rig could make up for.
+    no constant of the rig could make up for, unless pulled rollouts told it.
 
     Returns:
         Squared residuals, nominal parameters and the law's values (SI), the best of both.
@@ -39,14 +39,16 @@ def glance(
     parameters = bench.parameters(left.effects)
     own = {path: value for path, value in left.values.items() if ".effects." in path}
     ended = []
+    steps = STEPS if law.pulled else GLANCE  # few laws are told so, and the way is longer
     scanned = [experiment.until(SCAN_S) for experiment in bench.training]
-    for values, first_fit in ((left.values, fit_from), (own, fit_from if law.periodic else fit_from_afar)):
+    from_own = (own, fit_from if law.periodic and not law.pulled else fit_from_afar)
+    for values, first_fit in (from_own,) if law.pulled else ((left.values, fit_from), from_own):
         unit = parameters.unit(values)
         own_values = law.begun(law.input.scale * np.array(law.amplitudes))
         for part in (scanned, bench.beginning()) if law.periodic else (bench.beginning(),):
             problem = LawProblem(parameters, part, step, law, span)
             start = problem.start(unit, own_values)
-            fit = first_fit(problem, start, most_steps=GLANCE, tolerance=1e-3, stop=bench.interrupted)
+            fit = first_fit(problem, start, most_steps=steps, tolerance=1e-3, stop=bench.interrupted)
             unit, own_values = fit.unit[: len(parameters)], problem.law_values(fit.unit)
             bench.evaluations += problem.evaluations
         ended.append((fit.objective, unit, own_values))

@@ -39,6 +39,8 @@ class Law:
         frequency: first guess [Hz]; 0 for terms.
         gain: predicted fall of the squared residuals.
         amplitudes: that promise it, in scales of the input: one of each term, or of sine and cosine.
+        pulled: whether rollouts that are pulled to the measurements told it, from the rig's own values; then its fit
+            begins so.
     """
 
     input: Input
@@ -46,6 +48,7 @@ class Law:
     frequency: float
     gain: float
     amplitudes: tuple[float, ...]
+    pulled: bool = False
 
     @property
     def periodic(self) -> bool:

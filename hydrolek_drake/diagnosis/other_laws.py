@@ -20,7 +20,8 @@ from hydrolek_drake.diagnosis.law_at_a_joint import followed_worst, left_at, one
 from hydrolek_drake.diagnosis.law_fit import glance
 from hydrolek_drake.diagnosis.law_naming import ahead_to_beat
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
-from hydrolek_drake.diagnosis.law_search import STEADY, promising
+from hydrolek_drake.diagnosis.law_scan import STEADY
+from hydrolek_drake.diagnosis.law_search import promising
 from hydrolek_drake.diagnosis.law_told_anew import told_anew
 from hydrolek_drake.diagnosis.laws import BUILT, TERMS
 from hydrolek_drake.diagnosis.lost_commands import lost_commands

@@ -22,7 +22,8 @@ from hydrolek_drake.diagnosis.law_growing import grown
 from hydrolek_drake.diagnosis.law_inputs import Input, inputs_of
 from hydrolek_drake.diagnosis.law_naming import ahead_to_beat, helping, likeliest
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, left_in_all, records_of
-from hydrolek_drake.diagnosis.law_search import STEADY, promising
+from hydrolek_drake.diagnosis.law_scan import STEADY
+from hydrolek_drake.diagnosis.law_search import promising
 from hydrolek_drake.diagnosis.laws import CONSTANT, Span, span_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
@@ -239,12 +240,12 @@ def worth_trying(laws: Sequence[Law]) -> list[Law]:
     Args:
         laws: what promises most first.
     """
-    seen: set[tuple[str, bool]] = set()
+    seen: set[tuple[str, bool, bool]] = set()
     first: list[Law] = []
     built: list[Law] = []
     rest: list[Law] = []
     for law in laws:
-        key = (law.input.probe, law.periodic)
+        key = (law.input.probe, law.periodic, law.pulled)
         if key not in seen:
             first.append(law)
         elif law.input.probe in STEADY and [term.name for term in law.terms] == [CONSTANT]:

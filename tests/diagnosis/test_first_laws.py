@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis import law_search, unlisted
+from hydrolek_drake.diagnosis import law_scan, unlisted
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.law_inputs import Input
 from hydrolek_drake.diagnosis.law_naming import helping
@@ -47,8 +47,8 @@ def test_both_frequencies_are_told_that_the_beginning_and_the_whole_speak_for(
     bench, recorded, monkeypatch
 ) -> None:
     """Later on, a model that has made up for a disturbance may be wrong by more, and at another frequency."""
-    monkeypatch.setattr(law_search, "SCAN_S", 6.0)
-    monkeypatch.setattr(law_search, "HIGHEST_HZ", 4.0)  # a matter of time
+    monkeypatch.setattr(law_scan, "SCAN_S", 6.0)
+    monkeypatch.setattr(law_scan, "HIGHEST_HZ", 4.0)  # a matter of time
     [plain] = recorded(bench, bench)
     reading = plain.channels[0]
     early, later = (np.sin(2.0 * np.pi * hz * plain.time) for hz in (1.3, 2.9))
@@ -59,7 +59,7 @@ def test_both_frequencies_are_told_that_the_beginning_and_the_whole_speak_for(
         asked = Asked.of(workbench, fit_baseline(workbench), [], natural_scales(bench, "joint", training))
         sensor = [given for given in asked.inputs if given.probe == "sensor"]
         laws = promising(workbench, asked.left, sensor, asked.span, asked.step, ())
-    assert [law.frequency for law in laws] == pytest.approx([2.9, 1.3], abs=0.5 / 6.0)
+    assert [law.frequency for law in laws if not law.pulled] == pytest.approx([2.9, 1.3], abs=0.5 / 6.0)
 
 
 def test_one_law_of_every_input_goes_on_where_first_fits_are_not_told_apart() -> None:

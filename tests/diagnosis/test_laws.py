@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis import law_search, unlisted
+from hydrolek_drake.diagnosis import law_scan, unlisted
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.effort import POLISH
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig
@@ -45,7 +45,7 @@ def in_less_time(monkeypatch) -> None:
     """For laws that are not periodic: up to 4 Hz, at seven of eleven inputs."""
     own = unlisted.inputs_of
     left_out = ("command", "amplifier", "back_a", "back_b")
-    monkeypatch.setattr(law_search, "HIGHEST_HZ", 4.0)
+    monkeypatch.setattr(law_scan, "HIGHEST_HZ", 4.0)
     monkeypatch.setattr(
         unlisted, "inputs_of", lambda *given: tuple(i for i in own(*given) if i.probe not in left_out)
     )

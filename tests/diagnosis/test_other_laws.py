@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis import law_search, other_laws, search, unlisted
+from hydrolek_drake.diagnosis import law_scan, other_laws, search, unlisted
 from hydrolek_drake.diagnosis.attempt import PREDICTED, predicting
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.effort import NOISE_KNOWN
@@ -27,7 +27,7 @@ def few_inputs(monkeypatch) -> None:
     monkeypatch.setattr(
         unlisted, "inputs_of", lambda *given: tuple(each for each in own(*given) if each.probe in kept)
     )
-    monkeypatch.setattr(law_search, "HIGHEST_HZ", 4.0)
+    monkeypatch.setattr(law_scan, "HIGHEST_HZ", 4.0)
 
 
 RIPPLE_PA, RIPPLE_HZ = 1.5e6, 2.3

@@ -4,7 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from hydrolek_drake.diagnosis import law_search
+from hydrolek_drake.diagnosis import law_scan
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
 from hydrolek_drake.diagnosis.law_inputs import Input, inputs_of
@@ -18,7 +18,7 @@ from hydrolek_drake.identification.parameter_set import free_parameters
 @pytest.fixture(autouse=True)
 def in_less_time(monkeypatch) -> None:
     """Sines are not what these tests are about."""
-    monkeypatch.setattr(law_search, "HIGHEST_HZ", 2.0)
+    monkeypatch.setattr(law_scan, "HIGHEST_HZ", 2.0)
 
 
 @pytest.mark.parametrize(
