@@ -113,9 +113,11 @@ def best_of(bench: Workbench, asked: Asked, laws: Sequence[Law], to_beat: float)
     if not laws or laws[0].gain <= 0.0:
         return None
     chosen = worth_trying(laws)
-    begun = bench.side_by_side(lambda law: glance(bench, left, law, span, asked.step), chosen)
+    finer = min(asked.step, FINER * bench.fine)  # what pulled rollouts told may explain the data at once
+    begun = bench.side_by_side(
+        lambda law: glance(bench, left, law, span, finer if law.pulled else asked.step), chosen
+    )
     ranked = followed(sorted(zip(chosen, begun, strict=True), key=lambda item: item[1][0]))
-    finer = min(asked.step, FINER * bench.fine)
     ended = bench.side_by_side(
         lambda item: fitted(bench, left, item[0], held_out, span, item[1][1:], finer), ranked
     )
