@@ -28,6 +28,9 @@ SPACING = 0.25
 """Frequencies are tried so many cycles over the recording apart. Two half a cycle apart are hardly told from each other
 by their sines alone; but the fitted parameters undo a part of both, and what is left of a peak is narrower."""
 
+PULLED_APART = 0.5
+"""The same with pulled rollouts, in which the fitted parameters undo little of a sine."""
+
 SCANNED = ("command", "supply", "load", "sensor")
 """Inputs at which all frequencies are tried. What shakes at another one shows near the same frequencies at one of
 these: a force at the rod as a moment at the load, and what changes the flow in proportion as the supply does."""
@@ -67,6 +70,7 @@ class Scan:
         span: what the laws' variables are told in.
         step: of the integration [s].
         pull_time: of the rollouts [s]; None for free ones.
+        apart: cycles over the first part of the recording that frequencies are tried apart.
     """
 
     bench: Workbench
@@ -75,13 +79,14 @@ class Scan:
     span: Span
     step: float
     pull_time: float | None = None
+    apart: float = SPACING
 
     def laws(self) -> list[Law]:
         """The best sine at every input that can be shaken, or two, with what they promise."""
         bench = self.bench
         longest = min(float(np.ptp(bench.training[0].time)), LONGER_S)
         short, longer = bench.side_by_side(self._beginning, (SCAN_S, longest))
-        spacing = SPACING / SCAN_S
+        spacing = self.apart / SCAN_S
 
         def scanned(given: Input) -> list[Law]:
             every = self._gains(given, short, np.arange(LOWEST / SCAN_S, HIGHEST_HZ, spacing))
@@ -172,7 +177,7 @@ def shaking(
     above = pulled.fit.objective - pulled.fit.counted
     if pulled.fit.over_noise <= ABOVE_NOISE or above < gain_needed(pulled.fit):
         return []
-    laws = Scan(bench, pulled, inputs, span, step, PULL_S).laws()
+    laws = Scan(bench, pulled, inputs, span, step, PULL_S, PULLED_APART).laws()
     left_over = left.fit.objective - left.fit.counted
     return [
         replace(law, gain=left_over * min(law.gain / above, 1.0), pulled=True)

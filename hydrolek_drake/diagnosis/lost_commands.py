@@ -34,8 +34,9 @@ from hydrolek_drake.rollout.rollout import Signals
 ROUNDS = 3
 """So often more windows are looked for, beside those that were fitted."""
 
-STEPS = 15
-"""Trust-region steps of a fit."""
+STEPS = 60
+"""Trust-region steps of a fit at most: a nominal model without the windows has bent its numbers far, and before they
+are back a window of no meaning may do some good."""
 
 FINER = 2.0
 """Integration step of the fits over the rig's own, at most."""
