@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis import law_scan
+from hydrolek_drake.diagnosis import law_scan, law_search
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
 from hydrolek_drake.diagnosis.law_inputs import Input, inputs_of
@@ -47,6 +47,7 @@ def test_hoses_that_pull_tight_are_found_with_the_place_where_they_do(
 ) -> None:
     """Between the places where a search begins, and told from every other moment at the load."""
     monkeypatch.setattr(law_scan, "HIGHEST_HZ", 1.0)  # a matter of time
+    monkeypatch.setattr(law_search, "shaking", lambda *given: [])
     tight = law_records("load", span, (Term((), place=place, centre=centre),), (size,))
     kept = {"pressure_noise_Pa": 2e4, "law": lambda _: tight}
     training, held_out = (recorded(bench, bench, seed=seed, **kept) for seed in (1, 2))

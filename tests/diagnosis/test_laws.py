@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis import law_scan, unlisted
+from hydrolek_drake.diagnosis import law_scan, law_search, unlisted
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.effort import POLISH
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig
@@ -42,10 +42,11 @@ RIPPLE, RIPPLE_HZ = 2e6, 3.104
 
 @pytest.fixture
 def in_less_time(monkeypatch) -> None:
-    """For laws that are not periodic: up to 4 Hz, at seven of eleven inputs."""
+    """For laws that are not periodic: up to 4 Hz with free rollouts alone, at seven of eleven inputs."""
     own = unlisted.inputs_of
     left_out = ("command", "amplifier", "back_a", "back_b")
     monkeypatch.setattr(law_scan, "HIGHEST_HZ", 4.0)
+    monkeypatch.setattr(law_search, "shaking", lambda *given: [])
     monkeypatch.setattr(
         unlisted, "inputs_of", lambda *given: tuple(i for i in own(*given) if i.probe not in left_out)
     )
@@ -86,11 +87,12 @@ def test_a_ripple_is_found_between_the_frequencies_that_are_scanned(bench, recor
         laws = promising(
             workbench, nominal, [i for i in inputs if i.stage == "supply"], span, 4 * workbench.fine
         )
-    ripple = next(law for law in laws if law.periodic)
     assert nominal.fit.over_noise > 2.0
-    assert ripple is max(laws, key=lambda law: law.gain)
-    assert ripple.frequency == pytest.approx(RIPPLE_HZ, abs=0.15 / 12.0)
-    assert np.hypot(*ripple.amplitudes) * ripple.input.scale == pytest.approx(RIPPLE, rel=0.5)
+    for pulled in (False, True):  # told by free rollouts, and by pulled ones
+        ripple = max((law for law in laws if law.pulled in (False, pulled)), key=lambda law: law.gain)
+        assert ripple.periodic and ripple.pulled is pulled
+        assert ripple.frequency == pytest.approx(RIPPLE_HZ, abs=0.15 / 12.0)
+        assert np.hypot(*ripple.amplitudes) * ripple.input.scale == pytest.approx(RIPPLE, rel=0.5)
 
 
 def test_a_ripple_beyond_what_is_searched_at_first_is_fitted_all_the_same(bench, recorded) -> None:

@@ -4,7 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from hydrolek_drake.diagnosis import law_scan
+from hydrolek_drake.diagnosis import law_scan, law_search
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.law_fit import fitted, glance
 from hydrolek_drake.diagnosis.law_inputs import Input, inputs_of
@@ -19,6 +19,7 @@ from hydrolek_drake.identification.parameter_set import free_parameters
 def in_less_time(monkeypatch) -> None:
     """Sines are not what these tests are about."""
     monkeypatch.setattr(law_scan, "HIGHEST_HZ", 2.0)
+    monkeypatch.setattr(law_search, "shaking", lambda *given: [])
 
 
 @pytest.mark.parametrize(
