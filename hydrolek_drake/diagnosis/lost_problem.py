@@ -104,5 +104,12 @@ class LostProblem(Problem):
             ]
         )
 
+    def _to_the_next_step(self, unit: np.ndarray) -> np.ndarray:
+        """As of `Problem`; windows begin and end with steps of the integration."""
+        changes = super()._to_the_next_step(unit)
+        own = self._longest_step * np.array([0.5 / WINDOW_S, 2.0 / LONGEST_S])
+        changes[self._nominal :] = np.tile(own, (unit.size - self._nominal) // 2)
+        return changes
+
     def _keep(self, unit: np.ndarray, base: np.ndarray) -> None:
         """Nothing is kept: windows are no part of a joint's record."""

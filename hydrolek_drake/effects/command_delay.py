@@ -11,7 +11,7 @@ EFFECT = Effect(
     id="command.delay",
     title="longer dead time",
     equation="T_d + delay_s",
-    parameters=(Parameter("delay_s", "s", "added transport delay", neutral=0.0),),
+    parameters=(Parameter("delay_s", "s", "added transport delay", neutral=0.0, arrival=True),),
     size="delay_s",
     search={
         "delay_s": Search("travel_time", 0.15, (0.01, 0.05)),

@@ -6,13 +6,15 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
-from scipy.optimize import least_squares
 
+from hydrolek_drake.identification.descent import Descent, Land
 from hydrolek_drake.identification.problem import PULLS_S, Problem
-from hydrolek_drake.identification.steps_taken import StepsTaken
 
 EDGE = 1e-6
 """Starts are pulled so far inside the cube: the trust-region method walks in the interior."""
+
+ROUGH = 1e-3
+"""A fit with this tolerance, or a larger one, only leads to others."""
 
 LOSSES = ("linear", "soft_l1", "huber", "cauchy")
 
@@ -21,7 +23,7 @@ PULLED_STEPS, PULLED_TOLERANCE = 8, 1e-3
 """Trust-region steps of a fit with pulled rollouts and its tolerance: it need only lead near."""
 
 
-class LeastSquares(Protocol):
+class LeastSquares(Land, Protocol):
     """What a search needs of a problem; see `Problem`."""
 
     @property
@@ -37,24 +39,6 @@ class LeastSquares(Protocol):
     @property
     def unsure(self) -> float:
         """Squared residuals that what is known but roughly may leave; see `Experiment.unsure`."""
-        ...
-
-    def residuals(self, unit: np.ndarray) -> np.ndarray:
-        """Residuals in units of their noise. # (n,) -> (values,)."""
-        ...
-
-    def jacobian(
-        self, unit: np.ndarray, at: np.ndarray | None = None, moving: np.ndarray | None = None
-    ) -> np.ndarray:
-        """Their change with each parameter's place, zero for those that are held. # (values, n)."""
-        ...
-
-    def prior_residuals(self, unit: np.ndarray) -> np.ndarray:
-        """Distances from a prior, in standard deviations."""
-        ...
-
-    def prior_jacobian(self) -> np.ndarray:
-        """Their change with each parameter's place."""
         ...
 
 
@@ -124,8 +108,10 @@ def fit_from(
 ) -> Fit:
     """Bounded least squares from one start (trust region reflective, scipy).
 
-    It ends after so many rollouts, or once a step takes less of the cost, or is shorter, than the tolerance. The
-    method would compute a Jacobian there, too, which is left to whom it may concern (`Fit.jacobian`).
+    It ends after so many rollouts, or once a step takes less of the cost, or is shorter, than the tolerance. The slopes
+    that lead it need not be exact (`Land.leading_slopes`); where it would end with them it goes on with the
+    Jacobian, unless the tolerance is so large that it only leads to others. The Jacobian where it ends is left to whom
+    it may concern (`Fit.jacobian`).
 
     Args:
         problem: residuals and Jacobian.
@@ -137,60 +123,20 @@ def fit_from(
         moving: which parameters are searched, the others stay where they start; None for all. # (n,)
     """
     before = problem.evaluations
-    searched = np.flatnonzero(np.ones(start.size) if moving is None else moving)
-    inside = np.array(start, dtype=float)
-    inside[searched] = np.clip(start[searched], EDGE, 1.0 - EDGE)
-    prior_jacobian = problem.prior_jacobian()
-    taken = StepsTaken(most_steps, tolerance, robust=loss != "linear")
-    known: dict[bytes, np.ndarray] = {}
-
-    def whole(part: np.ndarray) -> np.ndarray:
-        unit = inside.copy()
-        unit[searched] = part
-        return unit
-
-    def residuals(part: np.ndarray) -> np.ndarray:
-        if stop is not None and stop():
-            raise KeyboardInterrupt
-        unit = whole(part)
-        value = problem.residuals(unit)
-        known.clear()
-        known[unit.tobytes()] = value
-        every = np.concatenate([value, problem.prior_residuals(unit)])
-        taken.tried(every)
-        return every
-
-    def jacobian(part: np.ndarray) -> np.ndarray:
-        unit = whole(part)
-        value = known[unit.tobytes()]
-        if taken.last(part):
-            return np.zeros((value.size + len(prior_jacobian), searched.size))
-        own = problem.jacobian(unit, value, moving)
-        slopes = np.concatenate([own, prior_jacobian])[:, searched]
-        taken.goes_on(part, slopes)
-        return slopes
-
-    result = least_squares(
-        residuals,
-        inside[searched],
-        jac=jacobian,
-        bounds=(0.0, 1.0),
-        loss=loss,
-        max_nfev=most_steps,
-        xtol=tolerance,
-        ftol=tolerance,
-        gtol=1e-12,
-    )
-    values = len(result.fun) - len(prior_jacobian)
-    unit, at = whole(result.x), result.fun[:values]
-    found = np.zeros((values, len(inside)))
-    found[:, searched] = result.jac[:values]
+    unit = np.array(start, dtype=float)
+    searched = np.ones(unit.size, dtype=bool) if moving is None else moving
+    unit[searched] = np.clip(unit[searched], EDGE, 1.0 - EDGE)
+    way = Descent(problem, unit, loss=loss, tolerance=tolerance, stop=stop, moving=moving)
+    tried = way.leg(most_steps, exact=False)
+    if tolerance < ROUGH and tried < most_steps and not way.exact:
+        way.leg(most_steps - tried, exact=True)
+    unit, at = way.unit, way.residuals
     return Fit(
         unit=unit,
         residuals=at,
-        off_prior=result.fun[values:],
-        slopes=(lambda: problem.jacobian(unit, at, moving)) if taken.ended else found,
-        prior_jacobian=prior_jacobian,
+        off_prior=way.off_prior,
+        slopes=lambda: problem.jacobian(unit, at, moving),
+        prior_jacobian=problem.prior_jacobian(),
         counted=problem.counted,
         evaluations=problem.evaluations - before,
         unsure=problem.unsure,

@@ -89,6 +89,15 @@ class ParameterSet:
         """Full paths in the order of the unit vector."""
         return tuple(parameter.path for parameter in self.free)
 
+    @property
+    def arrivals(self) -> np.ndarray:
+        """Which of them say when commands arrive. # (n,) truth values."""
+        return np.array([declaration(self.rig, p.path).arrival for p in self.free], dtype=bool)
+
+    def per_place(self, unit: np.ndarray) -> np.ndarray:
+        """Change of each parameter's value (SI) with its place in the unit cube. # (n,)."""
+        return np.array([p.slope(float(u)) for p, u in zip(self.free, unit, strict=True)])
+
     def records(self, unit: np.ndarray) -> np.ndarray:
         """Records of all joints, shape (n joints,), for a place in the unit cube."""
         records = self._base.copy()

@@ -14,7 +14,9 @@ DIFFERENCE = 1e-6
 """Step of the forward differences, as a fraction of a parameter's range.
 
 Far above rounding (rollouts repeat to 1e-12), and below the 1e-4 over which the residuals of a joint that
-sticks and slips already bend; a step of 1e-4 left fits 10 % above the noise.
+sticks and slips already bend; a step of 1e-4 left fits 10 % above the noise. What says when commands arrive is moved by
+a whole step of the integration: steps end there, so that the error of the integration is a saw-tooth over that time,
+with the step as its period, whose slope is a third of the true one (bench, 0.5 ms) or more than that.
 """
 
 PULL_S = 0.1
@@ -25,6 +27,17 @@ PULLS_S = (0.03, PULL_S)
 """Time constants of fits that begin far off, one after the other. Within the first hardly anything piles up: what is
 left of it is nearly the error of the rates themselves, over which the squared residuals have few hollows (an equation
 error; Ljung, System Identification, 1999, chapter 7). The second one sees what is slower."""
+
+LONGER = 2.0
+"""Slopes that only lead a search are told by rollouts with steps so many times as long, ..."""
+
+ALIKE = 0.5
+"""... if their residuals differ from those of the problem's own step by no more than this share of these, ..."""
+
+SAME = 0.5
+"""... and the slope in a direction to which every parameter adds alike by no more than this share of it. How good a
+place is, the residuals with the problem's own step tell (inexact Newton methods: Dembo, Eisenstat, Steihaug, SIAM
+Journal on Numerical Analysis 19, 1982)."""
 
 DIVERGED = 1e7
 """Residual, in units of noise, where a diverged simulation has no value: worse than any that ends."""
@@ -61,11 +74,13 @@ class Problem:
         self.experiments = tuple(experiments)
         self.longest_step = longest_step
         self.pool = pool
+        self._arrivals = parameters.arrivals
         self._prior_mean = parameters.unit()
         self._prior_weight = np.zeros(len(parameters)) if prior is None else 1.0 / prior
         self.pull_time = pull_time
         self.difference = difference
         self._anchor: list[tuple[bytes, np.ndarray]] | None = None
+        self._longer_does = True
         self.evaluations = 0
         self.counted = sum(experiment.counted for experiment in self.experiments)
         self.unsure = sum(experiment.unsure for experiment in self.experiments)
@@ -74,7 +89,7 @@ class Problem:
         """The same with rollouts that are pulled to what was measured, with a time constant [s]."""
         other = copy.copy(self)
         other.pull_time, other.evaluations = pull_time, 0
-        other._anchor = None
+        other._anchor, other._longer_does = None, True
         return other
 
     def residuals(self, unit: np.ndarray) -> np.ndarray:
@@ -129,7 +144,7 @@ class Problem:
         base = self.residuals(unit) if at is None else at
         if len(self.experiments) > 1:
             self._keep(unit, base)
-        steps = np.where(unit + self.difference <= 1.0, self.difference, -self.difference)
+        steps = self._steps(unit)
 
         def column(i: int) -> np.ndarray:
             moved = unit.copy()
@@ -142,6 +157,57 @@ class Problem:
         if columns:
             whole[:, indices] = np.stack(columns, axis=1)
         return whole
+
+    def leading_slopes(
+        self, unit: np.ndarray, at: np.ndarray, moving: np.ndarray | None = None
+    ) -> np.ndarray | None:
+        """The Jacobian to within what a step of a search needs, from rollouts with a longer step.
+
+        Args:
+            unit: place in the unit cube. # (n,)
+            at: the residuals there, with the problem's own step.
+            moving: as of `jacobian`.
+
+        Returns:
+            None where a longer step does not do, or did not before.
+        """
+        if not self._longer_does:
+            return None
+        longer = copy.copy(self)
+        longer.longest_step, longer._anchor, longer.evaluations = LONGER * self._longest_step, None, 0
+        there = longer.residuals(unit)
+        slopes = None
+        if np.linalg.norm(there - at) < ALIKE * np.linalg.norm(at):
+            slopes = longer.jacobian(unit, there, moving)
+        self.evaluations += longer.evaluations
+        self._longer_does = slopes is not None and self._same(unit, at, slopes)
+        return slopes if self._longer_does else None
+
+    def _same(self, unit: np.ndarray, at: np.ndarray, slopes: np.ndarray) -> bool:
+        """Whether slopes are those with the problem's own step, in a direction to which every parameter adds alike."""
+        sizes = np.linalg.norm(slopes, axis=0)
+        told = (sizes > 0.0) & (self._to_the_next_step(unit) == 0.0)
+        way = np.zeros(unit.size)
+        way[told] = np.min(sizes[told], initial=np.inf) / sizes[told]
+        steps = way * self._steps(unit)
+        change = self.residuals(unit + steps) - at
+        return bool(np.linalg.norm(slopes @ steps - change) <= SAME * np.linalg.norm(change))
+
+    def _steps(self, unit: np.ndarray) -> np.ndarray:
+        """Differences of the Jacobian: forward, and backward near the upper end. # (n,)."""
+        sizes = np.clip(self._to_the_next_step(unit), self.difference, 0.5)
+        return np.where(unit + sizes <= 1.0, sizes, -sizes)
+
+    def _to_the_next_step(self, unit: np.ndarray) -> np.ndarray:
+        """One step of the integration, as a change of what says when commands arrive; 0 for all else. # (n,)."""
+        own = unit[: len(self.parameters)]
+        changes = np.where(self._arrivals, self._longest_step / self.parameters.per_place(own), 0.0)
+        return np.concatenate([changes, np.zeros(unit.size - own.size)])
+
+    @property
+    def _longest_step(self) -> float:
+        """Of the rollouts [s]."""
+        return self.longest_step or max(experiment.longest_step for experiment in self.experiments)
 
     def prior_residuals(self, unit: np.ndarray) -> np.ndarray:
         """Distance of each parameter from the rig's own value, in standard deviations. # (n,)."""

@@ -11,7 +11,7 @@ STAGE = Stage(
     "command",
     "transport of the command from the computer to the amplifier",
     (
-        Parameter("delay", "s", "transport delay of the command", lowest=0.0),
+        Parameter("delay", "s", "transport delay of the command", lowest=0.0, arrival=True),
         Parameter("neutral", "V", "command at which nothing is driven", neutral=0.0),
         Parameter("limit", "V", "largest command away from neutral", lowest=0.0),
         Parameter(

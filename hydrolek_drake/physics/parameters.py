@@ -21,6 +21,7 @@ class Parameter:
         lowest: smallest admissible value (physics, not taste).
         highest: largest admissible value.
         positive: zero and below are not admissible, since something is divided by it.
+        arrival: it says when commands arrive, at which steps of the integration end.
     """
 
     name: str
@@ -30,6 +31,7 @@ class Parameter:
     lowest: float = -np.inf
     highest: float = np.inf
     positive: bool = False
+    arrival: bool = False
 
 
 @dataclass(frozen=True)

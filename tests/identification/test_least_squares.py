@@ -1,6 +1,7 @@
 """Fits: planted values come back, with intervals that hold them, from any start."""
 
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -69,17 +70,49 @@ def test_several_starts_end_early_at_the_noise(bench, planted) -> None:
     assert tried == [0]
 
 
-def test_the_jacobian_is_that_of_central_differences(bench, planted) -> None:
+@pytest.mark.parametrize("place", [0.3, 0.5, 0.6])
+def test_the_jacobian_is_that_of_central_differences_with_a_far_shorter_step(bench, planted, place) -> None:
     _, experiments = planted
     parameters = ParameterSet(bench, free_parameters(bench, PATHS))
-    problem = Problem(parameters, experiments)
-    unit = np.full(4, 0.5)
-    jacobian = problem.jacobian(unit)
-    for i in range(4):
+    unit = np.full(4, place)
+    jacobian = Problem(parameters, experiments, 0.25e-3).jacobian(unit)
+    exact = Problem(parameters, experiments, 0.05e-3)
+    for i, path in enumerate(PATHS):
         h = np.zeros(4)
-        h[i] = 1e-5
-        central = (problem.residuals(unit + h) - problem.residuals(unit - h)) / 2e-5
-        assert np.linalg.norm(jacobian[:, i] - central) < 1e-2 * np.linalg.norm(central)
+        h[i] = 0.25e-3 / parameters.per_place(unit)[i] if path == "command.delay" else 1e-5
+        central = (exact.residuals(unit + h) - exact.residuals(unit - h)) / (2.0 * h[i])
+        assert np.linalg.norm(jacobian[:, i] - central) < 0.03 * np.linalg.norm(central)
+
+
+class Counting(Problem):
+    """Remembers the steps of its rollouts."""
+
+    steps: ClassVar[list[float | None]] = []
+
+    def residuals(self, unit: np.ndarray) -> np.ndarray:
+        self.steps.append(self.longest_step)
+        return super().residuals(unit)
+
+
+def test_slopes_that_lead_a_search_are_the_jacobian_for_less(bench, planted) -> None:
+    _, experiments = planted
+    parameters = ParameterSet(bench, free_parameters(bench, PATHS))
+    problem, unit = Counting(parameters, experiments, 0.5e-3), np.full(4, 0.4)
+    at = problem.residuals(unit)
+    exact = problem.jacobian(unit, at)
+    problem.steps.clear()
+    leading = problem.leading_slopes(unit, at)
+    # one rollout with the own step to hold them against it
+    assert problem.steps == [1e-3] * 5 + [0.5e-3]
+    assert (np.linalg.norm(leading - exact, axis=0) < 0.5 * np.linalg.norm(exact, axis=0)).all()
+
+
+def test_nothing_but_the_jacobian_leads_where_a_longer_step_goes_astray(bench, planted) -> None:
+    _, experiments = planted
+    parameters = ParameterSet(bench, free_parameters(bench, PATHS))
+    problem, unit = Problem(parameters, experiments, 8e-3), np.full(4, 0.4)
+    at = problem.residuals(unit)
+    assert problem.leading_slopes(unit, at) is None
 
 
 def test_a_prior_keeps_what_the_data_do_not_tell(bench, planted) -> None:

@@ -27,6 +27,9 @@ class Linear:
     def jacobian(self, unit, at=None, moving=None):
         return -self.matrix
 
+    def leading_slopes(self, unit, at, moving=None):
+        return None
+
     def prior_residuals(self, unit):
         return np.zeros(0)
 

@@ -34,6 +34,9 @@ class Bent:
             + 3.0 * self.kinks * np.sign(self.kinks @ (unit - 0.3))[:, None]
         )
 
+    def leading_slopes(self, unit: np.ndarray, at: np.ndarray, moving: np.ndarray | None = None) -> None:
+        return None
+
     def prior_residuals(self, unit: np.ndarray) -> np.ndarray:
         return (unit - 0.5) / 0.3
 

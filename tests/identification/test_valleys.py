@@ -28,6 +28,7 @@ def _land(prior: float = 0.0):
         unsure=0.0,
         residuals=residuals,
         jacobian=jacobian,
+        leading_slopes=lambda unit, at, moving=None: None,
         prior_residuals=lambda unit: prior * (unit - 0.5),
         prior_jacobian=lambda: prior * np.eye(3),
     )
