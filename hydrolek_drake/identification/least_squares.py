@@ -19,7 +19,7 @@ ROUGH = 1e-3
 LOSSES = ("linear", "soft_l1", "huber", "cauchy")
 
 
-PULLED_STEPS, PULLED_TOLERANCE = 8, 1e-3
+PULLED_STEPS, PULLED_TOLERANCE = 8, ROUGH
 """Trust-region steps of a fit with pulled rollouts and its tolerance: it need only lead near."""
 
 

@@ -16,7 +16,7 @@ DIFFERENCE = 1e-6
 Far above rounding (rollouts repeat to 1e-12), and below the 1e-4 over which the residuals of a joint that
 sticks and slips already bend; a step of 1e-4 left fits 10 % above the noise. What says when commands arrive is moved by
 a whole step of the integration: steps end there, so that the error of the integration is a saw-tooth over that time,
-with the step as its period, whose slope is a third of the true one (bench, 0.5 ms) or more than that.
+with the step as its period, whose slope is up to a third of the true one (bench, 0.5 ms) and more with longer steps.
 """
 
 PULL_S = 0.1

@@ -49,9 +49,8 @@ def test_a_fit_ends_where_the_jacobian_leads() -> None:
     np.testing.assert_allclose(fit.unit, exact.unit, atol=1e-6)
     assert fit.objective == pytest.approx(exact.objective, abs=1e-6)
     assert 0 < led.jacobians < alone.jacobians
-    np.testing.assert_array_equal(
-        fit.jacobian, led.slopes(fit.unit)
-    )  # told by the Jacobian, whatever led there
+    # told by the Jacobian, whatever led there
+    np.testing.assert_array_equal(fit.jacobian, led.slopes(fit.unit))
 
 
 def test_a_fit_that_only_leads_to_others_ends_without_a_jacobian() -> None:
