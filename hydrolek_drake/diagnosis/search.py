@@ -115,16 +115,23 @@ def _go_on(
     say: Callable[[str], None],
     other: Other | None = None,
 ) -> None:
-    """Add effects to the models of the beam as long as that pays, and nothing else explains the data."""
+    """Add effects to the models of the beam as long as that pays, and nothing else explains the data.
+
+    What is the recordings' own, such as commands that got lost, has numbers for every time that it happens, far more
+    than two effects have, so that two are tried before it is believed.
+    """
     material = MATERIAL_GAIN / bench.alike
     while beam:
         while found.rounds < MOST_GROWN and _worth_going_on(found, material):
             candidates, beam = _grown(bench, found, beam, candidates, say)
-            if other is not None and _something_else_may_do(found, material):
-                law = other(found.baseline, found.rounds)
-                found.law = law if law is not None and outdoes(law, found.best) else None
-            if found.law is not None:
+            if found.law is None and other is not None and _something_else_may_do(found, material):
+                found.law = other(found.baseline, found.rounds)
+            if found.law is not None and not outdoes(found.law, found.best):
+                found.law = None
+            if found.law is not None and (found.law.of_the_machine or found.rounds > 1):
                 return
+        if found.law is not None:
+            return
         beam = exchanged(bench, found, candidates)
 
 
