@@ -7,8 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis import law_scan, unlisted
+from hydrolek_drake.diagnosis import law_scan, search, unlisted
 from hydrolek_drake.diagnosis.baseline import fit_baseline
+from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.law_inputs import Input
 from hydrolek_drake.diagnosis.law_naming import helping
 from hydrolek_drake.diagnosis.law_problem import Law
@@ -140,3 +141,34 @@ def _with_effects(count, over_noise):
 def test_a_law_in_place_of_effects_must_outdo_them(law, effects, left, better) -> None:
     found = SimpleNamespace(fit=SimpleNamespace(over_noise=law))
     assert outdoes(found, _with_effects(effects, left)) is better
+
+
+@pytest.mark.parametrize(
+    ("of_the_machine", "two_leave", "rounds", "told"),
+    [
+        (True, 1.0, 1, True),  # a law of the machine ends the search
+        (False, 1.0, 2, False),  # what is the recordings' own waits until two effects have been tried, ...
+        (False, 1.5, 2, True),  # ... and stays if they do not do better
+    ],
+)
+def test_two_effects_are_tried_before_what_is_the_recordings_own(
+    monkeypatch, of_the_machine, two_leave, rounds, told
+) -> None:
+    found, asked = Search(), []
+    found.keep(_with_effects(0, 2.0))
+    left_by = {1: 1.5, 2: two_leave}
+
+    def grown(bench, found, beam, candidates, say):
+        found.rounds += 1
+        found.keep(_with_effects(found.rounds, left_by[found.rounds]))
+        return candidates, beam
+
+    def other(nominal, effects):
+        asked.append(effects)
+        return SimpleNamespace(fit=_with_effects(0, 1.03).fit, of_the_machine=of_the_machine)
+
+    monkeypatch.setattr(search, "_grown", grown)
+    monkeypatch.setattr(search, "exchanged", lambda *given: [])
+    monkeypatch.setattr(search, "_worth_going_on", lambda found, material: found.rounds < 2)
+    search._go_on(SimpleNamespace(alike=1.0), [], found, [found.best], lambda text: None, other)
+    assert (found.rounds, found.law is not None, asked) == (rounds, told, [1])
