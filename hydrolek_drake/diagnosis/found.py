@@ -22,7 +22,8 @@ class Search:
         given_up: sets of effects that were too far behind after a few steps.
         smooth: whether a fit that was led on proved not to have been stuck.
         weighed_at: what the model left, over the noise, by which the data are weighed.
-        law: beside the nominal model, which ended the search since it explains everything; None for none.
+        law: beside the nominal model, which explains everything and ends the search: at once if it is of the machine,
+            once two effects have been tried if it is the recordings' own; None for none.
     """
 
     hypotheses: dict[frozenset[str], Hypothesis] = field(default_factory=dict)

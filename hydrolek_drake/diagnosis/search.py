@@ -124,10 +124,11 @@ def _go_on(
     while beam:
         while found.rounds < MOST_GROWN and _worth_going_on(found, material):
             candidates, beam = _grown(bench, found, beam, candidates, say)
-            if found.law is None and other is not None and _something_else_may_do(found, material):
-                found.law = other(found.baseline, found.rounds)
             if found.law is not None and not outdoes(found.law, found.best):
                 found.law = None
+            if found.law is None and other is not None and _something_else_may_do(found, material):
+                law = other(found.baseline, found.rounds)
+                found.law = law if law is not None and outdoes(law, found.best) else None
             if found.law is not None and (found.law.of_the_machine or found.rounds > 1):
                 return
         if found.law is not None:

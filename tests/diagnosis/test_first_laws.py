@@ -144,19 +144,26 @@ def test_a_law_in_place_of_effects_must_outdo_them(law, effects, left, better) -
 
 
 @pytest.mark.parametrize(
-    ("of_the_machine", "two_leave", "rounds", "told"),
+    ("of_the_machine", "two_leave", "most_rounds", "asked_at", "told"),
     [
-        (True, 1.0, 1, True),  # a law of the machine ends the search
-        (False, 1.0, 2, False),  # what is the recordings' own waits until two effects have been tried, ...
-        (False, 1.5, 2, True),  # ... and stays if they do not do better
+        (True, 1.0, 2, [1], True),  # a law of the machine ends the search
+        (
+            False,
+            1.0,
+            2,
+            [1],
+            False,
+        ),  # what is the recordings' own waits until two effects have been tried, ...
+        (False, 1.5, 2, [1], True),  # ... stays if they do not do better, ...
+        (False, 1.0, 3, [1, 2], False),  # ... and gives way to another law if they do and leave something
     ],
 )
 def test_two_effects_are_tried_before_what_is_the_recordings_own(
-    monkeypatch, of_the_machine, two_leave, rounds, told
+    monkeypatch, of_the_machine, two_leave, most_rounds, asked_at, told
 ) -> None:
     found, asked = Search(), []
     found.keep(_with_effects(0, 2.0))
-    left_by = {1: 1.5, 2: two_leave}
+    left_by = {1: 1.5, 2: two_leave, 3: two_leave}
 
     def grown(bench, found, beam, candidates, say):
         found.rounds += 1
@@ -165,10 +172,12 @@ def test_two_effects_are_tried_before_what_is_the_recordings_own(
 
     def other(nominal, effects):
         asked.append(effects)
+        if effects > 1:
+            return None
         return SimpleNamespace(fit=_with_effects(0, 1.03).fit, of_the_machine=of_the_machine)
 
     monkeypatch.setattr(search, "_grown", grown)
     monkeypatch.setattr(search, "exchanged", lambda *given: [])
-    monkeypatch.setattr(search, "_worth_going_on", lambda found, material: found.rounds < 2)
+    monkeypatch.setattr(search, "_worth_going_on", lambda found, material: found.rounds < most_rounds)
     search._go_on(SimpleNamespace(alike=1.0), [], found, [found.best], lambda text: None, other)
-    assert (found.rounds, found.law is not None, asked) == (rounds, told, [1])
+    assert (found.law is not None, asked) == (told, asked_at)
