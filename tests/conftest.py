@@ -1,4 +1,4 @@
-"""Order of the tests, and a rig of which several folders have need."""
+"""Order of the tests, which of them run, and a rig of which several folders have need."""
 
 import pytest
 
@@ -17,6 +17,19 @@ def two_joints(tmp_path_factory: pytest.TempPathFactory) -> Rig:
     return load_rig(path, {})
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Groups that stay together come first: they take long, and at the end one worker would wait for the other."""
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Tests that take long are wanted now and then, and not with every change."""
+    parser.addoption("--long", action="store_true", help="also run the tests that are marked long")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Long tests are skipped unless they are asked for.
+
+    Groups that stay together come first: they take long, and at the end one worker would wait for the other.
+    """
     items.sort(key=lambda item: item.get_closest_marker("xdist_group") is None)
+    if config.getoption("--long"):
+        return
+    for item in items:
+        if (marker := item.get_closest_marker("long")) is not None:
+            item.add_marker(pytest.mark.skip(reason=f"{marker.args[0]}: --long"))

@@ -1,6 +1,5 @@
 """A healthy machine whose numbers lie far from the rig's: the nominal model must reach the noise without any effect."""
 
-import os
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -76,9 +75,7 @@ def test_a_nominal_fit_that_stops_early_is_led_to_the_noise(bench, recorded) -> 
     assert led.fit.over_noise < 1.05  # of 1200 values chance moves it by 2 %
 
 
-@pytest.mark.skipif(
-    os.environ.get("HYDROLEK_PAIRS") != "all", reason="takes most of a minute: HYDROLEK_PAIRS=all"
-)
+@pytest.mark.long("takes most of a minute")
 def test_a_healthy_vane_under_control_is_led_out_of_a_hollow(tmp_path) -> None:
     """Case 22 of the challenge's seed 330, told as shaken: the best pulled fit led nowhere."""
     rig = load_rig(VANE["rig"])

@@ -1,6 +1,5 @@
 """A model that explains the training data and fails ahead is asked for other fits, and for what the rest may be."""
 
-import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from itertools import pairwise
@@ -67,9 +66,7 @@ def _again(known, candidates):
     return by_both(known, candidates, lambda text: None)
 
 
-@pytest.mark.skipif(
-    os.environ.get("HYDROLEK_PAIRS") != "all", reason="takes most of a minute: HYDROLEK_PAIRS=all"
-)
+@pytest.mark.long("takes most of a minute")
 def test_what_contains_the_named_effect_is_found_by_both_data(known_so_far, monkeypatch) -> None:
     known, candidates = known_so_far(STRIBECK, STICKS, {COULOMB}, **NOISY)
     named = known.conclusion.best
@@ -100,9 +97,7 @@ def test_what_contains_the_named_effect_is_found_by_both_data(known_so_far, monk
     assert best.hypothesis.fit.objective < begun_there.fit.objective + chi2.ppf(0.95, 1)
 
 
-@pytest.mark.skipif(
-    os.environ.get("HYDROLEK_PAIRS") != "all", reason="takes most of a minute: HYDROLEK_PAIRS=all"
-)
+@pytest.mark.long("takes most of a minute")
 def test_what_only_the_held_out_data_show_is_found(known_so_far) -> None:
     known, candidates = known_so_far(COULOMB, {"coulomb_N": SMALL_N}, (), RIVALS[:2], **STANDS_STILL)
     named = known.conclusion.best

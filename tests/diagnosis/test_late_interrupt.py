@@ -1,7 +1,6 @@
 """An interrupt of the judgement, or after it, costs what comes then and not what is known."""
 
 import json
-import os
 from pathlib import Path
 
 import pytest
@@ -11,15 +10,16 @@ from hydrolek_drake.diagnosis import attempt, diagnosis
 
 PAIR = Path(__file__).parents[1] / "data" / "bench" / "practice_01"
 
-LONG = pytest.mark.skipif(
-    os.environ.get("HYDROLEK_PAIRS") != "all", reason="takes a third of a minute more: HYDROLEK_PAIRS=all"
-)
-
 
 @pytest.mark.parametrize(
     ("where", "what", "lost"),
     [
-        pytest.param(diagnosis, "visible_sizes", ("detectable_from",), marks=LONG),
+        pytest.param(
+            diagnosis,
+            "visible_sizes",
+            ("detectable_from",),
+            marks=pytest.mark.long("takes a third of a minute more"),
+        ),
         (diagnosis, "locate", ("detectable_from", "locations")),
         (attempt, "judge", ()),
     ],

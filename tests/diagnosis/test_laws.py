@@ -1,6 +1,5 @@
 """Laws for physics in no list: what they mean, and that a planted one is found at its stage."""
 
-import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from types import SimpleNamespace
@@ -193,9 +192,7 @@ def test_a_first_fit_finds_a_law_for_which_the_nominal_model_bent_its_numbers_fa
     assert left < 1.1**2 * sum(e.counted for e in training)
 
 
-@pytest.mark.skipif(
-    os.environ.get("HYDROLEK_PAIRS") != "all", reason="takes most of a minute: HYDROLEK_PAIRS=all"
-)
+@pytest.mark.long("takes most of a minute")
 @pytest.mark.usefixtures("in_less_time", "with_fewer_laws")
 def test_a_friction_over_the_stroke_is_found_at_the_rod_as_a_law_of_several_terms(bench, recorded) -> None:
     """F = -(400 N + 2500 N u^2) sign(v), with u from 0 to 1 over the cylinder's whole stroke: no single term of z."""
@@ -234,7 +231,7 @@ def test_a_friction_over_the_stroke_is_found_at_the_rod_as_a_law_of_several_term
         assert friction(u) == pytest.approx(dry + tight * u**2, abs=0.15 * (dry + tight))
 
 
-@pytest.mark.skipif(os.environ.get("HYDROLEK_PAIRS") != "all", reason="takes a minute: HYDROLEK_PAIRS=all")
+@pytest.mark.long("takes a minute")
 @pytest.mark.usefixtures("in_less_time")
 def test_a_friction_at_one_place_of_the_stroke_is_found_there(bench, recorded) -> None:
     """A scored bore: between two of the places that terms have, and wider than either."""

@@ -1,6 +1,5 @@
 """Near the noise: an effect for which nothing speaks beside a nominal model that has bent its parameters."""
 
-import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
@@ -30,10 +29,7 @@ COUNTED = 4000
     [
         pytest.param(
             (COULOMB,),
-            marks=pytest.mark.skipif(
-                os.environ.get("HYDROLEK_PAIRS") != "all",
-                reason="takes a third of a minute more: HYDROLEK_PAIRS=all",
-            ),
+            marks=pytest.mark.long("takes a third of a minute more"),
         ),
         (COULOMB, *OTHERS),
     ],

@@ -1,7 +1,6 @@
 """Diagnoses of real machines against what their authors published."""
 
 import json
-import os
 from pathlib import Path
 
 import pytest
@@ -16,7 +15,7 @@ SHARED = Path(__file__).parents[3] / "shared" / "recordings"
 pytestmark = [
     pytest.mark.shared_recordings,
     pytest.mark.skipif(not SHARED.is_dir(), reason="the folder ../shared/recordings is not there"),
-    pytest.mark.skipif(os.environ.get("HYDROLEK_PAIRS") != "all", reason="takes minutes: HYDROLEK_PAIRS=all"),
+    pytest.mark.long("takes minutes"),
 ]
 
 

@@ -1,6 +1,5 @@
 """Laws of what flows back to the tank, told from a valve that is smaller both ways."""
 
-import os
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -24,14 +23,9 @@ def in_less_time(monkeypatch) -> None:
     monkeypatch.setattr(law_search, "shaking", lambda *given: [])
 
 
-OF_BOTH_SIDES = pytest.mark.skipif(
-    os.environ.get("HYDROLEK_PAIRS") != "all",
-    reason="the other side's takes half a minute more: HYDROLEK_PAIRS=all",
-)
-
-
 @pytest.mark.parametrize(
-    ("side", "share"), [pytest.param("back_a", -0.1, marks=OF_BOTH_SIDES), ("back_b", -0.2)]
+    ("side", "share"),
+    [pytest.param("back_a", -0.1, marks=pytest.mark.long("takes half a minute more")), ("back_b", -0.2)],
 )
 def test_a_throttle_in_the_way_back_is_told_from_a_smaller_valve(bench, recorded, side, share) -> None:
     """Of either side alone: what drives the rod one way is as it was. The fits decide, not what each law promised."""
