@@ -19,6 +19,10 @@ from hydrolek_drake.identification.valleys import along_valleys
 STEPS, GLANCE = 15, 4
 """Trust-region steps of a fit, and of a first one that tells which law is worth it."""
 
+CHANCE = 2.0
+"""Fall of the squared residuals that one parameter more must bring, of two laws that do as well (Akaike, A new look at
+the statistical model identification, IEEE Transactions on Automatic Control 19, 1974)."""
+
 PHASES = 12
 """Where a periodic law may stand when a recording begins is first tried at so many places."""
 
@@ -106,6 +110,31 @@ def fitted(
     nominal = parameters.values(fit.unit[:count])
     joint = bench.training[0].joint
     return FoundLaw(law, values, nominal, fit, over, difference, span, ahead, joint)
+
+
+def left_of_all(
+    bench: Workbench, left: Hypothesis, found: FoundLaw, held_out: Sequence[Experiment], step: float
+) -> float:
+    """What a law leaves of all data once it is fitted to all of them, and what its numbers cost.
+
+    What is fitted to the training data alone predicts the held-out ones less well than the right numbers would, a
+    short law at the right stage by as much as a long one at another stage. Fitted to all, both leave what their form
+    cannot follow.
+
+    Args:
+        bench: training data and rig.
+        left: the model that leaves the mismatch.
+        found: the law, fitted to the training data; no periodic one, which has a phase in every recording.
+        held_out: data that it was not fitted to.
+        step: of the integration [s].
+    """
+    bench.alive()
+    parameters = bench.parameters(left.effects)
+    problem = LawProblem(parameters, [*bench.training, *held_out], step, found.law, found.span)
+    start = problem.start(parameters.unit(found.parameters), found.values)
+    fit = fit_from(problem, start, most_steps=STEPS, tolerance=1e-4, stop=bench.interrupted)
+    bench.evaluations += problem.evaluations
+    return fit.objective + CHANCE * found.law.size
 
 
 def at_the_end(law: Law, unit: np.ndarray) -> bool:

@@ -3,7 +3,7 @@
 What the best model leaves is held against every law of `laws`, at every stage, by the gain that its response
 promises (`law_search`), as for a listed effect. The most promising are fitted together with the nominal parameters
 (`law_fit`), and the one that predicts the held-out data best is named; of several that predict alike, the one that
-leaves least of all data.
+leaves least of all data, where they stand at different stages after a fit to all of them.
 Where a periodic disturbance stands in its cycle when a recording begins is no property of the machine, so its phase
 is fitted to each recording.
 """
@@ -17,7 +17,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.effort import COARSE
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_counterpart import counterpart
-from hydrolek_drake.diagnosis.law_fit import STEPS, fitted, glance
+from hydrolek_drake.diagnosis.law_fit import STEPS, fitted, glance, left_of_all
 from hydrolek_drake.diagnosis.law_growing import grown
 from hydrolek_drake.diagnosis.law_inputs import Input, inputs_of
 from hydrolek_drake.diagnosis.law_naming import ahead_to_beat, helping, likeliest
@@ -129,6 +129,8 @@ def best_of(bench: Workbench, asked: Asked, laws: Sequence[Law], to_beat: float)
         return None
     alike = [found for found in ended if found.held_out_over_noise <= ALIKE * least]
     in_all = [left_in_all(found.fit, found.held_out_over_noise, held_out) for found in alike]
+    if len({found.law.input.stage for found in alike}) > 1 and not any(f.law.periodic for f in alike):
+        in_all = bench.side_by_side(lambda found: left_of_all(bench, left, found, held_out, finer), alike)
     counted = alike[0].fit.counted + sum(experiment.counted for experiment in held_out)
     return _finished(bench, left, likeliest(alike, in_all, counted), held_out, finer)
 
