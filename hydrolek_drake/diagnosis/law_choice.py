@@ -6,11 +6,13 @@ from dataclasses import replace
 from hydrolek_drake.diagnosis.balance import squares_of
 from hydrolek_drake.diagnosis.conclusion import MATERIAL, SURE, Conclusion
 from hydrolek_drake.diagnosis.effort import AT_NOISE, MORE_AHEAD
+from hydrolek_drake.diagnosis.gains import gain_needed
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_at_a_joint import law_at_a_joint, left_at
 from hydrolek_drake.diagnosis.law_growing import explains
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, left_in_all
 from hydrolek_drake.diagnosis.law_told_anew import Told, told_anew
+from hydrolek_drake.diagnosis.search import LAW_COSTS
 from hydrolek_drake.diagnosis.unlisted import find_law, without_effects
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.effects.scales import Scales
@@ -22,7 +24,8 @@ SIMPLER = 1.1
 MANY = 3
 """So many effects at once are less likely than one in no list, which they may only imitate: where one law leaves no
 more of all data, it is preferred. Of one less the same is asked if they are not sure, or not at the noise of either
-data."""
+data. Of a single one, if it leaves more ahead than its numbers' uncertainty accounts for; the law must be better by
+what it costs more then."""
 
 
 def with_law(
@@ -50,14 +53,19 @@ def with_law(
         groups = conclusion.groups if named is conclusion.best else ()
         return replace(conclusion, best=named, groups=(*groups, *_stages(law))), law
     if _imitating(conclusion.best):
-        say("searching one law that could stand for so many effects")
+        say("searching one law that could stand for known effects")
         law = find_law(bench, nominal, held_out, scales)
-        best = conclusion.best
-        if law is not None and left_in_all(law.fit, law.held_out_over_noise, held_out) <= left_in_all(
-            best.hypothesis.fit, best.over_noise, held_out
-        ):
+        if law is not None and _preferred(law, conclusion.best, held_out):
             return alone(conclusion, judged, law), law
     return conclusion, None
+
+
+def _preferred(law: FoundLaw, best: Judged, held_out: Sequence[Experiment]) -> bool:
+    """Whether a law leaves so little of all data that known effects may only have imitated it."""
+    fit = best.hypothesis.fit
+    dearer = max(LAW_COSTS - len(best.hypothesis.effects), 0) * gain_needed(fit)
+    in_place = left_in_all(law.fit, law.held_out_over_noise, held_out)
+    return in_place + dearer <= left_in_all(fit, best.over_noise, held_out)
 
 
 def with_law_at_a_joint(
@@ -170,7 +178,8 @@ def _imitating(best: Judged) -> bool:
     effects = len(best.hypothesis.effects)
     far = best.hypothesis.fit.over_noise > AT_NOISE or best.over_noise > MORE_AHEAD
     doubtful = best.probability < SURE or far
-    return effects >= MANY or (doubtful and effects == MANY - 1)
+    off = effects > 0 and best.unaccounted > MORE_AHEAD
+    return effects >= MANY or (effects == MANY - 1 and doubtful) or off
 
 
 def _stages(law: FoundLaw | None) -> tuple[tuple[str, ...], ...]:

@@ -9,6 +9,7 @@ import pytest
 from hydrolek_drake.diagnosis import law_choice
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, EXPLAINED_AHEAD, SURE, Conclusion
 from hydrolek_drake.diagnosis.effort import AT_NOISE, MORE_AHEAD
+from hydrolek_drake.diagnosis.gains import GAIN_NEEDED
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_choice import MANY, SIMPLER, with_law
 
@@ -17,7 +18,7 @@ HELD_OUT = (SimpleNamespace(counted=VALUES),)
 
 
 def _judged(over_noise: float, effects: int = 0, probability: float = 1.0) -> Judged:
-    fit = SimpleNamespace(over_noise=over_noise, objective=VALUES * over_noise**2)
+    fit = SimpleNamespace(over_noise=over_noise, objective=VALUES * over_noise**2, counted=VALUES, unsure=0.0)
     hypothesis = SimpleNamespace(effects=tuple(range(effects)), fit=fit, ids=frozenset(range(effects)))
     return Judged(hypothesis, np.full(VALUES, over_noise), VALUES, probability=probability)
 
@@ -109,3 +110,25 @@ def test_one_law_that_predicts_as_well_is_preferred_to_many_effects(choose) -> N
     fewer = _judged(1.0, MANY - 1)
     conclusion, law, asked = choose(fewer, nominal, None, as_good, verdict="missing_physics")
     assert law is None and conclusion.best is fewer and not asked
+
+
+def test_one_effect_that_leaves_more_ahead_than_its_numbers_account_for_must_stand_against_a_law(
+    choose,
+) -> None:
+    nominal, off = (
+        _judged(10.0),
+        replace(_judged(1.0, effects=1), held_out=np.full(VALUES, 1.01 * MORE_AHEAD)),
+    )
+    ahead = float(off.held_out @ off.held_out)
+
+    def leaving(less: float):
+        """A law that leaves so much less of the held-out data."""
+        return _law(1.0, np.sqrt((ahead - less) / VALUES))
+
+    conclusion, law, _ = choose(off, nominal, None, leaving(1.01 * GAIN_NEEDED), verdict="missing_physics")
+    assert law is not None and conclusion.verdict == "unlisted_physics" and conclusion.best is nominal
+    conclusion, law, _ = choose(off, nominal, None, leaving(0.99 * GAIN_NEEDED), verdict="missing_physics")
+    assert law is None and conclusion.best is off
+    accounted = replace(off, chi_squared=VALUES * (0.99 * MORE_AHEAD) ** 2)
+    for best in (accounted, replace(off, hypothesis=nominal.hypothesis)):  # or nothing is named
+        assert not choose(best, nominal, None, leaving(ahead), verdict="missing_physics")[2]
