@@ -13,7 +13,7 @@ from hydrolek_drake.diagnosis.report_json import MOST_LISTED, detectable, effect
 from hydrolek_drake.diagnosis.told_numbers import quantity, with_interval
 from hydrolek_drake.diagnosis.words import headline, off_zero_sentences
 from hydrolek_drake.identification.thinning import STEPS
-from hydrolek_drake.replay.display import three_digits
+from hydrolek_drake.replay.display import ratio, three_digits
 from hydrolek_drake.replay.page import STYLE
 from hydrolek_drake.replay.panels import Panel
 from hydrolek_drake.replay.plots_html import plots_html
@@ -128,8 +128,10 @@ def _fit(diagnosis: Diagnosis) -> str:
     if fit is None:
         return ""
     unit = fit["unit"]
-    sides = ("train_rms", "holdout_rms", "holdout_over_noise")
-    rows = [(name, *(three_digits(errors[s]) for s in sides)) for name, errors in models_of(diagnosis, fit)]
+    rows = [
+        (name, three_digits(e["train_rms"]), three_digits(e["holdout_rms"]), ratio(e["holdout_over_noise"]))
+        for name, e in models_of(diagnosis, fit)
+    ]
     head = ("position", f"fitted [{unit}]", f"held out [{unit}]", "all signals held out / noise")
     return (
         _table(head, rows)
@@ -177,8 +179,8 @@ def _candidates(diagnosis: Diagnosis) -> str:
             (
                 html.escape(name),
                 "given up" if math.isnan(judged.probability) else f"{judged.probability:.3f}",
-                three_digits(judged.hypothesis.fit.over_noise),
-                three_digits(judged.over_noise),
+                ratio(judged.hypothesis.fit.over_noise),
+                ratio(judged.over_noise),
                 f"<span class='bar' style='width:{max(width, 2):.0f}px'></span>",
             )
         )

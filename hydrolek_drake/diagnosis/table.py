@@ -8,7 +8,7 @@ from rich.table import Table
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.report_json import effects_json, fit_json, models_of
 from hydrolek_drake.diagnosis.words import headline, off_zero_sentences
-from hydrolek_drake.replay.display import three_digits
+from hydrolek_drake.replay.display import ratio
 
 SHOWN = 5
 """So many models are shown."""
@@ -40,7 +40,7 @@ def summary(diagnosis: Diagnosis) -> Iterator[str | Table]:
         table.add_row(
             name,
             f"{judged.probability:.3f}",
-            three_digits(judged.hypothesis.fit.over_noise),
-            three_digits(judged.over_noise),
+            ratio(judged.hypothesis.fit.over_noise),
+            ratio(judged.over_noise),
         )
     yield table

@@ -7,7 +7,7 @@ from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.told_numbers import with_interval
 from hydrolek_drake.physics.parameters import Parameter
-from hydrolek_drake.replay.display import shown, three_digits
+from hydrolek_drake.replay.display import ratio, shown
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.rig import declaration
 
@@ -162,4 +162,4 @@ def _listed(titles: Sequence[str]) -> str:
 
 
 def _ratio(over_noise: float) -> str:
-    return f"{three_digits(over_noise)} times"
+    return f"{ratio(over_noise)} times"

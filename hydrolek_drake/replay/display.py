@@ -20,6 +20,11 @@ def three_digits(value: float) -> str:
     return f"{float(f'{value:.3g}'):g}"
 
 
+def ratio(value: float) -> str:
+    """A ratio to three digits, zeros too, so that ratios stand below each other: 1.00, 26.3, 1260."""
+    return f"{value:#.3g}" if abs(value) < 99.95 else three_digits(value)
+
+
 def shown(value: float, unit: str) -> str:
     """A value given in SI, with three digits and the unit that people use; a mere number without one."""
     number = three_digits(value * display_factor(unit))

@@ -6,7 +6,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.intervals import Interval
 from hydrolek_drake.diagnosis.told_numbers import quantity, with_interval
-from hydrolek_drake.replay.display import three_digits
+from hydrolek_drake.replay.display import ratio, three_digits
 
 
 @pytest.mark.parametrize(
@@ -15,6 +15,13 @@ from hydrolek_drake.replay.display import three_digits
 )
 def test_three_digits_and_no_exponent_where_none_is_needed(value: float, told: str) -> None:
     assert three_digits(value) == told
+
+
+@pytest.mark.parametrize(
+    ("value", "told"), [(1.0, "1.00"), (0.99612, "0.996"), (26.34, "26.3"), (99.96, "100"), (1262.4, "1260")]
+)
+def test_ratios_keep_their_zeros(value: float, told: str) -> None:
+    assert ratio(value) == told
 
 
 @pytest.mark.parametrize(
