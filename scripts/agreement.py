@@ -24,7 +24,8 @@ from hydrolek_drake.rigs.reading import rig_from_tree
 from hydrolek_drake.rigs.rig import Rig
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.station.simulation import command_source, run
-from hydrolek_drake.station.station import StepSizes, make_station
+from hydrolek_drake.station.station import make_station
+from hydrolek_drake.station.step_sizes import StepSizes
 
 JOINTS = [f"hydrolek_{side}_j{number}" for side in ("right", "left") for number in range(1, 6)]
 GRAVITY = UniformGravityFieldElement.kDefaultStrength  # m/s^2, of Drake and of the arms

@@ -27,7 +27,8 @@ from hydrolek_drake.identification.parameter_set import free_parameters
 from hydrolek_drake.recordings import read_recording, write_signals
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.station.simulation import command_source, run
-from hydrolek_drake.station.station import StepSizes, make_station
+from hydrolek_drake.station.station import make_station
+from hydrolek_drake.station.step_sizes import StepSizes
 
 RIDDLES = Path(__file__).parent / "riddles.yaml"
 SPREAD = 0.05

@@ -15,7 +15,8 @@ from hydrolek_drake.benchmark.plain_bench import simulate_plainly
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.station.simulation import command_source, run
-from hydrolek_drake.station.station import StepSizes, make_station
+from hydrolek_drake.station.station import make_station
+from hydrolek_drake.station.step_sizes import StepSizes
 
 REFERENCE_STEP = 1e-5  # seconds; the step that the rollout's error is measured against
 

@@ -28,7 +28,7 @@ from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.forward import wrist_position
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.station.station import StepSizes
+from hydrolek_drake.station.step_sizes import StepSizes
 
 MODEL_JOINTS = ("j1", "j2", "j3", "j4")
 MACHINE_JOINTS = tuple(f"{arm}_j{number}" for arm in ("right", "left") for number in range(1, 6))

@@ -15,7 +15,8 @@ from hydrolek_drake.control.law import Array, ControlLaw
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.station.simulation import initial_context
-from hydrolek_drake.station.station import INTEGRATORS, StepSizes, make_station
+from hydrolek_drake.station.station import make_station
+from hydrolek_drake.station.step_sizes import INTEGRATORS, StepSizes
 
 _EARLY = 1e-9  # seconds by which set points come early, so that rounding never makes them a sample late
 _PROGRESS_S = 0.5

@@ -55,7 +55,8 @@ def _simulated(rig: Rig, group: Sequence[Experiment]) -> list[Experiment]:
     """The joints of one recording, beside each other in the Diagram."""
     # Drake takes a second to load, and joints mostly move alone
     from hydrolek_drake.station.simulation import command_source, initial_context, run
-    from hydrolek_drake.station.station import StepSizes, make_station
+    from hydrolek_drake.station.station import make_station
+    from hydrolek_drake.station.step_sizes import StepSizes
 
     records = rig.records()
     begin, end = min(float(e.time[0]) for e in group), max(float(e.time[-1]) for e in group)

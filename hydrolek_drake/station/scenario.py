@@ -36,7 +36,7 @@ from hydrolek_drake.rigs.rig import declaration
 from hydrolek_drake.station.commands import Command, parse_command
 from hydrolek_drake.station.fields import quantity, required
 from hydrolek_drake.station.simulation import command_source
-from hydrolek_drake.station.station import StepSizes
+from hydrolek_drake.station.step_sizes import StepSizes
 
 PREFIX = "scenario."
 """What a setting of the scenario begins with; all others are the rig's."""

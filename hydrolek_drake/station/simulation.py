@@ -13,7 +13,8 @@ from pydrake.trajectories import PiecewisePolynomial
 
 from hydrolek_drake.physics import cylinder, load
 from hydrolek_drake.rollout.rollout import rest_pressures, rest_tilt_and_lead
-from hydrolek_drake.station.station import INTEGRATORS, Station
+from hydrolek_drake.station.station import Station
+from hydrolek_drake.station.step_sizes import INTEGRATORS
 
 _EARLY = (
     1e-9  # seconds by which a played-back command comes early, so that rounding never makes it a step late

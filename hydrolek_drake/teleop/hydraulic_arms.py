@@ -17,7 +17,8 @@ from hydrolek_drake.kinematics.chain import SIDES
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.station.plant import RigPlant
 from hydrolek_drake.station.simulation import initial_context
-from hydrolek_drake.station.station import Station, StepSizes, make_station
+from hydrolek_drake.station.station import Station, make_station
+from hydrolek_drake.station.step_sizes import StepSizes
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.signals import Signals
 from hydrolek_drake.workcell.grip_contact import GripContact

@@ -8,7 +8,7 @@ from hydrolek_drake.control.closed_loop import loop_on_rollout
 from hydrolek_drake.control.controlled_station import run_controlled
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.station.station import StepSizes
+from hydrolek_drake.station.step_sizes import StepSizes
 
 JOINT = "right_j2"
 

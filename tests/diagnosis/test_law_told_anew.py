@@ -21,7 +21,8 @@ from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs.short_law import terms_of
 from hydrolek_drake.station.simulation import command_source, run
-from hydrolek_drake.station.station import StepSizes, make_station
+from hydrolek_drake.station.station import make_station
+from hydrolek_drake.station.step_sizes import StepSizes
 
 SHAKEN, _ = MOVING = ("right_j2", "right_j3")
 TIME = np.arange(0.0, 6.0 + 0.005, 0.01)

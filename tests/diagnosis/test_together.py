@@ -11,7 +11,8 @@ from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.station.simulation import command_source, run
-from hydrolek_drake.station.station import StepSizes, make_station
+from hydrolek_drake.station.station import make_station
+from hydrolek_drake.station.step_sizes import StepSizes
 
 MOVING = ("right_j2", "right_j3")
 TIME = np.arange(0.0, 8.0 + 0.005, 0.01)

@@ -10,7 +10,8 @@ from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.station.simulation import command_source, run
-from hydrolek_drake.station.station import StepSizes, make_station
+from hydrolek_drake.station.station import make_station
+from hydrolek_drake.station.step_sizes import StepSizes
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
 import agreement  # the study that docs/agreement.md records, here for a few seconds a case

@@ -7,7 +7,8 @@ import yaml
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import rest_state, roll_out
 from hydrolek_drake.station.simulation import command_source, initial_context, run
-from hydrolek_drake.station.station import StepSizes, make_station
+from hydrolek_drake.station.station import make_station
+from hydrolek_drake.station.step_sizes import StepSizes
 
 CASES = {"emps_published": (0.0, 1.5, 0.02), "festo_tp511": (0.05, 2.0, 0.05), "patu_lift": (0.2, 5.0, 0.3)}
 

@@ -12,7 +12,8 @@ from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rigs.short_law import UNITS, terms_of
 from hydrolek_drake.rollout.rollout import roll_out
 from hydrolek_drake.station.simulation import command_source, initial_context, run
-from hydrolek_drake.station.station import StepSizes, make_station
+from hydrolek_drake.station.station import make_station
+from hydrolek_drake.station.step_sizes import StepSizes
 
 TIMES = np.arange(0.0, 3.0, 0.01)
 COMMAND = np.where(TIMES < 0.3, 0.0, 5.0 * np.sign(np.sin(2.0 * np.pi * 0.45 * (TIMES - 0.3))))

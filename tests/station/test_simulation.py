@@ -8,7 +8,8 @@ from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.runs.running import ScenarioRun, run_scenario
 from hydrolek_drake.station.scenario import load_scenario
 from hydrolek_drake.station.simulation import command_source, run
-from hydrolek_drake.station.station import StepSizes, make_station
+from hydrolek_drake.station.station import make_station
+from hydrolek_drake.station.step_sizes import StepSizes
 
 TURNED = {"j1", "j4", "j6"}  # these turn the other way on the left arm
 LIFTING = ("j2", "j3", "j5")  # they carry the arm's weight, and fall when their angle falls

@@ -1,0 +1,41 @@
+"""How finely a diagram runs, and with which integrator."""
+
+from dataclasses import dataclass
+
+from hydrolek_drake.errors import InputError
+
+INTEGRATORS = {
+    "runge_kutta3": "runge_kutta3",
+    "runge_kutta2": "runge_kutta2",
+    "symplectic_euler": "semi_explicit_euler",
+}
+"""How a diagram may be integrated -> Drake's name for it. With the actuators' forces one step ahead, Drake's
+semi-explicit Euler is symplectic in pressure and velocity too."""
+
+
+@dataclass(frozen=True)
+class StepSizes:
+    """How finely a diagram runs.
+
+    Attributes:
+        step: of the spools, the transport delay and the integrator [s].
+        plant_step: of a discrete MultibodyPlant [s], as contact needs it; 0 for a continuous plant, which is
+            more accurate.
+        log_period: how often signals are written [s].
+        integrator: one of `INTEGRATORS`. "runge_kutta3" bears oil springs that nothing damps, such as a wrist whose
+            valves are closed while the arm is thrown about; "runge_kutta2" asks for two evaluations a step instead
+            of three and feeds such a spring's oscillation; "symplectic_euler" asks for one and is of first order.
+        mount_forces: whether cylinders push at their mounting points, as in the thesis (4.2.4), or act by
+            force times lever on their joint, which is the same by virtual work and takes less time.
+    """
+
+    step: float = 1e-3
+    plant_step: float = 0.0
+    log_period: float = 1e-2
+    integrator: str = "runge_kutta3"
+    mount_forces: bool = True
+
+    def __post_init__(self) -> None:
+        """Refuse an integrator that the actuators are not built for."""
+        if self.integrator not in INTEGRATORS:
+            raise InputError(f"integrator '{self.integrator}' is unknown; use {' or '.join(INTEGRATORS)}")
