@@ -1,12 +1,22 @@
-"""Short recordings of the bench, made by its own rollout."""
+"""Short recordings of the bench, made by its own rollout, and laws that are sought in them."""
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from hydrolek_drake.diagnosis import law_scan, law_search, unlisted
+from hydrolek_drake.diagnosis.baseline import fit_baseline
+from hydrolek_drake.diagnosis.effort import POLISH
+from hydrolek_drake.diagnosis.judged import Judged
+from hydrolek_drake.diagnosis.law_problem import FoundLaw
+from hydrolek_drake.diagnosis.unlisted import find_law
+from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.parameter_set import free_parameters
 from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.recordings import Recording
@@ -66,3 +76,37 @@ def recorded() -> Callable[..., list[Experiment]]:
         return experiments_of(model, Recording("made", time, signals, Path("made.csv")))
 
     return make
+
+
+@pytest.fixture
+def in_less_time(monkeypatch) -> None:
+    """For laws that are not periodic: up to 4 Hz with free rollouts alone, at seven of eleven inputs."""
+    own = unlisted.inputs_of
+    left_out = ("command", "amplifier", "back_a", "back_b")
+    monkeypatch.setattr(law_scan, "HIGHEST_HZ", 4.0)
+    monkeypatch.setattr(law_search, "shaking", lambda *given: [])
+    monkeypatch.setattr(
+        unlisted, "inputs_of", lambda *given: tuple(i for i in own(*given) if i.probe not in left_out)
+    )
+
+
+@pytest.fixture
+def with_fewer_laws(monkeypatch) -> None:
+    """Half as many first fits, where what is right promises much."""
+    monkeypatch.setattr(unlisted, "TRIED", 12)
+
+
+@pytest.fixture
+def sought() -> Callable[..., tuple[Workbench, Judged, FoundLaw | None]]:
+    """(bench, training, held-out data) -> workbench, fitted nominal model, the law that is found beside it."""
+
+    def seek(bench, training, held_out):
+        with ThreadPoolExecutor(2) as pool:
+            workbench = Workbench(bench, free_parameters(bench), training, pool)
+            nominal = workbench.refit(fit_baseline(workbench), workbench.fine, POLISH)
+            left = workbench.residuals(nominal, held_out, workbench.fine)
+            judged = Judged(nominal, left, sum(e.counted for e in held_out))
+            scales = natural_scales(bench, "joint", training)
+            return workbench, judged, find_law(workbench, judged, held_out, scales)
+
+    return seek
