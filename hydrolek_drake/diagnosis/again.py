@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from hydrolek_drake.diagnosis.attempt import Known, attempt, attempted, unexcited
+from hydrolek_drake.diagnosis.attempt import PREDICTED, Known, attempt, attempted, unexcited
 from hydrolek_drake.diagnosis.balance import told, weighed, weights_by
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, conclude
@@ -15,7 +15,7 @@ from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.overlooked import enlargeable, overlooked
 from hydrolek_drake.diagnosis.search import LAW_COSTS, search_on
 from hydrolek_drake.diagnosis.splitting import mixed
-from hydrolek_drake.diagnosis.unsticking import from_other_sizes
+from hydrolek_drake.diagnosis.unsticking import fit_pulled, from_other_sizes, own_values
 from hydrolek_drake.diagnosis.weighing import NEARER
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -134,6 +134,38 @@ def by_both_as_found(
         return None  # what only imitates the missing physics hardly reaches the noise of both
     say("fitted to parts of both recordings the same model explains both: going on from there")
     return _gone_on(known, again, [known.found.baseline, fitted], kept, candidates, say, accounted=True)
+
+
+def by_own_numbers(known: Known, candidates: Sequence[Candidate], say: Callable[[str], None]) -> Known | None:
+    """The search gone on with from the rig's own numbers, where the effects that were found go astray ahead.
+
+    The nominal model had bent its numbers before the effects were there, and the fit may have ended in a hollow. Where
+    the noise is told too high that looks as if nothing was left, so that nothing led it on (`improving.lead_on`).
+    None where the effects predict as a right model does, or nothing else explains more.
+
+    Args:
+        known: what was found.
+        candidates: every effect that may be missing.
+        say: told what is being done.
+
+    Raises:
+        KeyboardInterrupt: it was interrupted.
+    """
+    best, bench = known.conclusion.best, known.bench
+    named = best.hypothesis
+    if not named.effects or best.over_noise <= PREDICTED:
+        return None
+    say("fitting what was found from the rig's own numbers")
+    as_it_is = bench.refit(named, bench.fine, 1)
+    own = own_values(bench, named.effects, named.values)
+    pulled = fit_pulled(bench, named.effects, [own], bench.fine, bench.training)
+    led = min(
+        bench.side_by_side(lambda near: bench.refit(near, bench.fine, LOOK), (named, pulled)),
+        key=lambda h: h.fit.objective,
+    )
+    if as_it_is.fit.objective - led.fit.objective < gain_needed(led.fit):
+        return None
+    return _gone_on(known, bench, [known.found.baseline, led], known.held_out, candidates, say)
 
 
 def in_place_of_law(

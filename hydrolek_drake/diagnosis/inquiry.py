@@ -8,6 +8,7 @@ from hydrolek_drake.diagnosis.again import (
     by_both,
     by_both_as_found,
     by_more_data,
+    by_own_numbers,
     by_their_noise,
     by_what_was_overlooked,
     in_place_of_law,
@@ -97,6 +98,7 @@ class Inquiry:
             return Answer(known, conclusion, None, (INTERRUPTED,))
         answer = Answer(known, known.conclusion)
         questions: tuple[Callable[[Answer], Answer], ...] = (
+            self._by_own_numbers,
             self._by_both_as_found,
             self._by_a_law_at_once,
             self._by_effects_elsewhere,
@@ -132,6 +134,13 @@ class Inquiry:
     def _alone(self) -> Scales | None:
         """Scales of the only joint that was driven, if there may be a law at it."""
         return None if self.several else next(iter(self.scales.values()), None)
+
+    def _by_own_numbers(self, answer: Answer) -> Answer:
+        """The effects that were found, fitted from the rig's own numbers where they go astray ahead."""
+        if self.several:
+            return answer
+        other = by_own_numbers(answer.known, self.candidates, self.say)
+        return answer if other is None else Answer(other, other.conclusion)
 
     def _by_both_as_found(self, answer: Answer) -> Answer:
         """The model that explains the training data, if parts of both lead it to where it explains both."""

@@ -8,13 +8,13 @@ import pytest
 from scipy.stats import chi2
 
 from hydrolek_drake.diagnosis import again
-from hydrolek_drake.diagnosis.again import by_both, by_both_as_found
-from hydrolek_drake.diagnosis.attempt import Known
+from hydrolek_drake.diagnosis.again import by_both, by_both_as_found, by_own_numbers
+from hydrolek_drake.diagnosis.attempt import PREDICTED, Known
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import candidates_of
-from hydrolek_drake.diagnosis.conclusion import EXPLAINED, conclude
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED, EXPLAINED_AHEAD, conclude
 from hydrolek_drake.diagnosis.effort import LOOK
-from hydrolek_drake.diagnosis.evidence import judge
+from hydrolek_drake.diagnosis.evidence import judge, judge_as_fitted
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.hollows import MOST_STARTS, _evenly, deepest, strayed
 from hydrolek_drake.diagnosis.score import scores_of
@@ -140,3 +140,30 @@ def test_starts_are_thinned_evenly(count: int) -> None:
     chosen = _evenly(starts)
     assert min(count, 5) <= len(chosen) <= MOST_STARTS
     assert len({b["at"] - a["at"] for a, b in pairwise(chosen)}) <= 1
+
+
+def test_effects_that_go_astray_ahead_are_fitted_from_the_rigs_own_numbers(known_so_far) -> None:
+    """Once the effect is there, numbers that the nominal model had bent are not led back by themselves."""
+    known, candidates = known_so_far(COULOMB, {"coulomb_N": 1200.0}, (COULOMB,), RIVALS[:1])
+    right = known.conclusion.best
+    assert [c.id for c in right.hypothesis.effects] == [COULOMB] and right.over_noise < PREDICTED
+    assert by_own_numbers(known, candidates, lambda text: None) is None
+
+    bench, held_out = known.bench, known.held_out
+    values = right.hypothesis.values
+    astray = bench.fit(
+        right.hypothesis.effects, values | {"supply.pressure": 1.2 * values["supply.pressure"]}, bench.fine, 1
+    )
+    found = Search(scores=known.found.scores)
+    found.keep(known.found.baseline)
+    found.keep(astray)
+    judged = judge_as_fitted(bench, list(found.hypotheses.values()), held_out)
+    gone = next(j for j in judged if j.hypothesis is astray)
+    assert gone.over_noise > PREDICTED
+    known = replace(known, found=found, judged=tuple(judged), conclusion=replace(known.conclusion, best=gone))
+    second = by_own_numbers(known, candidates, lambda text: None)
+    best = second.conclusion.best
+    assert [c.id for c in best.hypothesis.effects] == [COULOMB] and best.over_noise < EXPLAINED_AHEAD
+    assert best.hypothesis.values[f"joints.joint.effects.{COULOMB}.coulomb_N"] == pytest.approx(
+        1200.0, rel=0.1
+    )
