@@ -15,7 +15,7 @@ from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.overlooked import enlargeable, overlooked
 from hydrolek_drake.diagnosis.search import LAW_COSTS, search_on
 from hydrolek_drake.diagnosis.splitting import mixed
-from hydrolek_drake.diagnosis.unsticking import fit_pulled, from_other_sizes, own_values
+from hydrolek_drake.diagnosis.unsticking import from_other_sizes, pulled_from_own
 from hydrolek_drake.diagnosis.weighing import NEARER
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -157,12 +157,7 @@ def by_own_numbers(known: Known, candidates: Sequence[Candidate], say: Callable[
         return None
     say("fitting what was found from the rig's own numbers")
     as_it_is = bench.refit(named, bench.fine, 1)
-    own = own_values(bench, named.effects, named.values)
-    pulled = fit_pulled(bench, named.effects, [own], bench.fine, bench.training)
-    led = min(
-        bench.side_by_side(lambda near: bench.refit(near, bench.fine, LOOK), (named, pulled)),
-        key=lambda h: h.fit.objective,
-    )
+    led = bench.refit(pulled_from_own(bench, named, bench.fine, bench.training), bench.fine, LOOK)
     if as_it_is.fit.objective - led.fit.objective < gain_needed(led.fit):
         return None
     return _gone_on(known, bench, [known.found.baseline, led], known.held_out, candidates, say)

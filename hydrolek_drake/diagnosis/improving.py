@@ -22,7 +22,7 @@ from hydrolek_drake.diagnosis.unsticking import (
     fit_pulled,
     from_other_sizes,
     led_on,
-    own_values,
+    pulled_from_own,
     started_again,
 )
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, key_of
@@ -150,8 +150,7 @@ def lead_on(bench: Workbench, found: Search) -> None:
     best = found.best
     if not best.effects or not AT_NOISE < best.fit.over_noise < FAR:
         return
-    own = own_values(bench, best.effects, best.values)
-    again = fit_pulled(bench, best.effects, [own], bench.fine, bench.training)
+    again = pulled_from_own(bench, best, bench.fine, bench.training)
     for _ in range(2):
         again = bench.refit(again, bench.fine, LOOK)
     found.keep(again)

@@ -12,7 +12,7 @@ from hydrolek_drake.diagnosis.law_problem import SCAN_S, Law
 from hydrolek_drake.diagnosis.law_terms import TRIED, gain_along
 from hydrolek_drake.diagnosis.laws import TERMS, Span, law_record
 from hydrolek_drake.diagnosis.score import Across
-from hydrolek_drake.diagnosis.unsticking import fit_pulled, own_values
+from hydrolek_drake.diagnosis.unsticking import pulled_from_own
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
@@ -172,8 +172,7 @@ def shaking(
     if all(given.probe in STEADY for given in inputs):
         return []
     part = [bench.training[0].until(LONGER_S)]
-    own = own_values(bench, left.effects, left.values)
-    pulled = fit_pulled(bench, left.effects, [own], step, part)
+    pulled = pulled_from_own(bench, left, step, part)
     above = pulled.fit.objective - pulled.fit.counted
     if pulled.fit.over_noise <= ABOVE_NOISE or above < gain_needed(pulled.fit):
         return []

@@ -101,6 +101,21 @@ def fit_pulled(
     return fitted
 
 
+def pulled_from_own(
+    bench: Workbench, hypothesis: Hypothesis, step: float, experiments: Sequence[Experiment]
+) -> Hypothesis:
+    """A model fitted with pulled rollouts from the rig's own numbers, with its effects where they are.
+
+    Args:
+        bench: data and fits.
+        hypothesis: the model.
+        step: of the integration [s].
+        experiments: to be fitted.
+    """
+    own = own_values(bench, hypothesis.effects, hypothesis.values)
+    return fit_pulled(bench, hypothesis.effects, [own], step, experiments)
+
+
 def from_other_sizes(bench: Workbench, hypothesis: Hypothesis, up_to: float) -> list[Hypothesis]:
     """A model with something sudden that is near the noise and not at it, fitted again from sizes near by.
 

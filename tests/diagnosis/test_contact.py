@@ -83,7 +83,7 @@ def test_of_all_data_the_right_stage_leaves_least_and_no_more_than_noise(bench, 
         for given in inputs_of(scales, bench.value("supply.pressure"), 10.0, "rad"):
             if given.probe not in ("load", "cylinder"):
                 continue
-            law = Law(given, (term,), 0.0, 0.0, (0.1 * size / abs(size),))
+            law = Law(given, (term,), 0.0, 0.0, (-0.1,))
             _, *at = glance(workbench, nominal, law, span, 2.0 * workbench.fine)
             found = fitted(workbench, nominal, law, held_out, span, at, workbench.fine)
             left[given.probe] = left_of_all(workbench, nominal, found, held_out, workbench.fine)

@@ -147,15 +147,11 @@ def test_a_law_in_place_of_effects_must_outdo_them(law, effects, left, better) -
     ("of_the_machine", "two_leave", "most_rounds", "asked_at", "told"),
     [
         (True, 1.0, 2, [1], True),  # a law of the machine ends the search
-        (
-            False,
-            1.0,
-            2,
-            [1],
-            False,
-        ),  # what is the recordings' own waits until two effects have been tried, ...
-        (False, 1.5, 2, [1], True),  # ... stays if they do not do better, ...
-        (False, 1.0, 3, [1, 2], False),  # ... and gives way to another law if they do and leave something
+        # what is the recordings' own waits until two effects have been tried, stays if they do not do better, ...
+        (False, 1.0, 2, [1], False),
+        (False, 1.5, 2, [1], True),
+        # ... and gives way to another law if they do and leave something
+        (False, 1.0, 3, [1, 2], False),
     ],
 )
 def test_two_effects_are_tried_before_what_is_the_recordings_own(
