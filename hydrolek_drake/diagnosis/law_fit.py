@@ -14,6 +14,7 @@ from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit, fit_from, fit_from_afar
 from hydrolek_drake.identification.parameter_set import ParameterSet
+from hydrolek_drake.identification.problem import PULLS_S
 from hydrolek_drake.identification.valleys import along_valleys
 
 STEPS, GLANCE = 15, 4
@@ -22,6 +23,9 @@ STEPS, GLANCE = 15, 4
 CHANCE = 2.0
 """Fall of the squared residuals that one parameter more must bring, of two laws that do as well (Akaike, A new look at
 the statistical model identification, IEEE Transactions on Automatic Control 19, 1974)."""
+
+BEGUN = (0.3, 0.1, 0.03, 0.01)
+"""Amplitudes, in scales of the input, at which a fit from the rig's own numbers may begin."""
 
 PHASES = 12
 """Where a periodic law may stand when a recording begins is first tried at so many places."""
@@ -33,8 +37,9 @@ def glance(
     """A few steps with a law on the first part of the training data.
 
     Begun at the fitted values of the model that leaves the mismatch and at the rig's own, which were not bent to
-    make up for what is missing. The latter is far off, so that pulled rollouts go ahead; but for a periodic law, which
-    no constant of the rig could make up for, unless pulled rollouts told it.
+    make up for what is missing. The latter is far off, so that pulled rollouts go ahead, from the amplitude at which
+    they fit best: what was promised beside bent numbers may be far from it. But for a periodic law, which no constant
+    of the rig could make up for, unless pulled rollouts told it.
 
     Returns:
         Squared residuals, nominal parameters and the law's values (SI), the best of both.
@@ -49,6 +54,8 @@ def glance(
     for values, first_fit in (from_own,) if law.pulled else ((left.values, fit_from), from_own):
         unit = parameters.unit(values)
         own_values = law.begun(law.input.scale * np.array(law.amplitudes))
+        if first_fit is fit_from_afar and not law.periodic:
+            own_values = begun_from_afar(LawProblem(parameters, bench.beginning(), step, law, span), unit)
         for part in (scanned, bench.beginning()) if law.periodic else (bench.beginning(),):
             problem = LawProblem(parameters, part, step, law, span)
             start = problem.start(unit, own_values)
@@ -58,6 +65,25 @@ def glance(
         ended.append((fit.objective, unit, own_values))
     objective, unit, own_values = min(ended, key=lambda end: end[0])
     return objective, parameters.values(unit), own_values
+
+
+def begun_from_afar(problem: LawProblem, unit: np.ndarray) -> np.ndarray:
+    """The values at which the fit of a law of one term begins from far off: where tightly pulled rollouts fit best.
+
+    Beside numbers that were bent to make up for a law, the amplitude that it promises may be a tenth of its own, or
+    have the other sign.
+
+    Args:
+        problem: the data with the law.
+        unit: place of the nominal parameters in the unit cube. # (n,)
+    """
+    law, pulled = problem.law, problem.pulled(PULLS_S[0])
+    signs = (1.0,) if law.input.one_sided else (1.0, -1.0)
+    tried = [law.amplitudes, *((sign * size,) for size in BEGUN for sign in signs)]
+    values = [law.begun(law.input.scale * np.array(sizes)) for sizes in tried]
+    left = [float(np.sum(pulled.residuals(problem.start(unit, each)) ** 2)) for each in values]
+    problem.evaluations += pulled.evaluations
+    return values[int(np.argmin(left))]
 
 
 def fitted(

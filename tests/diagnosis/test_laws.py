@@ -9,9 +9,9 @@ import pytest
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.effort import POLISH
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig
-from hydrolek_drake.diagnosis.law_fit import fitted, glance
+from hydrolek_drake.diagnosis.law_fit import begun_from_afar, fitted, glance
 from hydrolek_drake.diagnosis.law_inputs import Input, inputs_of
-from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
+from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law, LawProblem
 from hydrolek_drake.diagnosis.law_search import promising
 from hydrolek_drake.diagnosis.law_terms import gain_along
 from hydrolek_drake.diagnosis.laws import Term, law_record, span_of
@@ -152,6 +152,26 @@ def test_a_first_fit_finds_a_law_for_which_the_nominal_model_bent_its_numbers_fa
     assert nominal.fit.over_noise > 50.0
     assert values == pytest.approx([large], rel=0.02)
     assert left < 1.1**2 * sum(e.counted for e in training)
+
+
+@pytest.mark.parametrize(
+    ("probe", "planted"),
+    [("capacity_a", HOSE), ("supply", -RIPPLE), ("cylinder", 900.0), ("flow_force", 0.1)],
+)
+def test_a_fit_from_afar_begins_near_what_is_there_whatever_was_promised(
+    bench, recorded, probe, planted
+) -> None:
+    """The nearest of the sizes that are tried, or its neighbour, with the right sign."""
+    training = recorded(bench, bench, largest_V=7.0, pressure_noise_Pa=2e4, unknown=(probe, planted))
+    given = next(given for given in _inputs(bench, training) if given.probe == probe)
+    span = span_of([e.simulate(bench.records()).signals for e in training], bench.records()[0], 12.0, "rad")
+    promised = -1e-3 * planted / given.scale
+    law = Law(given, (Term(()),), 0.0, 0.0, (0.0 if given.one_sided else promised,))
+    with ThreadPoolExecutor(1) as pool:
+        parameters = Workbench(bench, free_parameters(bench), training, pool).parameters(())
+    problem = LawProblem(parameters, training, 1e-3, law, span)
+    (begun,) = begun_from_afar(problem, parameters.unit({}))
+    assert 1 / 3 < begun / planted < 3
 
 
 def test_a_law_says_what_its_letters_mean(bench) -> None:
