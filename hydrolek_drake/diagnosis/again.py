@@ -137,11 +137,13 @@ def by_both_as_found(
 
 
 def by_own_numbers(known: Known, candidates: Sequence[Candidate], say: Callable[[str], None]) -> Known | None:
-    """The search gone on with from the rig's own numbers, where the effects that were found go astray ahead.
+    """The search gone on with from the rig's own numbers, where effects that were found go astray ahead.
 
-    The nominal model had bent its numbers before the effects were there, and the fit may have ended in a hollow. Where
-    the noise is told too high that looks as if nothing was left, so that nothing led it on (`improving.lead_on`).
-    None where the effects predict as a right model does, or nothing else explains more.
+    The nominal model had bent its numbers before the effects were there, and their fit may have ended in a hollow.
+    Where the noise is told too high that looks as if nothing was left, so that nothing led it on
+    (`improving.lead_on`). So are effects that explain more of the training data than those that are named, and were
+    dismissed for what they predict. What their numbers' uncertainty accounts for is explained; more data are asked then
+    (`by_more_data`). None where nothing else explains more.
 
     Args:
         known: what was found.
@@ -151,16 +153,31 @@ def by_own_numbers(known: Known, candidates: Sequence[Candidate], say: Callable[
     Raises:
         KeyboardInterrupt: it was interrupted.
     """
-    best, bench = known.conclusion.best, known.bench
-    named = best.hypothesis
-    if not named.effects or best.over_noise <= PREDICTED:
+    bench, named, most = known.bench, known.conclusion.best.hypothesis, known.found.best
+    astray = [named] if known.conclusion.best.over_noise > PREDICTED else []
+    if named.ids in known.found.hypotheses and most.ids != named.ids:
+        as_searched = known.found.hypotheses[named.ids].fit
+        if as_searched.objective - most.fit.objective > gain_needed(most.fit):
+            astray.append(most)
+    astray = [h for h in astray if h.effects]
+    if not astray:
         return None
-    say("fitting what was found from the rig's own numbers")
-    as_it_is = bench.refit(named, bench.fine, 1)
-    led = bench.refit(pulled_from_own(bench, named, bench.fine, bench.training), bench.fine, LOOK)
-    if as_it_is.fit.objective - led.fit.objective < gain_needed(led.fit):
+    say("fitting what goes astray on held-out data from the rig's own numbers")
+
+    def led(model: Hypothesis) -> Hypothesis | None:
+        """Fitted from there, if that explains more."""
+        as_it_is = bench.refit(model, bench.fine, 1)
+        other = bench.refit(pulled_from_own(bench, model, bench.fine, bench.training), bench.fine, LOOK)
+        return other if as_it_is.fit.objective - other.fit.objective > gain_needed(other.fit) else None
+
+    better = [h for h in bench.side_by_side(led, astray) if h is not None]
+    if not better:
         return None
-    return _gone_on(known, bench, [known.found.baseline, led], known.held_out, candidates, say)
+    fits = [known.found.baseline, *better]
+    second = _gone_on(known, bench, fits, known.held_out, candidates, say, accounted=True)
+    if second is None or second.conclusion.best.unaccounted >= known.conclusion.best.unaccounted:
+        return None
+    return second
 
 
 def in_place_of_law(

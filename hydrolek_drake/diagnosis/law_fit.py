@@ -68,7 +68,7 @@ def glance(
 
 
 def begun_from_afar(problem: LawProblem, unit: np.ndarray) -> np.ndarray:
-    """The values at which the fit of a law of one term begins from far off: where tightly pulled rollouts fit best.
+    """The values at which the fit of a law begins from far off: for one term, where tightly pulled rollouts fit best.
 
     Beside numbers that were bent to make up for a law, the amplitude that it promises may be a tenth of its own, or
     have the other sign.
@@ -79,7 +79,8 @@ def begun_from_afar(problem: LawProblem, unit: np.ndarray) -> np.ndarray:
     """
     law, pulled = problem.law, problem.pulled(PULLS_S[0])
     signs = (1.0,) if law.input.one_sided else (1.0, -1.0)
-    tried = [law.amplitudes, *((sign * size,) for size in BEGUN for sign in signs)]
+    others = [(sign * size,) for size in BEGUN for sign in signs] if law.sizes == 1 else []
+    tried = [law.amplitudes, *others]
     values = [law.begun(law.input.scale * np.array(sizes)) for sizes in tried]
     left = [float(np.sum(pulled.residuals(problem.start(unit, each)) ** 2)) for each in values]
     problem.evaluations += pulled.evaluations

@@ -80,13 +80,16 @@ def _with_one_more(
         records_of(law.law, law.span, law.values),
     )
     free = [term for term in TERMS if term not in law.law.terms]
-    scored = sorted(terms_scored(bench, model, law.law.input, free), key=lambda s: -s[1])
+    scored = sorted(terms_scored(bench, model, law.law.input, free), key=lambda told: -told.gain)
     scale = law.law.input.scale
     sizes, where = law.values[: law.law.sizes], law.law.at(law.values).terms
     further = [
-        (replace(law.law, terms=(*where, term), gain=gain), np.append(sizes, scale * start))
-        for term, gain, start in scored[:FOLLOWED]
-        if gain > GAIN_NEEDED
+        (
+            replace(law.law, terms=(*where, *told.terms), gain=told.gain),
+            np.append(sizes, scale * np.array(told.starts)),
+        )
+        for told in scored[:FOLLOWED]
+        if told.gain > GAIN_NEEDED and len(where) + len(told.terms) <= LONGEST
     ]
     return [
         fitted(bench, left, more, held_out, law.span, (law.parameters, more.begun(amplitudes)), step)

@@ -35,8 +35,8 @@ def promising(
 
     def of_terms(given: Input) -> list[Law]:
         return [
-            Law(given, (term,), 0.0, gain, (start,))
-            for term, gain, start in terms_scored(bench, model, given, terms)
+            Law(given, told.terms, 0.0, told.gain, told.starts)
+            for told in terms_scored(bench, model, given, terms)
         ]
 
     found = [law for laws in bench.side_by_side(of_terms, inputs if terms else ()) for law in laws]

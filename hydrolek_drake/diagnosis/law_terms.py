@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.diagnosis.law_inputs import Input
-from hydrolek_drake.diagnosis.laws import TERMS, Span, Term, law_record
+from hydrolek_drake.diagnosis.laws import CONSTANT, TERMS, Span, Term, law_record
 from hydrolek_drake.diagnosis.score import Across, gain_of
 from hydrolek_drake.diagnosis.workbench import Workbench
 
@@ -15,6 +15,10 @@ TRIED = 1e-3
 
 SIZES = (0.3, 0.1, 0.03)
 """Larger amplitudes, where a law may not act in proportion any more."""
+
+
+TOGETHER = 2.0
+"""Two terms are tried at once where together they promise so many times what the better one does alone."""
 
 
 @dataclass(frozen=True)
@@ -38,10 +42,23 @@ class Fitted:
     has: np.ndarray | None = None
 
 
-def terms_scored(
-    bench: Workbench, model: Fitted, given: Input, terms: Sequence[Term]
-) -> list[tuple[Term, float, float]]:
-    """Terms at an input, the fall of the squared residuals that each promises, and where its amplitude may begin.
+@dataclass(frozen=True)
+class Promise:
+    """What one term, or two, would do.
+
+    Attributes:
+        terms: at one input.
+        gain: fall of the squared residuals.
+        starts: where their amplitudes may begin, in scales of the input.
+    """
+
+    terms: tuple[Term, ...]
+    gain: float
+    starts: tuple[float, ...]
+
+
+def terms_scored(bench: Workbench, model: Fitted, given: Input, terms: Sequence[Term]) -> list[Promise]:
+    """What each term at an input promises, and the constant with another one where they do so together.
 
     Args:
         bench: training data.
@@ -61,7 +78,7 @@ def terms_scored(
 
     here = response(TERMS[0], 0.0)
     rest = model.across(np.concatenate([here, model.off]))
-    found = []
+    found, columns = [], []
     for term in (term for term in terms if term.meant_for(given)):
 
         def moved(size: float, term: Term = term) -> np.ndarray:
@@ -70,7 +87,8 @@ def terms_scored(
                 return np.full_like(rest, np.nan)
             return model.across(np.concatenate([there - here, still]))
 
-        gain, amplitudes = gain_along(moved(TRIED)[:, None], rest)
+        columns.append(moved(TRIED))
+        gain, amplitudes = gain_along(columns[-1][:, None], rest)
         if given.one_sided and amplitudes[0] < 0.0:
             gain, amplitudes = 0.0, (0.0,)
         start, least = amplitudes[0], float(np.sum((rest + moved(amplitudes[0])) ** 2))
@@ -80,8 +98,34 @@ def terms_scored(
             gain = max(gain, gain_of(change, rest))
             if remaining < least:
                 least, start = remaining, size
-        found.append((term, gain, start))
-    return found
+        found.append(Promise((term,), gain, (start,)))
+    return found + only_together(found, columns, rest)
+
+
+def only_together(alone: Sequence[Promise], columns: Sequence[np.ndarray], rest: np.ndarray) -> list[Promise]:
+    """The constant with the term that promises most beside it, if that is far more than either promises alone.
+
+    What a pressure opens has a share that is shut and one that grows with the pressure. Where a controller keeps the
+    pressures near one place each of them undoes what the other does, so that neither helps without the other.
+
+    Args:
+        alone: what single terms at an input promise.
+        columns: change of the residuals with each, for `TRIED` of the input's scale. # (values,) each
+        rest: what is left. # (values,)
+
+    Returns:
+        One pair, or none.
+    """
+    constant = next((k for k, each in enumerate(alone) if each.terms[0].name == CONSTANT), None)
+    if constant is None:
+        return []
+    pairs = []
+    for k, each in enumerate(alone):
+        if k != constant:
+            gain, starts = gain_along(np.stack([columns[constant], columns[k]], axis=1), rest)
+            if gain > TOGETHER * max(alone[constant].gain, each.gain):
+                pairs.append(Promise((*alone[constant].terms, *each.terms), gain, starts))
+    return [max(pairs, key=lambda pair: pair.gain)] if pairs else []
 
 
 def gain_along(columns: np.ndarray, rest: np.ndarray) -> tuple[float, tuple[float, ...]]:

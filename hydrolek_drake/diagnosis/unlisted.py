@@ -236,7 +236,7 @@ def followed(ranked: Sequence[Begun]) -> list[Begun]:
 
 
 def worth_trying(laws: Sequence[Law]) -> list[Law]:
-    """The best law of every input and kind first, then the rest, as many as are tried.
+    """The best law of every input and kind (a sine, one term, two) first, then the rest, as many as are tried.
 
     How a machine is built does not change, so that a constant is likely there even if, far from the fitted nominal
     model, another term promises more.
@@ -244,12 +244,12 @@ def worth_trying(laws: Sequence[Law]) -> list[Law]:
     Args:
         laws: what promises most first.
     """
-    seen: set[tuple[str, bool, bool]] = set()
+    seen: set[tuple[str, int, bool]] = set()
     first: list[Law] = []
     built: list[Law] = []
     rest: list[Law] = []
     for law in laws:
-        key = (law.input.probe, law.periodic, law.pulled)
+        key = (law.input.probe, len(law.terms), law.pulled)
         if key not in seen:
             first.append(law)
         elif law.input.probe in STEADY and [term.name for term in law.terms] == [CONSTANT]:
