@@ -1,10 +1,11 @@
 """A law of more terms: a smooth function of one variable is a constant, a slope and a bend of it.
 
-One term after the other is added where it stands already (forward selection), each held against what the law leaves
-as a first one is held against what the model leaves.
+One term after the other is added where it stands already, each held against what the law leaves as a first one is
+held against what the model leaves; what it makes needless is left out again (stepwise selection: Efroymson, Multiple
+regression analysis, 1960).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -62,7 +63,30 @@ def grown(
         ]
         if not better:
             break
-        law = min(better, key=told)
+        law = _without_needless(bench, left, min(better, key=told), held_out, step, told)
+    return law
+
+
+def _without_needless(
+    bench: Workbench,
+    left: Hypothesis,
+    law: FoundLaw,
+    held_out: Sequence[Experiment],
+    step: float,
+    told: Callable[[FoundLaw], tuple[float, float]],
+) -> FoundLaw:
+    """The law without the terms that a later one has made needless: both data do not tell that they are there.
+
+    What the first term imitated, the right one does.
+    """
+    where, sizes = law.law.at(law.values).terms, law.values[: law.law.sizes]
+    for number in range(len(where) - 1):
+        kept = [k for k in range(len(where)) if k != number]
+        fewer = replace(law.law, terms=tuple(where[k] for k in kept))
+        begin = (law.parameters, fewer.begun(sizes[kept]))
+        shorter = fitted(bench, left, fewer, held_out, law.span, begin, step)
+        if told(shorter)[0] < sum(told(law)):
+            return shorter
     return law
 
 

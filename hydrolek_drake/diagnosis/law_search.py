@@ -40,5 +40,7 @@ def promising(
         ]
 
     found = [law for laws in bench.side_by_side(of_terms, inputs if terms else ()) for law in laws]
+    most = max((law.gain for law in found if law.sizes == 1), default=0.0)
+    found = [law for law in found if law.sizes == 1 or law.gain > most]  # else one term elsewhere is simpler
     found += Scan(bench, left, inputs, span, step).laws()
     return found + shaking(bench, left, inputs, span, step)

@@ -14,6 +14,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.attempt import FAR_AHEAD
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.effort import COARSE
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_counterpart import counterpart
@@ -127,12 +129,22 @@ def best_of(bench: Workbench, asked: Asked, laws: Sequence[Law], to_beat: float)
     least = min((found.held_out_over_noise for found in ended), default=math.inf)
     if not least < to_beat:
         return None
-    alike = [found for found in ended if found.held_out_over_noise <= ALIKE * least]
+    alike = [found for found in ended if _predicts_alike(found, least)]
     in_all = [left_in_all(found.fit, found.held_out_over_noise, held_out) for found in alike]
     if len({found.law.input.stage for found in alike}) > 1 and not any(f.law.periodic for f in alike):
         in_all = bench.side_by_side(lambda found: left_of_all(bench, left, found, held_out, finer), alike)
     counted = alike[0].fit.counted + sum(experiment.counted for experiment in held_out)
     return _finished(bench, left, likeliest(alike, in_all, counted), held_out, finer)
+
+
+def _predicts_alike(found: FoundLaw, least: float) -> bool:
+    """Whether a law predicts as the best one does, or explains the training data and goes no more than astray ahead.
+
+    Where it stuck by a hair's breadth, other numbers of the same law may follow both: a fit to all data tells.
+    """
+    ahead = found.held_out_over_noise
+    astray = found.fit.over_noise <= EXPLAINED and ahead <= FAR_AHEAD * least
+    return ahead <= ALIKE * least or (astray and not found.law.periodic)
 
 
 def _finished(
