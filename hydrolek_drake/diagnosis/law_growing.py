@@ -16,7 +16,7 @@ from hydrolek_drake.diagnosis.judged import flatter
 from hydrolek_drake.diagnosis.law_fit import fitted
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, left_in_all, records_of
 from hydrolek_drake.diagnosis.law_terms import Fitted, terms_scored
-from hydrolek_drake.diagnosis.laws import TERMS
+from hydrolek_drake.diagnosis.laws import TERMS, Term
 from hydrolek_drake.diagnosis.score import Across
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -90,6 +90,16 @@ def _without_needless(
     return law
 
 
+def only_difference(term: Term, terms: Sequence[Term]) -> bool:
+    """Whether a term is of the pressures' difference, where one of them has a term already: the other will do.
+
+    Args:
+        term: that may be added.
+        terms: that a law has.
+    """
+    return term.other == "(p_A - p_B)" and any(has.other in ("p_A", "p_B") for has in terms)
+
+
 def _with_one_more(
     bench: Workbench, left: Hypothesis, law: FoundLaw, held_out: Sequence[Experiment], step: float
 ) -> list[FoundLaw]:
@@ -103,7 +113,7 @@ def _with_one_more(
         law.fit.off_prior,
         records_of(law.law, law.span, law.values),
     )
-    free = [term for term in TERMS if term not in law.law.terms]
+    free = [term for term in TERMS if term not in law.law.terms and not only_difference(term, law.law.terms)]
     scored = sorted(terms_scored(bench, model, law.law.input, free), key=lambda told: -told.gain)
     scale = law.law.input.scale
     sizes, where = law.values[: law.law.sizes], law.law.at(law.values).terms

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from hydrolek_drake.diagnosis.law_growing import only_difference
 from hydrolek_drake.diagnosis.law_terms import TRIED, Promise, gain_along, only_together
 from hydrolek_drake.diagnosis.laws import Term
 
@@ -40,3 +41,11 @@ def test_nothing_is_paired_where_a_constant_has_no_meaning_or_one_term_does_it_a
     alone = _alone(columns, rest)
     assert only_together(alone, columns, rest) == []
     assert only_together(alone[1:], columns[1:], columns[0]) == []
+
+
+def test_a_law_of_one_pressure_grows_by_the_other_and_not_by_their_difference() -> None:
+    """Both say the same, and the engineer who knows the valve reads p_A and p_B."""
+    difference = Term((), other="(p_A - p_B)")
+    assert only_difference(difference, (CONSTANT, PILOT))
+    assert not only_difference(difference, (CONSTANT,))
+    assert not only_difference(Term((), other="p_A"), (CONSTANT, PILOT))
