@@ -8,7 +8,7 @@ and Computers, 1993).
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import lsq_linear
@@ -19,6 +19,13 @@ from hydrolek_drake.identification.experiment import Experiment
 
 WINDOW_S = 0.1
 """Length of the windows that are tried, side by side."""
+
+SHORTER = 5
+"""Where windows promise most, and beside them, so many times shorter ones are tried too: what a joint that rings does
+after one lost sample of a controller is not what it does after ten."""
+
+CLOSER = 8
+"""At so many places."""
 
 LONGEST_S = 5.0 * WINDOW_S
 """A command that is lost for longer is a recording of two pieces."""
@@ -62,6 +69,21 @@ class Found:
     promised: float
 
 
+@dataclass(frozen=True)
+class Tried:
+    """A window that is tried.
+
+    Attributes:
+        experiment: number of the recording.
+        begin: [s].
+        length: [s].
+    """
+
+    experiment: int
+    begin: float
+    length: float
+
+
 def found_in(
     bench: Workbench,
     experiments: Sequence[Experiment],
@@ -82,16 +104,16 @@ def found_in(
     ends = np.cumsum([0, *(part.size for part in here)])
     size = ends[-1] + off.size
     tried = [
-        (i, begin)
+        Tried(i, begin, WINDOW_S)
         for i, e in enumerate(experiments)
         for begin in _driven(e, beside[recording_of(e)], neutral)
     ]
 
-    def column(item: tuple[int, float]) -> np.ndarray:
+    def column(window: Tried) -> np.ndarray:
         bench.alive()
-        i, begin = item
-        experiment = experiments[i]
-        windows = in_order(beside[recording_of(experiment)], np.array([[begin, begin + WINDOW_S]]))
+        i, experiment = window.experiment, experiments[window.experiment]
+        lost = np.array([[window.begin, window.begin + window.length]])
+        windows = in_order(beside[recording_of(experiment)], lost)
         moved = np.zeros(size)
         moved[ends[i] : ends[i + 1]] = np.nan_to_num(left_of(experiment, windows) - here[i])
         return moved if across is None else across(moved)
@@ -102,11 +124,36 @@ def found_in(
     if not tried:
         return Found(windows, 0.0)
     columns = np.stack(bench.side_by_side(column, tried), axis=1)
+    shorter = within(tried, _gains(columns, rest))
+    if shorter:
+        tried += shorter
+        columns = np.concatenate([columns, np.stack(bench.side_by_side(column, shorter), axis=1)], axis=1)
     chosen, amplitudes, promised = picked(columns, rest)
     for i, experiment in enumerate(experiments):
-        own = [(tried[k][1], a) for k, a in zip(chosen, amplitudes, strict=True) if tried[k][0] == i]
+        own = [
+            (tried[k].begin, tried[k].length, float(a))
+            for k, a in zip(chosen, amplitudes, strict=True)
+            if tried[k].experiment == i
+        ]
         windows[recording_of(experiment)] = merged(sorted(own))
     return Found(windows, promised)
+
+
+def within(tried: Sequence[Tried], gains: np.ndarray) -> list[Tried]:
+    """Shorter windows within those that promise most, and within those on either side of them.
+
+    Args:
+        tried: windows side by side.
+        gains: what each promises. # (windows,)
+    """
+    most = [k for k in np.argsort(-gains)[:CLOSER].tolist() if gains[k] > 0.0]
+    near = sorted({k + side for k in most for side in (-1, 0, 1)} & set(range(len(tried))))
+    length = WINDOW_S / SHORTER
+    return [
+        replace(tried[k], begin=tried[k].begin + part * length, length=length)
+        for k in near
+        for part in range(SHORTER)
+    ]
 
 
 def picked(columns: np.ndarray, rest: np.ndarray) -> tuple[list[int], np.ndarray, float]:
@@ -116,13 +163,10 @@ def picked(columns: np.ndarray, rest: np.ndarray) -> tuple[list[int], np.ndarray
         columns: change of the residuals by each window. # (values, k)
         rest: residuals. # (values,)
     """
-    squares = np.maximum(np.sum(columns**2, axis=0), np.finfo(float).tiny)
     chosen: list[int] = []
     multiples, left = np.zeros(0), rest
     while len(chosen) < columns.shape[1]:
-        along = -(columns.T @ left)
-        lost = np.clip(along / squares, 0.0, WHOLE)
-        gains = lost * (2.0 * along - lost * squares)
+        gains = _gains(columns, left)
         gains[chosen] = 0.0
         best = int(gains.argmax())
         if gains[best] < GAIN * max(float(left @ left) / left.size, 1.0):
@@ -133,25 +177,34 @@ def picked(columns: np.ndarray, rest: np.ndarray) -> tuple[list[int], np.ndarray
     return chosen, multiples, float(rest @ rest - left @ left)
 
 
-def merged(windows: Sequence[tuple[float, float]]) -> Windows:
+def _gains(columns: np.ndarray, left: np.ndarray) -> np.ndarray:
+    """Fall of the squared residuals that each column promises alone, by its best multiple from 0 to `WHOLE`."""
+    squares = np.maximum(np.sum(columns**2, axis=0), np.finfo(float).tiny)
+    along = -(columns.T @ left)
+    lost = np.clip(along / squares, 0.0, WHOLE)
+    return np.asarray(lost * (2.0 * along - lost * squares))
+
+
+def merged(windows: Sequence[tuple[float, float, float]]) -> Windows:
     """Windows that touch are one, as long as all of them together by their multiples and about the same middle.
 
     Args:
-        windows: begin [s] and multiple of each, increasing.
+        windows: begin [s], length [s] and multiple of each, increasing.
     """
-    groups: list[list[tuple[float, float]]] = []
-    for begin, multiple in windows:
-        if groups and begin - groups[-1][-1][0] < 1.5 * WINDOW_S:
-            groups[-1].append((begin, multiple))
+    groups: list[list[tuple[float, float, float]]] = []
+    for each in windows:
+        if groups and each[0] - sum(groups[-1][-1][:2]) < 0.5 * WINDOW_S:
+            groups[-1].append(each)
         else:
-            groups.append([(begin, multiple)])
+            groups.append([each])
     found = []
     for group in groups:
-        begins, weights = np.array(group).T
-        length = min(WINDOW_S * float(weights.sum()), LONGEST_S)
+        begins, lengths, multiples = np.array(group).T
+        weights = lengths * multiples
+        length = min(float(weights.sum()), LONGEST_S)
         if length < SHORTEST_S:
             continue
-        middle = float(begins @ weights / weights.sum()) + 0.5 * WINDOW_S
+        middle = float((begins + 0.5 * lengths) @ weights / weights.sum())
         found.append((middle - 0.5 * length, middle + 0.5 * length))
     return np.array(found).reshape(-1, 2)
 

@@ -7,8 +7,17 @@ import pytest
 
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig
-from hydrolek_drake.diagnosis.lost_commands import lost_commands, names_of
-from hydrolek_drake.diagnosis.lost_windows import WINDOW_S, joined, merged, picked, recording_of
+from hydrolek_drake.diagnosis.lost_commands import LENGTHS_S, lost_commands, names_of, tried_about
+from hydrolek_drake.diagnosis.lost_windows import (
+    WINDOW_S,
+    Tried,
+    joined,
+    merged,
+    picked,
+    recording_of,
+    within,
+)
+from hydrolek_drake.diagnosis.other_laws import MOST_LOST
 from hydrolek_drake.diagnosis.unlisted import Asked
 from hydrolek_drake.diagnosis.words import law_sentence, where_sentence
 from hydrolek_drake.diagnosis.workbench import Workbench
@@ -19,12 +28,12 @@ from hydrolek_drake.identification.parameter_set import free_parameters
 LOST_S, AHEAD_S = ((3.27, 3.41), (8.14, 8.26)), ((8.08, 8.22),)
 
 
-def _asked_for(bench, training, held_out):
+def _asked_for(bench, training, held_out, share=0.5):
     with ThreadPoolExecutor(2) as pool:
         workbench = Workbench(bench, free_parameters(bench), training, pool)
         nominal = fit_baseline(workbench)
         asked = Asked.of(workbench, nominal, held_out, natural_scales(bench, "joint", training))
-        needed = 0.5 * (nominal.fit.objective - nominal.fit.counted)
+        needed = share * (nominal.fit.objective - nominal.fit.counted)
         return nominal, lost_commands(workbench, nominal, held_out, asked.span, asked.step, needed)
 
 
@@ -51,6 +60,23 @@ def test_commands_that_got_lost_are_found_in_both_recordings(bench, recorded) ->
     told = law_sentence(found) + where_sentence(found)
     assert "in train at 3.2" in told and "in ahead at 8.0" in told
     assert enlarged_rig(bench, nominal, found).laws == {}  # the machine has no law
+
+
+def test_lost_samples_of_a_controller_are_found_by_the_pressures(bench, recorded) -> None:
+    """20 ms, between two of the windows that are tried side by side: the joint hardly stops, and the oil rings."""
+    lost_s, ahead_s = ((3.297, 3.317), (8.143, 8.163)), ((6.896, 6.916),)
+    kept = {"largest_V": 9.0, "pressure_noise_Pa": 2e4}
+    training = recorded(bench, bench, seed=1, lost_s=lost_s, **kept)
+    held_out = recorded(bench, bench, seed=2, lost_s=ahead_s, **kept)
+    nominal, found = _asked_for(bench, training, held_out, MOST_LOST)
+    assert nominal.fit.over_noise > 2.0
+    assert found is not None
+    assert found.fit.over_noise < 1.06 and found.held_out_over_noise < 1.1
+    for experiment, lost in ((training[0], lost_s), (held_out[0], ahead_s)):
+        windows = found.windows[recording_of(experiment)]
+        nearest = [windows[np.abs(windows[:, 0] - begin).argmin()] for begin, _ in lost]
+        np.testing.assert_allclose(nearest, lost, atol=0.005)  # a fifth of the valve's time constant
+        assert np.diff(windows, axis=1).sum() < 1.5 * np.diff(lost, axis=1).sum()  # and hardly any other
 
 
 def test_a_machine_with_friction_has_lost_nothing(bench, recorded) -> None:
@@ -122,12 +148,37 @@ def test_recordings_of_one_name_and_one_command_are_two(bench, recorded) -> None
 
 
 def test_windows_that_touch_are_one() -> None:
-    [lost, later] = merged([(1.0, 0.4), (1.1, 0.8), (3.0, 0.5)])
+    whole = WINDOW_S
+    [lost, later] = merged([(1.0, whole, 0.4), (1.1, whole, 0.8), (3.0, whole, 0.5)])
     assert lost == pytest.approx([1.0 + WINDOW_S * 2 / 3 + 0.05 - 0.06, 1.0 + WINDOW_S * 2 / 3 + 0.05 + 0.06])
     assert later == pytest.approx([3.025, 3.075])
-    [brief] = merged([(1.0, 0.07)])  # less than a sample of a controller, at full speed a joint misses it
+    [brief] = merged(
+        [(1.0, whole, 0.07)]
+    )  # less than a sample of a controller, at full speed a joint misses it
     assert brief == pytest.approx([1.0465, 1.0535])
-    assert merged([(1.0, 0.005)]).shape == (0, 2)  # half a millisecond
+    assert merged([(1.0, whole, 0.005)]).shape == (0, 2)  # half a millisecond
+    [short] = merged([(2.02, 0.2 * whole, 0.5), (2.04, 0.2 * whole, 0.5)])  # two short ones, half of each
+    assert short == pytest.approx([2.03, 2.05])
+
+
+def test_shorter_windows_are_tried_within_those_that_promise_most_and_beside_them() -> None:
+    tried = [Tried(0, k * WINDOW_S, WINDOW_S) for k in range(100)]
+    gains = np.zeros(100)
+    gains[[0, 40]] = 1.0
+    shorter = within(tried, gains)
+    begins = sorted({round(each.begin / WINDOW_S, 6) for each in shorter})
+    assert begins == pytest.approx([*np.arange(0, 2, 0.2), *np.arange(39, 42, 0.2)])
+    assert [each.length for each in shorter] == pytest.approx(25 * [0.2 * WINDOW_S])
+    assert within(tried, np.zeros(100)) == []
+
+
+def test_a_window_is_tried_elsewhere_where_it_meets_no_other() -> None:
+    others = np.array([[2.0, 2.1], [5.0, 5.1]])
+    tried = np.array(tried_about(2.12, 2.13, others))
+    assert np.all((tried[:, 0] >= 2.1) | (tried[:, 1] <= 2.0))
+    assert tried.mean(axis=1).min() == pytest.approx(1.975)  # on the other side of its neighbour
+    assert tried.mean(axis=1).max() == pytest.approx(2.275)
+    assert np.unique(np.diff(tried, axis=1).round(6)) == pytest.approx(LENGTHS_S)  # its own is among them
 
 
 def test_windows_that_were_fitted_side_by_side_are_told_as_one() -> None:
