@@ -140,7 +140,7 @@ class Inquiry:
         if self.several:
             return answer
         other = by_own_numbers(answer.known, self.candidates, self.say)
-        return answer if other is None else Answer(other, other.conclusion)
+        return answer if other is None else replace(answer, known=other, conclusion=other.conclusion)
 
     def _by_both_as_found(self, answer: Answer) -> Answer:
         """The model that explains the training data, if parts of both lead it to where it explains both."""
@@ -178,7 +178,7 @@ class Inquiry:
         known = answer.known
         second = by_more_data(known, self.candidates, self.say) if self.apart else None
         if second is not None:
-            return Answer(second, second.conclusion, None, (MIXED,))
+            return self._by_own_numbers(Answer(second, second.conclusion, None, (MIXED,)))
         other = by_both(known, self.candidates, self.say)
         return answer if other is None else Answer(other, other.conclusion, None, (BY_BOTH,))
 

@@ -31,14 +31,16 @@ def asked(monkeypatch):
     def ask(apart=True, law_first=False, explained=False, several=False, shown=True, **answers):
         def answering(name):
             def answer(*_):
-                if answers.get(name) is KeyboardInterrupt:
+                told = answers.get(name)
+                if told is KeyboardInterrupt:
                     raise KeyboardInterrupt
-                return answers.get(name)
+                return told(*_) if callable(told) else told
 
             return answer
 
         for name in (
             "attempt",
+            "by_own_numbers",
             "in_place_of_law",
             "by_what_was_overlooked",
             "by_more_data",
@@ -112,6 +114,13 @@ def test_parts_of_the_held_out_data_are_fitted_only_where_these_are_a_recording_
     first, second = _known("unlisted_physics"), _known("missing_physics")
     assert asked(attempt=first, by_more_data=second).remarks == (MIXED,)
     assert asked(attempt=first, by_more_data=second, apart=False).known is first
+
+
+def test_what_goes_astray_in_parts_of_both_is_fitted_from_the_rigs_own_numbers(asked):
+    first, second, third = (_known(v) for v in ("unlisted_physics", "missing_physics", "missing_physics"))
+    led = {id(first): None, id(second): third}
+    answer = asked(attempt=first, by_more_data=second, by_own_numbers=lambda known, *_: led[id(known)])
+    assert answer.known is third and answer.conclusion is third.conclusion and answer.remarks == (MIXED,)
     assert asked(attempt=first, by_both=second, apart=False).remarks == (BY_BOTH,)
 
 
