@@ -7,7 +7,8 @@ import pytest
 
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig
-from hydrolek_drake.diagnosis.lost_commands import LENGTHS_S, lost_commands, names_of, tried_about
+from hydrolek_drake.diagnosis.lost_commands import lost_commands, names_of
+from hydrolek_drake.diagnosis.lost_fit import LENGTHS_S, tried_about
 from hydrolek_drake.diagnosis.lost_windows import (
     WINDOW_S,
     Tried,
