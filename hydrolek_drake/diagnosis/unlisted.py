@@ -129,18 +129,37 @@ def best_of(bench: Workbench, asked: Asked, laws: Sequence[Law], to_beat: float)
     least = min((found.held_out_over_noise for found in ended), default=math.inf)
     if not least < to_beat:
         return None
-    alike = [found for found in ended if _predicts_alike(found, least)]
+    alike = [found for found in ended if predicts_alike(found, least)]
+    named = _named(bench, left, alike, held_out, finer)
+    if named.held_out_over_noise < to_beat:
+        return named
+    # it explains all data, and the training data do not lead it there
+    return _named(bench, left, [f for f in alike if f.held_out_over_noise <= ALIKE * least], held_out, finer)
+
+
+def _named(
+    bench: Workbench,
+    left: Hypothesis,
+    alike: Sequence[FoundLaw],
+    held_out: Sequence[Experiment],
+    step: float,
+) -> FoundLaw:
+    """Of laws that predict alike the likeliest, fitted to the end; of several stages by fits to all data."""
     in_all = [left_in_all(found.fit, found.held_out_over_noise, held_out) for found in alike]
     if len({found.law.input.stage for found in alike}) > 1 and not any(f.law.periodic for f in alike):
-        in_all = bench.side_by_side(lambda found: left_of_all(bench, left, found, held_out, finer), alike)
+        in_all = bench.side_by_side(lambda found: left_of_all(bench, left, found, held_out, step), alike)
     counted = alike[0].fit.counted + sum(experiment.counted for experiment in held_out)
-    return _finished(bench, left, likeliest(alike, in_all, counted), held_out, finer)
+    return _finished(bench, left, likeliest(alike, in_all, counted), held_out, step)
 
 
-def _predicts_alike(found: FoundLaw, least: float) -> bool:
-    """Whether a law predicts as the best one does, or explains the training data and goes no more than astray ahead.
+def predicts_alike(found: FoundLaw, least: float) -> bool:
+    """Whether a law predicts as the best one does, or explains the training data and goes somewhat astray ahead.
 
     Where it stuck by a hair's breadth, other numbers of the same law may follow both: a fit to all data tells.
+
+    Args:
+        found: the law.
+        least: what the best one leaves of the held-out data, over the noise.
     """
     ahead = found.held_out_over_noise
     astray = found.fit.over_noise <= EXPLAINED and ahead <= FAR_AHEAD * least

@@ -1,11 +1,14 @@
 """Terms of a law that promise something alone, or only together."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.law_growing import only_difference
 from hydrolek_drake.diagnosis.law_terms import TRIED, Promise, gain_along, only_together
 from hydrolek_drake.diagnosis.laws import Term
+from hydrolek_drake.diagnosis.unlisted import predicts_alike
 
 CONSTANT, PILOT, SPEED = Term(()), Term((), other="p_B"), Term((), speed="v")
 SHUT, OPENS = -0.3, 0.4
@@ -49,3 +52,22 @@ def test_a_law_of_one_pressure_grows_by_the_other_and_not_by_their_difference() 
     assert only_difference(difference, (CONSTANT, PILOT))
     assert not only_difference(difference, (CONSTANT,))
     assert not only_difference(Term((), other="p_A"), (CONSTANT, PILOT))
+
+
+@pytest.mark.parametrize(
+    ("fitted", "ahead", "periodic", "alike"),
+    [
+        (1.5, 1.05, False, True),  # predicts as the best one does
+        (1.0, 1.6, False, True),  # explains the training data and went astray: other numbers may follow both
+        (1.5, 1.6, False, False),
+        (1.0, 2.5, False, False),
+        (1.0, 1.6, True, False),  # a phase is fitted to each recording as it is
+    ],
+)
+def test_laws_that_went_astray_are_held_against_all_data(fitted, ahead, periodic, alike) -> None:
+    law = SimpleNamespace(
+        fit=SimpleNamespace(over_noise=fitted),
+        held_out_over_noise=ahead,
+        law=SimpleNamespace(periodic=periodic),
+    )
+    assert predicts_alike(law, least=1.0) is alike
