@@ -77,7 +77,7 @@ def _elsewhere(
             places = [*tried_about(float(begin), float(end), others), latest[own][number]]
             least = bench.side_by_side(lambda place, o=others: left(in_order(o, place[None])), places)
             best = int(np.argmin(least))
-            if least[best] < left(latest[own]) - GAIN * max(least[best] / max(experiment.counted, 1), 1.0):
+            if least[best] < least[-1] - GAIN * max(least[best] / max(experiment.counted, 1), 1.0):
                 latest = {**latest, own: in_order(others, places[best][None])}
         bench.evaluations += alone.evaluations
     return latest
