@@ -13,6 +13,7 @@ from hydrolek_drake.diagnosis.gains import cost_of, gain_needed
 from hydrolek_drake.diagnosis.hollows import deepest, strayed
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.overlooked import enlargeable, overlooked
+from hydrolek_drake.diagnosis.pulled_fits import let_go
 from hydrolek_drake.diagnosis.search import LAW_COSTS, search_on
 from hydrolek_drake.diagnosis.splitting import mixed
 from hydrolek_drake.diagnosis.unsticking import from_other_sizes, pulled_from_own
@@ -167,7 +168,8 @@ def by_own_numbers(known: Known, candidates: Sequence[Candidate], say: Callable[
     def led(model: Hypothesis) -> Hypothesis | None:
         """Fitted from there, if that explains more."""
         as_it_is = bench.refit(model, bench.fine, 1)
-        other = bench.refit(pulled_from_own(bench, model, bench.fine, bench.training), bench.fine, LOOK)
+        near = pulled_from_own(bench, model, bench.fine, bench.training)
+        other = bench.refit(let_go(bench, near), bench.fine, LOOK)
         return other if as_it_is.fit.objective - other.fit.objective > gain_needed(other.fit) else None
 
     better = [h for h in bench.side_by_side(led, astray) if h is not None]

@@ -7,7 +7,7 @@ hollow.
 from collections.abc import Sequence
 
 from hydrolek_drake.diagnosis.effort import AT_NOISE, COARSE, FALLING, FAR, LOOK, POLISH
-from hydrolek_drake.diagnosis.unsticking import fit_pulled
+from hydrolek_drake.diagnosis.pulled_fits import fit_pulled
 from hydrolek_drake.diagnosis.weighing import settled
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 

@@ -9,7 +9,8 @@ import numpy as np
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import GLANCE, LOOK
 from hydrolek_drake.diagnosis.moments import begun
-from hydrolek_drake.diagnosis.unsticking import LED_STEP, begun_anew, different, fit_pulled, own_values
+from hydrolek_drake.diagnosis.pulled_fits import fit_pulled
+from hydrolek_drake.diagnosis.unsticking import LED_STEP, begun_anew, different, own_values
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.problem import DIVERGED
 

@@ -15,11 +15,11 @@ from hydrolek_drake.diagnosis.effort import (
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.lessening import lessened
+from hydrolek_drake.diagnosis.pulled_fits import fit_pulled, let_go
 from hydrolek_drake.diagnosis.ranges import at_the_end, gain_beyond, replaced, widened
 from hydrolek_drake.diagnosis.score import score_in_place, scores_of
 from hydrolek_drake.diagnosis.unsticking import (
     different,
-    fit_pulled,
     from_other_sizes,
     led_on,
     pulled_from_own,
@@ -150,7 +150,7 @@ def lead_on(bench: Workbench, found: Search) -> None:
     best = found.best
     if not best.effects or not AT_NOISE < best.fit.over_noise < FAR:
         return
-    again = pulled_from_own(bench, best, bench.fine, bench.training)
+    again = let_go(bench, pulled_from_own(bench, best, bench.fine, bench.training))
     for _ in range(2):
         again = bench.refit(again, bench.fine, LOOK)
     found.keep(again)

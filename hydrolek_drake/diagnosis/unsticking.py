@@ -10,15 +10,13 @@ import itertools
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import AT_NOISE, BEAM, LOOK, POLISH
 from hydrolek_drake.diagnosis.gains import gain_needed
+from hydrolek_drake.diagnosis.pulled_fits import fit_pulled, let_go, with_sizes_walked
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, moments_of
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import PULLED_STEPS, PULLED_TOLERANCE
-from hydrolek_drake.identification.problem import PULL_S, PULLS_S
+from hydrolek_drake.identification.problem import PULL_S
 
 TRIED_PULLED = 30
 """So many of the first fits are tried with pulled rollouts too: every effect of one joint. The one that is missing may
@@ -59,7 +57,7 @@ def unstuck(bench: Workbench, glances: Sequence[Hypothesis], looks: Sequence[Hyp
         joints = bench.joints_of(glance.effects)
         others = {k: v for k, v in glance.values.items() if of_another_joint(k, joints)}
         starts = [{**others, **start, **_timing(glance)} for start in ({}, *starts_of(glance.effects))]
-        return fit_pulled(bench, glance.effects, different(starts), glance.step, part)
+        return with_sizes_walked(bench, glance.effects, different(starts), glance.step, part)
 
     ahead = sorted(bench.side_by_side(pulled, glances[:TRIED_PULLED]), key=lambda h: h.fit.objective)
 
@@ -67,38 +65,11 @@ def unstuck(bench: Workbench, glances: Sequence[Hypothesis], looks: Sequence[Hyp
         near = bench.fit(
             glance.effects, glance.values, glance.step, LOOK, tolerance=1e-4, pull_time=PULL_S, alone=True
         )
-        return bench.refit(near, near.step, LOOK, tolerance=1e-4, alone=True)
+        return bench.refit(let_go(bench, near), near.step, LOOK, tolerance=1e-4, alone=True)
 
     again = bench.side_by_side(followed, ahead[:BEAM])
     best = {h.ids: h for h in sorted([*looks, *again], key=lambda h: -h.fit.objective)}
     return sorted(best.values(), key=lambda h: h.fit.objective)
-
-
-def fit_pulled(
-    bench: Workbench,
-    effects: Sequence[Candidate],
-    starts: Sequence[dict[str, float]],
-    step: float,
-    experiments: Sequence[Experiment],
-) -> Hypothesis:
-    """Fits with pulled rollouts, tightly and then less so (`PULLS_S`), from the start at which they fit best."""
-    problem = bench.problem(effects, step, experiments, PULLS_S[0])
-    units = [problem.parameters.unit(start) for start in starts]
-    errors = [float(np.sum(problem.residuals(unit) ** 2)) for unit in units]
-    values = starts[int(np.argmin(errors))]
-    for pull_time in PULLS_S:
-        fitted = bench.fit(
-            effects,
-            values,
-            step,
-            PULLED_STEPS,
-            tolerance=PULLED_TOLERANCE,
-            experiments=experiments,
-            pull_time=pull_time,
-            alone=True,
-        )
-        values = fitted.values
-    return fitted
 
 
 def pulled_from_own(
@@ -113,7 +84,7 @@ def pulled_from_own(
         experiments: to be fitted.
     """
     own = own_values(bench, hypothesis.effects, hypothesis.values)
-    return fit_pulled(bench, hypothesis.effects, [own], step, experiments)
+    return with_sizes_walked(bench, hypothesis.effects, [own], step, experiments)
 
 
 def from_other_sizes(bench: Workbench, hypothesis: Hypothesis, up_to: float) -> list[Hypothesis]:
@@ -153,7 +124,7 @@ def _fitted_near(bench: Workbench, effects: Sequence[Candidate], start: dict[str
     """A fit with pulled rollouts, to the end, and then with free ones."""
     near = fit_pulled(bench, effects, [start], bench.fine, bench.training)
     near = bench.fit(effects, near.values, bench.fine, LOOK, pull_time=PULL_S)
-    return bench.refit(near, bench.fine, LOOK)
+    return bench.refit(let_go(bench, near), bench.fine, LOOK)
 
 
 def starts_of(effects: Sequence[Candidate]) -> list[dict[str, float]]:
