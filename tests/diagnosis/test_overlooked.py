@@ -2,6 +2,7 @@
 
 import math
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -12,7 +13,7 @@ from hydrolek_drake.diagnosis.attempt import Known
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, conclude
-from hydrolek_drake.diagnosis.effort import MORE_AHEAD
+from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, MORE_AHEAD
 from hydrolek_drake.diagnosis.evidence import judge
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.workbench import Workbench
@@ -71,6 +72,35 @@ def test_a_healthy_machine_is_not_asked_for_more(nominal_alone) -> None:
     known, candidates = nominal_alone({})
     assert known.conclusion.best.over_noise <= MORE_AHEAD
     assert by_what_was_overlooked(known, candidates, lambda text: None) is None
+
+
+def test_what_promises_nothing_is_found_beside_the_rig_s_own_numbers(nominal_alone, monkeypatch) -> None:
+    known, candidates = nominal_alone({f"effects.{DRIFT}.rate_rad_per_min": SLOW_rad_per_min})
+    assert known.conclusion.best.over_noise > ABOVE_NOISE
+    monkeypatch.setattr(overlooked, "scores_of", lambda *given: [])
+    monkeypatch.setattr(overlooked, "MORE_AHEAD", math.inf)  # nothing is begun beside the model's own numbers
+    better = overlooked.overlooked(known.bench, known.conclusion.best, candidates, known.held_out)
+    assert [c.id for c in better[0].effects] == [DRIFT]
+    monkeypatch.setattr(overlooked, "ABOVE_NOISE", math.inf)
+    assert overlooked.overlooked(known.bench, known.conclusion.best, candidates, known.held_out) == []
+
+
+def test_beside_its_own_numbers_a_healthy_machine_lacks_nothing_either(nominal_alone, monkeypatch) -> None:
+    known, candidates = nominal_alone({})
+    monkeypatch.setattr(overlooked, "ABOVE_NOISE", 0.0)
+    assert by_what_was_overlooked(known, candidates, lambda text: None) is None
+
+
+def test_a_model_in_a_hollow_is_led_out_of_it(nominal_alone) -> None:
+    """As if the search had ended with a valve that opens 3 % less."""
+    known, candidates = nominal_alone({})
+    nominal = known.found.baseline
+    area = "joints.joint.valve.max_area_a"
+    bent = replace(nominal, values={**nominal.values, area: 0.97 * nominal.values[area]})
+    judged = replace(known.conclusion.best, hypothesis=bent)
+    led = overlooked.overlooked(known.bench, judged, candidates, known.held_out)[0]
+    assert led.effects == ()
+    assert led.values[area] == pytest.approx(nominal.values[area], rel=1e-3)
 
 
 def _law(over_noise: float, ahead: float) -> SimpleNamespace:
