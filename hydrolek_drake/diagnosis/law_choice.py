@@ -24,8 +24,8 @@ SIMPLER = 1.1
 MANY = 3
 """So many effects at once are less likely than one in no list, which they may only imitate: where one law leaves no
 more of all data, it is preferred. Of one less the same is asked if they are not sure, or not at the noise of either
-data. Of a single one, if it leaves more ahead than its numbers' uncertainty accounts for; the law must be better by
-what it costs more then."""
+data. Of a single one, if it leaves more than noise ahead, whatever its numbers' uncertainty accounts for: what is bent
+is uncertain too. The law must be better by what it costs more then."""
 
 
 def with_law(
@@ -178,7 +178,7 @@ def _imitating(best: Judged) -> bool:
     effects = len(best.hypothesis.effects)
     far = best.hypothesis.fit.over_noise > AT_NOISE or best.over_noise > MORE_AHEAD
     doubtful = best.probability < SURE or far
-    off = effects > 0 and best.unaccounted > MORE_AHEAD
+    off = effects > 0 and best.over_noise > MORE_AHEAD
     return effects >= MANY or (effects == MANY - 1 and doubtful) or off
 
 
