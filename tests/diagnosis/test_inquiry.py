@@ -114,6 +114,7 @@ def test_parts_of_the_held_out_data_are_fitted_only_where_these_are_a_recording_
     first, second = _known("unlisted_physics"), _known("missing_physics")
     assert asked(attempt=first, by_more_data=second).remarks == (MIXED,)
     assert asked(attempt=first, by_more_data=second, apart=False).known is first
+    assert asked(attempt=first, by_both=second, apart=False).remarks == (BY_BOTH,)
 
 
 def test_what_goes_astray_in_parts_of_both_is_fitted_from_the_rigs_own_numbers(asked):
@@ -121,7 +122,6 @@ def test_what_goes_astray_in_parts_of_both_is_fitted_from_the_rigs_own_numbers(a
     led = {id(first): None, id(second): third}
     answer = asked(attempt=first, by_more_data=second, by_own_numbers=lambda known, *_: led[id(known)])
     assert answer.known is third and answer.conclusion is third.conclusion and answer.remarks == (MIXED,)
-    assert asked(attempt=first, by_both=second, apart=False).remarks == (BY_BOTH,)
 
 
 @pytest.mark.parametrize(
