@@ -17,6 +17,7 @@ from hydrolek_drake.diagnosis.attempt import Known, asked_for, attempt, law_firs
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.effort import FAR
+from hydrolek_drake.diagnosis.law_by_both import known_by_both, law_by_both
 from hydrolek_drake.diagnosis.law_choice import (
     alone,
     material,
@@ -41,6 +42,12 @@ MIXED = (
 BY_BOTH = (
     "the model that explains the training data best fails on the held-out data, and another fit explains both: two "
     "thirds of the held-out data were fitted too, and the rest was held out"
+)
+
+
+LAW_BY_BOTH = (
+    "the law explains the training data, which do not tell all numbers of the machine that the held-out recording "
+    "asks for: two thirds of that recording were fitted too, and the rest was held out"
 )
 
 
@@ -89,7 +96,7 @@ class Inquiry:
         Raises:
             KeyboardInterrupt: before the nominal model was fitted.
         """
-        other = OtherLaws(bench, held_out, self.scales) if self.scales else None
+        other = OtherLaws(bench, held_out, self.scales, self.apart) if self.scales else None
         known = attempt(bench, self.candidates, held_out, self.say, other)
         if known.interrupted and known.found.law is None:
             conclusion = known.conclusion
@@ -109,10 +116,11 @@ class Inquiry:
         )
         if known.found.law is not None:
             law = known.found.law
-            answer = Answer(known, alone(known.conclusion, known.judged, law), law)
+            remarks = (LAW_BY_BOTH,) if law.parts is not None else ()
+            answer = Answer(known, alone(known.conclusion, known.judged, law), law, remarks)
             if known.interrupted:  # while it was judged
-                return replace(answer, remarks=(INTERRUPTED,))
-            questions = (self._beside_the_others, self._by_effects_elsewhere)
+                return replace(answer, remarks=(*remarks, INTERRUPTED))
+            questions = (self._in_parts_of_both, self._beside_the_others, self._by_effects_elsewhere)
         for question in questions:
             try:
                 answer = question(answer)
@@ -120,6 +128,14 @@ class Inquiry:
                 answer.known.bench.resume()
                 return replace(answer, remarks=(*answer.remarks, INTERRUPTED))
         return answer
+
+    def _in_parts_of_both(self, answer: Answer) -> Answer:
+        """What else was tried, with the data that a law was fitted to and held against."""
+        law = answer.law
+        if law is None or law.parts is None:
+            return answer
+        known = known_by_both(answer.known, law, self.say)
+        return Answer(known, alone(known.conclusion, known.judged, law), law, (LAW_BY_BOTH,))
 
     def _beside_the_others(self, answer: Answer) -> Answer:
         """A law that ended the search, with what several joints do to each other beside it."""
@@ -155,7 +171,14 @@ class Inquiry:
             return answer
         with_a_law = self._by_a_law(answer)
         law, best = with_a_law.law, with_a_law.conclusion.best.hypothesis
-        return with_a_law if law is not None and predicting(law) and asked_for(law, best) else answer
+        if law is None or not asked_for(law, best):
+            return answer
+        if predicting(law):
+            return with_a_law
+        both = law_by_both(answer.known.bench, best, law, answer.known.held_out)
+        if both is None or best.effects:
+            return answer
+        return self._in_parts_of_both(replace(with_a_law, law=both))
 
     def _by_effects_elsewhere(self, answer: Answer) -> Answer:
         """Known effects in place of a law, if from other places they explain both recordings better."""

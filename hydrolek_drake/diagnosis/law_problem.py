@@ -109,6 +109,8 @@ class FoundLaw:
         ahead: its values on each held-out recording of the joint, where a periodic one has its phase of its own.
         joint: at which it acts; of several that were driven, the one whose data `fit` and held-out error are of.
         rivals: other stages at which a law leaves as little of all data.
+        parts: of both recordings, to which it was fitted and which were held out, where the training data alone did not
+            tell the machine's numbers (`law_by_both`); None where they did.
     """
 
     law: Law
@@ -121,6 +123,7 @@ class FoundLaw:
     ahead: tuple[np.ndarray, ...]
     joint: str
     rivals: tuple[str, ...] = ()
+    parts: tuple[tuple[Experiment, ...], tuple[Experiment, ...]] | None = None
 
     of_the_machine: ClassVar[bool] = True
     """Whether a rig can hold it."""

@@ -4,6 +4,7 @@ Such windows follow no law, so they are found in each recording (`lost_windows`)
 last is fitted together with the nominal parameters.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
@@ -98,6 +99,7 @@ def lost_commands(
     span: Span,
     step: float,
     needed: float,
+    most: float = math.inf,
 ) -> LostCommands | None:
     """Windows in which commands were lost, fitted, or None if they do not promise to explain what a model leaves.
 
@@ -108,6 +110,7 @@ def lost_commands(
         span: what laws are told in.
         step: of the integration while windows are looked for [s].
         needed: fall of the squared residuals that the windows must promise together.
+        most: over the noise, that they may leave of the training data; else none are looked for in the held-out data.
     """
     parameters = bench.parameters(left.effects)
     neutral = float(
@@ -139,7 +142,7 @@ def lost_commands(
         problem = LostProblem(parameters, bench.training, finer, windows, neutral)
         fit, windows = fitted_windows(bench, problem, unit)
         unit = fit.unit[: len(parameters)]
-    if not any(len(lost) for lost in windows.values()):
+    if fit.over_noise > most or not any(len(lost) for lost in windows.values()):
         return None
     every = dict(windows)
     for experiment in held_out:

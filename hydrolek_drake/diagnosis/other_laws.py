@@ -17,6 +17,7 @@ from hydrolek_drake.diagnosis.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, NEAR
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_at_a_joint import followed_worst, left_at, one_joint
+from hydrolek_drake.diagnosis.law_by_both import law_by_both
 from hydrolek_drake.diagnosis.law_fit import glance
 from hydrolek_drake.diagnosis.law_naming import ahead_to_beat
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
@@ -57,11 +58,13 @@ class OtherLaws:
         bench: training data and fits.
         held_out: what decides.
         scales: natural scales of the driven joints at which there may be a law, one at least.
+        apart: whether the held-out data are of another kind, not blocks among the rest.
     """
 
     bench: Workbench
     held_out: Sequence[Experiment]
     scales: Mapping[str, Scales]
+    apart: bool = False
 
     def __call__(self, nominal: Hypothesis, effects: int) -> FoundLaw | None:
         """The law that explains both recordings, or None.
@@ -76,7 +79,8 @@ class OtherLaws:
         left = weighted.refit(nominal, bench.fine, 1)
         held_out = weighted_by(bench, nominal, self.held_out)
         if len({experiment.joint for experiment in self.held_out}) == 1:
-            law = _asked_for(weighted, left, held_out, next(iter(self.scales.values())), effects)
+            scales = next(iter(self.scales.values()))
+            law = _asked_for(weighted, left, held_out, scales, effects, apart=self.apart)
         else:
             law = _at_one_joint(weighted, left, held_out, self.scales, effects)
         bench.evaluations += weighted.evaluations
@@ -90,6 +94,8 @@ def _asked_for(
     scales: Scales,
     effects: int,
     slack: float = 1.0,
+    *,
+    apart: bool = False,
 ) -> FoundLaw | None:
     """The law at the only joint of some data that explains them, or None."""
     asked = Asked.of(bench, left, held_out, scales)
@@ -101,6 +107,8 @@ def _asked_for(
     counted = sum(experiment.counted for experiment in held_out)
     ahead = Judged(left, bench.residuals(left, held_out, bench.fine), counted)
     law = best_of(bench, asked, laws, ahead_to_beat(ahead.over_noise))
+    if law is not None and apart:
+        law = law_by_both(bench, left, law, held_out) or law
     if law is None or not predicting(law, slack):
         return _lost(bench, asked) if first and left.fit.over_noise > NEAR else None
     return law if _explaining(law, slack) else None
@@ -115,8 +123,8 @@ def _lost(bench: Workbench, asked: Asked) -> FoundLaw | None:
     """Commands that got lost, if that explains the data: windows could make up for a little of much."""
     left = asked.left
     needed = MOST_LOST * (left.fit.objective - left.fit.counted)
-    lost = lost_commands(bench, left, asked.held_out, asked.span, asked.step, needed)
-    return lost if lost is not None and predicting(lost) and lost.fit.over_noise <= EXPLAINED else None
+    lost = lost_commands(bench, left, asked.held_out, asked.span, asked.step, needed, EXPLAINED)
+    return lost if lost is not None and predicting(lost) else None
 
 
 def _better_than_promised(bench: Workbench, asked: Asked, laws: Sequence[Law], above: float) -> list[Law]:

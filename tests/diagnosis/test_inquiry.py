@@ -8,7 +8,7 @@ import pytest
 
 from hydrolek_drake.diagnosis import inquiry
 from hydrolek_drake.diagnosis.attempt import asked_for
-from hydrolek_drake.diagnosis.inquiry import BY_BOTH, INTERRUPTED, MIXED, Inquiry
+from hydrolek_drake.diagnosis.inquiry import BY_BOTH, INTERRUPTED, LAW_BY_BOTH, MIXED, Inquiry
 
 
 class _Bench:
@@ -48,6 +48,8 @@ def asked(monkeypatch):
             "by_both_as_found",
             "balanced",
             "by_their_noise",
+            "known_by_both",
+            "law_by_both",
         ):
             monkeypatch.setattr(inquiry, name, answering(name))
         monkeypatch.setattr(
@@ -72,7 +74,7 @@ def test_what_explains_the_data_ends_it(asked):
 
 
 def test_a_law_that_ended_the_search_is_the_answer(asked, monkeypatch):
-    law = SimpleNamespace()
+    law = SimpleNamespace(parts=None)
     known = _known("unlisted_physics", law=law)
     monkeypatch.setattr(
         inquiry, "alone", lambda conclusion, judged, law: replace(conclusion, groups=(("l",),))
@@ -83,7 +85,7 @@ def test_a_law_that_ended_the_search_is_the_answer(asked, monkeypatch):
 
 
 def test_an_interrupt_while_other_joints_are_told_anew_keeps_the_law(asked, monkeypatch):
-    law = SimpleNamespace()
+    law = SimpleNamespace(parts=None)
     known = _known("unlisted_physics", law=law)
     known.found.baseline = None
     monkeypatch.setattr(inquiry, "alone", lambda conclusion, judged, law: conclusion)
@@ -97,8 +99,28 @@ def test_an_interrupt_while_other_joints_are_told_anew_keeps_the_law(asked, monk
     assert asked(attempt=known).remarks == ()  # one joint has no others
 
 
+def test_what_was_tried_before_a_law_is_told_with_the_data_that_the_law_was_fitted_to(asked, monkeypatch):
+    law = SimpleNamespace(parts=((), ()))
+    first, second = _known("unlisted_physics", law=law), _known("unlisted_physics")
+    monkeypatch.setattr(inquiry, "alone", lambda conclusion, judged, law: conclusion)
+    answer = asked(attempt=first, known_by_both=second)
+    assert answer.known is second and answer.law is law and answer.remarks == (LAW_BY_BOTH,)
+    answer = asked(attempt=first, known_by_both=KeyboardInterrupt)
+    assert answer.known is first and answer.law is law and answer.remarks == (LAW_BY_BOTH, INTERRUPTED)
+
+
+def test_a_law_that_goes_astray_ahead_is_fitted_to_parts_of_both_before_a_whole_search_is(asked, monkeypatch):
+    first, second, third = (_known(v) for v in ("unlisted_physics", "unlisted_physics", "missing_physics"))
+    law, both = (SimpleNamespace(held_out_over_noise=1.1, parts=parts) for parts in (None, ((), ())))
+    monkeypatch.setattr(inquiry, "alone", lambda conclusion, judged, law: conclusion)
+    how = {"attempt": first, "with_law": (first.conclusion, law), "law_first": True, "explained": False}
+    answer = asked(law_by_both=both, known_by_both=second, by_more_data=third, **how)
+    assert answer.known is second and answer.law is both and answer.remarks == (LAW_BY_BOTH,)
+    assert asked(law_by_both=None, by_more_data=third, **how).known is third
+
+
 def test_an_interrupt_while_a_law_is_judged_keeps_the_law(asked, monkeypatch):
-    law = SimpleNamespace()
+    law = SimpleNamespace(parts=None)
     monkeypatch.setattr(inquiry, "alone", lambda conclusion, judged, law: conclusion)
     answer = asked(attempt=_known("unlisted_physics", interrupted=True, law=law))
     assert answer.law is law and answer.conclusion.verdict == "unlisted_physics"
@@ -148,14 +170,14 @@ def test_other_weights_count_unless_what_they_lead_to_explains_every_signal(aske
 
 def test_a_law_that_comes_near_the_noise_needs_no_other_weights(asked):
     first = _known("unlisted_physics")
-    law = SimpleNamespace(held_out_over_noise=1.1)
+    law = SimpleNamespace(held_out_over_noise=1.1, parts=None)
     answer = asked(attempt=first, with_law=(first.conclusion, law), balanced=KeyboardInterrupt)
     assert answer.law is law and answer.remarks == ()
 
 
 def test_a_law_that_explains_both_recordings_comes_before_more_data(asked):
     first, second = _known("unlisted_physics"), _known("missing_physics")
-    law = SimpleNamespace(held_out_over_noise=1.1)
+    law = SimpleNamespace(held_out_over_noise=1.1, parts=None)
     how = {"attempt": first, "with_law": (first.conclusion, law), "by_more_data": second}
     answer = asked(law_first=True, explained=True, **how)
     assert answer.known is first and answer.law is law and answer.remarks == ()
@@ -168,7 +190,7 @@ def test_a_law_that_explains_both_recordings_comes_before_more_data(asked):
 
 def test_a_model_that_explains_both_once_it_is_fitted_to_them_comes_before_a_law(asked):
     first, second = _known("unlisted_physics"), _known("missing_physics")
-    law = SimpleNamespace(held_out_over_noise=1.1)
+    law = SimpleNamespace(held_out_over_noise=1.1, parts=None)
     how = {"attempt": first, "with_law": (first.conclusion, law), "law_first": True, "explained": True}
     answer = asked(by_both_as_found=second, **how)
     assert answer.known is second and answer.remarks == (BY_BOTH,)
@@ -185,7 +207,7 @@ def test_training_data_ask_for_a_law_beside_effects_if_it_takes_what_one_more_mu
 
 
 def test_effects_that_explain_both_recordings_from_elsewhere_come_before_a_law(asked, monkeypatch):
-    law = SimpleNamespace(held_out_over_noise=1.1)
+    law = SimpleNamespace(held_out_over_noise=1.1, parts=None)
     monkeypatch.setattr(inquiry, "alone", lambda conclusion, judged, law: conclusion)
     ended, first, second = (
         _known("unlisted_physics", law=law),

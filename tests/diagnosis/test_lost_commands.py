@@ -1,10 +1,12 @@
 """Commands that got lost are found where they were, and nowhere else."""
 
+import math
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
+from hydrolek_drake.diagnosis import lost_commands as in_commands
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig
 from hydrolek_drake.diagnosis.lost_commands import lost_commands, names_of
@@ -29,13 +31,13 @@ from hydrolek_drake.identification.parameter_set import free_parameters
 LOST_S, AHEAD_S = ((3.27, 3.41), (8.14, 8.26)), ((8.08, 8.22),)
 
 
-def _asked_for(bench, training, held_out, share=0.5):
+def _asked_for(bench, training, held_out, share=0.5, most=math.inf):
     with ThreadPoolExecutor(2) as pool:
         workbench = Workbench(bench, free_parameters(bench), training, pool)
         nominal = fit_baseline(workbench)
         asked = Asked.of(workbench, nominal, held_out, natural_scales(bench, "joint", training))
         needed = share * (nominal.fit.objective - nominal.fit.counted)
-        return nominal, lost_commands(workbench, nominal, held_out, asked.span, asked.step, needed)
+        return nominal, lost_commands(workbench, nominal, held_out, asked.span, asked.step, needed, most)
 
 
 def _named(name, experiments):
@@ -61,6 +63,17 @@ def test_commands_that_got_lost_are_found_in_both_recordings(bench, recorded) ->
     told = law_sentence(found) + where_sentence(found)
     assert "in train at 3.2" in told and "in ahead at 8.0" in told
     assert enlarged_rig(bench, nominal, found).laws == {}  # the machine has no law
+
+
+def test_where_windows_do_not_explain_the_training_data_none_are_looked_for_ahead(
+    bench, recorded, monkeypatch
+) -> None:
+    looked: list[tuple] = []
+    monkeypatch.setattr(in_commands, "_in_held_out", lambda *given: looked.append(given))
+    training = recorded(bench, bench, seed=1, largest_V=5.0, lost_s=LOST_S)
+    held_out = _named("ahead", recorded(bench, bench, seed=2, largest_V=5.0, lost_s=AHEAD_S))
+    _, found = _asked_for(bench, training, held_out, most=0.9)  # nothing leaves less than the noise
+    assert found is None and not looked
 
 
 def test_lost_samples_of_a_controller_are_found_by_the_pressures(bench, recorded) -> None:
