@@ -12,6 +12,7 @@ from hydrolek_drake.diagnosis.law_at_a_joint import law_at_a_joint, left_at
 from hydrolek_drake.diagnosis.law_growing import explains
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, left_in_all
 from hydrolek_drake.diagnosis.law_told_anew import Told, told_anew
+from hydrolek_drake.diagnosis.ranges import ended
 from hydrolek_drake.diagnosis.search import LAW_COSTS
 from hydrolek_drake.diagnosis.unlisted import find_law, without_effects
 from hydrolek_drake.diagnosis.workbench import Workbench
@@ -25,7 +26,8 @@ MANY = 3
 """So many effects at once are less likely than one in no list, which they may only imitate: where one law leaves no
 more of all data, it is preferred. Of one less the same is asked if they are not sure, or not at the noise of either
 data. Of a single one, if it leaves more than noise ahead, whatever its numbers' uncertainty accounts for: what is bent
-is uncertain too. The law must be better by what it costs more then."""
+is uncertain too; and of any of which a number ends at an end of its range. The law must be better by what it costs more
+then."""
 
 
 def with_law(
@@ -179,6 +181,7 @@ def _imitating(best: Judged) -> bool:
     far = best.hypothesis.fit.over_noise > AT_NOISE or best.over_noise > MORE_AHEAD
     doubtful = best.probability < SURE or far
     off = effects > 0 and best.over_noise > MORE_AHEAD
+    off = off or any(ended(best.hypothesis, candidate) for candidate in best.hypothesis.effects)
     return effects >= MANY or (effects == MANY - 1 and doubtful) or off
 
 

@@ -25,6 +25,21 @@ def at_the_end(hypothesis: Hypothesis) -> list[Candidate]:
     return [c for c in hypothesis.effects if widened(c, hypothesis.values) != c]
 
 
+def ended(hypothesis: Hypothesis, candidate: Candidate) -> list[Free]:
+    """Parameters of an effect, but for its size and moments, that were fitted to an end of what is searched.
+
+    How quickly an oil warms up or how far a cushion reaches is no more than a natural scale of the machine allows;
+    what asks for more may be something else, which the effect only imitates.
+
+    Args:
+        hypothesis: a fitted model.
+        candidate: one of its effects.
+    """
+    others = [f for f in candidate.free if f.path != candidate.size_path and f not in candidate.moments]
+    places = [(free, free.to_unit(hypothesis.values[free.path])) for free in others]
+    return [free for free, place in places if not AT_BOUND < place < 1.0 - AT_BOUND]
+
+
 def widened(candidate: Candidate, values: Mapping[str, float]) -> Candidate:
     """The same effect, searched further where a parameter lies at an end, as far as it can be at all.
 

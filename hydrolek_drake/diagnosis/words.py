@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
-from hydrolek_drake.diagnosis.told_numbers import with_interval
+from hydrolek_drake.diagnosis.ranges import ended
+from hydrolek_drake.diagnosis.told_numbers import quantity, with_interval
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.replay.display import ratio, shown
 from hydrolek_drake.rigs import Rig
@@ -45,8 +46,22 @@ def effect_sentence(candidate: Candidate, diagnosis: Diagnosis) -> str:
     where = f" It shows {place.condition}." if place else ""
     return (
         f"{candidate.joint}, {candidate.effect.stage}: {candidate.effect.title}: "
-        f"{sizes(candidate, diagnosis)}.{where}"
+        f"{sizes(candidate, diagnosis)}.{where}{_at_an_end(candidate, diagnosis)}"
     )
+
+
+def _at_an_end(candidate: Candidate, diagnosis: Diagnosis) -> str:
+    """That a parameter of an effect ends at an end of its range; nothing if none does."""
+    ends = {free.path: free for free in ended(diagnosis.best.hypothesis, candidate)}
+    told = []
+    for parameter in candidate.effect.parameters:
+        free = ends.get(path_of(candidate, parameter))
+        if free is not None:
+            unit = unit_at(diagnosis.rig, candidate.joint, parameter.unit)
+            told.append(f"{parameter.meaning} ({quantity(free.lower, unit)} to {quantity(free.upper, unit)})")
+    if not told:
+        return ""
+    return f" At an end of what is searched: {_listed(told)}; something else may act like this effect."
 
 
 def off_zero_sentences(diagnosis: Diagnosis) -> list[str]:

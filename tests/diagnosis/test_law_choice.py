@@ -36,7 +36,7 @@ def choose(monkeypatch):
     `without` is the law beside the best model when it is fitted without that one's effects.
     """
 
-    def run(best, nominal, beside, alone, verdict="unlisted_physics", without=None):
+    def run(best, nominal, beside, alone, verdict="unlisted_physics", without=None, at_an_end=()):
         asked = []
 
         def find(bench, named, held_out, scales):
@@ -44,6 +44,7 @@ def choose(monkeypatch):
             return alone if named is nominal else beside
 
         monkeypatch.setattr(law_choice, "find_law", find)
+        monkeypatch.setattr(law_choice, "ended", lambda hypothesis, effect: at_an_end)
         monkeypatch.setattr(law_choice, "without_effects", lambda *given: without)
         known = Conclusion(verdict, best, {}, ())
         return *with_law(None, known, (best, nominal), HELD_OUT, None, lambda text: None), asked
@@ -133,3 +134,14 @@ def test_one_effect_that_leaves_more_than_noise_ahead_must_stand_against_a_law(c
     near = replace(off, held_out=np.full(VALUES, 0.99 * MORE_AHEAD))
     for best in (near, replace(off, hypothesis=nominal.hypothesis)):  # or nothing is named
         assert not choose(best, nominal, None, leaving(ahead), verdict="missing_physics")[2]
+
+
+def test_an_effect_whose_numbers_end_where_it_does_must_stand_against_a_law(choose) -> None:
+    nominal, best = _judged(10.0), _judged(1.0, effects=1)
+    told = {"verdict": "missing_physics", "at_an_end": ("a time constant",)}
+    better = _law(1.0, np.sqrt(1.0 - 1.01 * GAIN_NEEDED / VALUES))
+    conclusion, law, _ = choose(best, nominal, None, better, **told)
+    assert law is better and conclusion.verdict == "unlisted_physics"
+    conclusion, law, _ = choose(best, nominal, None, _law(1.0, 1.0), **told)
+    assert law is None and conclusion.best is best
+    assert not choose(best, nominal, None, better, verdict="missing_physics")[2]

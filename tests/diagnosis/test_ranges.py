@@ -2,6 +2,7 @@
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -9,8 +10,11 @@ from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.effort import LOOK
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import gain_needed
-from hydrolek_drake.diagnosis.ranges import WIDER, at_the_end, gain_beyond, widened
+from hydrolek_drake.diagnosis.intervals import Interval
+from hydrolek_drake.diagnosis.ranges import WIDER, at_the_end, ended, gain_beyond, widened
 from hydrolek_drake.diagnosis.search import search
+from hydrolek_drake.diagnosis.told_numbers import quantity
+from hydrolek_drake.diagnosis.words import effect_sentence
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -60,6 +64,34 @@ def test_what_else_an_effect_has_is_widened_at_either_end(candidates) -> None:
         )
         assert (wide.lower, wide.upper) == pytest.approx((factors[0] * fades.lower, factors[1] * fades.upper))
     assert widened(payload, _ended(payload, time_s=1.0)) == payload  # the recording is no longer than that
+
+
+def test_what_ends_at_an_end_of_its_range_is_told(bench, candidates) -> None:
+    """But for a size, that may be small, and a moment, which lies in the recording."""
+    warm, payload = candidates["fluid.warm_up"], candidates["load.payload"]
+
+    def diagnosed(candidate, **at):
+        fitted = SimpleNamespace(effects=(candidate,), values=_ended(candidate, **at))
+        intervals = {path: Interval(value, value, value) for path, value in fitted.values.items()}
+        return SimpleNamespace(
+            rig=bench, best=SimpleNamespace(hypothesis=fitted), intervals=intervals, locations=()
+        )
+
+    for end in (0.0, 1.0):
+        hasty = diagnosed(warm, time_constant_s=end)
+        [free] = ended(hasty.best.hypothesis, warm)
+        assert free.path.endswith("time_constant_s")
+        told = effect_sentence(warm, hasty)
+        assert f"{quantity(free.lower, 's')} to {quantity(free.upper, 's')}" in told
+        assert "something else may act like this effect" in told
+    for candidate, at in (
+        (warm, {}),
+        (warm, {warm.effect.size: 0.0}),
+        (payload, {"time_s": 1.0}),
+    ):
+        usual = diagnosed(candidate, **at)
+        assert not ended(usual.best.hypothesis, candidate)
+        assert "something else" not in effect_sentence(candidate, usual)
 
 
 def test_a_range_is_not_widened_beyond_what_can_be_or_what_the_rig_states(
