@@ -21,6 +21,9 @@ from hydrolek_drake.diagnosis.weighing import NEARER
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 
+UNLIKELY = 0.001
+"""What is less probable than this is not fitted to more data beside the model that explains them."""
+
 
 def balanced(
     known: Known, candidates: Sequence[Candidate], say: Callable[[str], None]
@@ -116,15 +119,17 @@ def by_both_as_found(
 ) -> Known | None:
     """The search gone on with in parts of both data, from effects that explain the training data and fail ahead.
 
-    Where a joint stuck by a hair's breadth, a small change of the same model explains both. None where it does not:
-    then others, or physics in no list, are looked for.
+    Where a joint stuck by a hair's breadth, a small change of the same model explains both. So it does where the
+    training data do not tell a number of the machine that the held-out data ask for; then what was nearly as probable
+    is fitted to both, too. None where the model does not: then others, or physics in no list, are looked for.
 
     Raises:
         KeyboardInterrupt: it was interrupted.
     """
     best = known.conclusion.best
     explaining = best.hypothesis.effects and best.hypothesis.fit.over_noise <= EXPLAINED
-    if not (explaining and known.conclusion.verdict == "unlisted_physics"):
+    failing = known.conclusion.verdict == "unlisted_physics" or unexcited(known.conclusion)
+    if not (explaining and failing):
         return None
     both, kept = mixed(known.bench.training, known.held_out)
     again = known.bench.with_training(both)
@@ -134,7 +139,9 @@ def by_both_as_found(
     if fitted.fit.over_noise > ABOVE_NOISE:
         return None  # what only imitates the missing physics hardly reaches the noise of both
     say("fitted to parts of both recordings the same model explains both: going on from there")
-    return _gone_on(known, again, [known.found.baseline, fitted], kept, candidates, say, accounted=True)
+    rivals = [j.hypothesis for j in known.judged if j is not best and j.probability > UNLIKELY]
+    fits = [known.found.baseline, *rivals, fitted]
+    return _gone_on(known, again, fits, kept, candidates, say, accounted=True)
 
 
 def by_own_numbers(known: Known, candidates: Sequence[Candidate], say: Callable[[str], None]) -> Known | None:

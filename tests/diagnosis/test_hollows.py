@@ -116,8 +116,14 @@ def test_a_model_that_predicts_is_left_as_it_is(known_so_far) -> None:
 
 def test_only_a_model_that_reaches_the_noise_of_both_data_is_gone_on_with(known_so_far, monkeypatch) -> None:
     right, candidates = known_so_far(COULOMB, {"coulomb_N": 1200.0}, {COULOMB}, RIVALS[:2], **NOISY)
-    predicting = replace(right, conclusion=replace(right.conclusion, verdict="missing_physics"))
-    assert by_both_as_found(predicting, candidates, lambda text: None) is None
+    named = right.conclusion.best
+
+    def leaving_ahead(over_noise):
+        scaled = replace(named, held_out=over_noise / named.over_noise * named.held_out)
+        conclusion = replace(right.conclusion, verdict="missing_physics", best=scaled)
+        return replace(right, conclusion=conclusion)
+
+    assert by_both_as_found(leaving_ahead(0.99 * PREDICTED), candidates, lambda text: None) is None
     gone_on = []
 
     def failing_ahead(known):
@@ -128,10 +134,14 @@ def test_only_a_model_that_reaches_the_noise_of_both_data_is_gone_on_with(known_
     assert gone_on[0].fit.counted > right.found.best.fit.counted
     assert gone_on[0].values[gone_on[0].effects[0].size_path] == pytest.approx(1200.0, rel=0.05)
 
+    # numbers that the held-out data alone tell: nothing is missing, and yet the model fails there
+    by_both_as_found(leaving_ahead(1.01 * PREDICTED), candidates, lambda text: None)
+    assert gone_on[1].ids == gone_on[0].ids
+
     wrong, candidates = known_so_far(STRIBECK, STICKS, {COULOMB}, RIVALS[:2])
     assert wrong.found.best.effects
     by_both_as_found(failing_ahead(wrong), candidates, lambda text: None)
-    assert len(gone_on) == 1
+    assert len(gone_on) == 2
 
 
 @pytest.mark.parametrize("count", [1, 9, 10, 27])
