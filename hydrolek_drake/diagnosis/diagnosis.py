@@ -44,7 +44,7 @@ class Diagnosis:
         bench: data and fits; None for bad data.
         held_out: data that nothing was fitted to.
         locations: where the mismatch is.
-        intervals: full path -> fitted value of the best model.
+        intervals: full path -> fitted value of the best model, with a law fitted beside that.
         law: for physics in no list, the law found for it, if one was.
         proposal: the experiment that would decide, if one is needed.
         visible: smallest sizes of effects that would have been seen beside the best model, by id.
@@ -151,6 +151,10 @@ def _diagnosed(
     known, conclusion, law, remarks = answer.known, answer.conclusion, answer.law, answer.remarks
     bench, held_out, found, judged = known.bench, known.held_out, known.found, known.judged
     best = conclusion.best.hypothesis
+    if law is not None:
+        parameters = bench.parameters(best.effects)
+        records = parameters.records(parameters.unit(law.parameters))
+        law = law.held_against(held_out, records, FINER * bench.fine)
     places: tuple[Location, ...] = ()
     proposal: Proposal | None = None
     visible: tuple[Visible, ...] = ()
@@ -176,6 +180,7 @@ def _diagnosed(
         locations=places,
         intervals={
             **intervals_of(bench.parameters(best.effects), best.fit),
+            **(law.intervals if law is not None else {}),
             **intervals_of_moments(bench, best),
         },
         law=law,

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.intervals import intervals_of
 from hydrolek_drake.diagnosis.law_problem import SCAN_S, FoundLaw, Law, LawProblem
 from hydrolek_drake.diagnosis.laws import Span
 from hydrolek_drake.diagnosis.ranges import WIDER
@@ -136,7 +137,8 @@ def fitted(
     bench.evaluations += problem.evaluations
     nominal = parameters.values(fit.unit[:count])
     joint = bench.training[0].joint
-    return FoundLaw(law, values, nominal, fit, over, difference, span, ahead, joint)
+    intervals = intervals_of(parameters, fit)
+    return FoundLaw(law, values, nominal, fit, over, difference, span, ahead, joint, intervals=intervals)
 
 
 def left_of_all(

@@ -1,12 +1,13 @@
 """Recordings fitted with the nominal parameters and a law's own."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.intervals import Interval
 from hydrolek_drake.diagnosis.law_inputs import Input
 from hydrolek_drake.diagnosis.laws import CONSTANT, FIRST_REACH, Span, Term, law_record, law_records
 from hydrolek_drake.diagnosis.workbench import SPREAD
@@ -111,6 +112,7 @@ class FoundLaw:
         rivals: other stages at which a law leaves as little of all data.
         parts: of both recordings, to which it was fitted and which were held out, where the training data alone did not
             tell the machine's numbers (`law_by_both`); None where they did.
+        intervals: full path -> the parameters fitted with it, with their intervals.
     """
 
     law: Law
@@ -124,6 +126,7 @@ class FoundLaw:
     joint: str
     rivals: tuple[str, ...] = ()
     parts: tuple[tuple[Experiment, ...], tuple[Experiment, ...]] | None = None
+    intervals: Mapping[str, Interval] = field(default_factory=dict)
 
     of_the_machine: ClassVar[bool] = True
     """Whether a rig can hold it."""
@@ -158,6 +161,23 @@ class FoundLaw:
         """
         return experiment.simulate(records, step, law=records_of(self.law, self.span, values)).signals
 
+    def held_against(self, held_out: Sequence[Experiment], records: np.ndarray, step: float) -> "FoundLaw":
+        """The law with what it leaves of held-out data, of which the weights may have changed since it was found.
+
+        Args:
+            held_out: in the order of `ahead`, of all joints.
+            records: of all joints of the rig, with the parameters fitted with the law. # (joints,)
+            step: of the integration [s].
+        """
+        at_joint = [experiment for experiment in held_out if experiment.joint == self.joint]
+        left = [
+            e.residuals(self.signals(e, records, step, own))
+            for e, own in zip(at_joint, self.ahead, strict=True)
+        ]
+        squares = sum(float(part @ part) for part in left)
+        counted = sum(experiment.counted for experiment in at_joint)
+        return replace(self, held_out_over_noise=math.sqrt(squares / max(counted, 1)))
+
     @property
     def amplitudes(self) -> list[float]:
         """Sizes of the input (SI): of every term with its sign, or the largest of a periodic one."""
@@ -180,11 +200,11 @@ class FoundLaw:
 
     def equation(self) -> str:
         """The law as an equation."""
-        unit = "" if self.law.input.unit == "1" else f" {self.law.input.unit}"
-        sizes = [f"{size:.3g}{unit}" for size in self.amplitudes]
+        sizes = [shown(size, self.law.input.unit) for size in self.amplitudes]
         if self.law.periodic:
             phase = math.atan2(self.values[1], self.values[0])
-            return f"{self.law.input.symbol} = {sizes[0]} * sin(2 pi {self.values[2]:.4g} Hz t + {phase:.2f})"
+            sine = f"sin(2 pi {self.values[2]:.4g} Hz t {'-' if phase < 0.0 else '+'} {abs(phase):.2f})"
+            return f"{self.law.input.symbol} = {sizes[0]} * {sine}"
         products = [
             size if name == CONSTANT else f"{size} * {name}"
             for size, name in zip(sizes, self.names, strict=True)

@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.intervals import intervals_of
 from hydrolek_drake.diagnosis.law_inputs import Input
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
 from hydrolek_drake.diagnosis.laws import Span, Term
@@ -169,6 +170,7 @@ def lost_commands(
         span=span,
         ahead=tuple(every[recording_of(e)].ravel() for e in held_out),
         joint=first.joint,
+        intervals=intervals_of(parameters, fit),
         windows=every,
         called=names_of([*bench.training, *held_out]),
         neutral=neutral,

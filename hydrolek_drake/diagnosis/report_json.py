@@ -1,12 +1,14 @@
 """`report.json`, as the contract promises it."""
 
 import math
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.law_at_a_joint import left_at
+from hydrolek_drake.diagnosis.law_intervals import amplitude_intervals, frequency_interval
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.panels import after
 from hydrolek_drake.diagnosis.reliability import kind_of, reliability
@@ -14,6 +16,7 @@ from hydrolek_drake.diagnosis.told_numbers import quantity
 from hydrolek_drake.diagnosis.words import (
     effect_sentence,
     headline,
+    known_to,
     law_sentence,
     off_zero_sentences,
     path_of,
@@ -83,13 +86,17 @@ def effects_json(diagnosis: Diagnosis) -> list[dict[str, Any]]:
 def _law_json(diagnosis: Diagnosis, law: FoundLaw) -> dict[str, Any]:
     known = law.law.input
     parameters: dict[str, dict[str, Any]] = {}
-    for number, size in enumerate(law.amplitudes, start=1):
-        key = "amplitude" if number == 1 else f"amplitude_{number}"
+    intervals = amplitude_intervals(law)
+    for number, size in enumerate(law.amplitudes):
+        key = "amplitude" if number == 0 else f"amplitude_{number + 1}"
         parameters[key] = {"value": size, "unit": known.unit}
+        if intervals:
+            parameters[key] |= {"low": intervals[number].low, "high": intervals[number].high}
         if not law.law.periodic:
-            parameters[key]["of"] = law.names[number - 1]
+            parameters[key]["of"] = law.names[number]
     if law.law.periodic:
-        parameters["frequency"] = {"value": float(law.values[2]), "unit": "Hz"}
+        frequency = frequency_interval(law)
+        parameters["frequency"] = {**asdict(frequency), "unit": "Hz"}
     return {
         "id": f"unlisted.{known.stage}",
         "joint": law.joint,
@@ -98,7 +105,7 @@ def _law_json(diagnosis: Diagnosis, law: FoundLaw) -> dict[str, Any]:
         "parameters": parameters,
         "holdout_over_noise": law.held_out_over_noise,
         **law.more(),
-        "sentence": f"{law_sentence(law)}{where_sentence(law)}",
+        "sentence": f"{law_sentence(law)}{known_to(law)}{where_sentence(law)}",
     }
 
 

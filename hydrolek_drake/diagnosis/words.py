@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
+from hydrolek_drake.diagnosis.law_intervals import amplitude_intervals, frequency_interval
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.ranges import ended
 from hydrolek_drake.diagnosis.told_numbers import quantity, with_interval
@@ -138,6 +139,16 @@ def _several(diagnosis: Diagnosis) -> bool:
 def law_sentence(law: FoundLaw) -> str:
     """The law for physics in no list, and how well it does."""
     return f"{law.equation()} leaves {_ratio(law.held_out_over_noise)} the noise on held-out data."
+
+
+def known_to(law: FoundLaw) -> str:
+    """How far the numbers of a law are known; nothing for one whose numbers are each recording's own."""
+    told = [with_interval(known, law.law.input.unit) for known in amplitude_intervals(law)]
+    if law.law.periodic:
+        told.append(with_interval(frequency_interval(law), "Hz"))
+    if not told:
+        return ""
+    return f" 95 %: {', '.join(f'{low} to {high}' for _, low, high in told)}."
 
 
 def where_sentence(law: FoundLaw) -> str:

@@ -200,3 +200,11 @@ def test_a_law_says_what_its_letters_mean(bench) -> None:
         " Here near(c, w) is 1 at a position of c and falls to 0 over w to either side; v is the joint's speed.",
     )
     assert told(Term(()), values=(5.0,)) == ("moment added at the joint = 5 N m", "")
+
+
+@pytest.mark.parametrize(("phase", "told"), [(-0.5, "- 0.50"), (0.25, "+ 0.25")])
+def test_a_periodic_law_is_told_in_units_that_people_read(phase, told) -> None:
+    given = Input("supply", "supply", "added to the supply pressure", "Pa", 5e6)
+    values = np.array([2.5e6 * np.cos(phase), 2.5e6 * np.sin(phase), 1.7])
+    law = FoundLaw(Law(given, (), 1.7, 0.0, ()), values, {}, None, 1.0, np.zeros(0), None, (), "joint")
+    assert law.equation() == f"added to the supply pressure = 2.5 MPa * sin(2 pi 1.7 Hz t {told})"
