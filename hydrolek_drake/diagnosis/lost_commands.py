@@ -133,7 +133,7 @@ def lost_commands(
             break
         windows = {name: in_order(lost, found.windows[name]) for name, lost in windows.items()}
         problem = LostProblem(parameters, bench.training, finer, windows, neutral)
-        fit, windows = fitted_windows(bench, problem, unit)
+        fit, windows = fitted_windows(bench, problem, unit, found.windows)
         if any(too_much(windows[recording_of(e)], e) for e in bench.training):
             return None
         unit = fit.unit[: len(parameters)]
@@ -141,7 +141,7 @@ def lost_commands(
     if finer > bench.fine:  # oil that rings does so with the rig's own step
         finer = bench.fine
         problem = LostProblem(parameters, bench.training, finer, windows, neutral)
-        fit, windows = fitted_windows(bench, problem, unit)
+        fit, windows = fitted_windows(bench, problem, unit, None)
         unit = fit.unit[: len(parameters)]
     if fit.over_noise > most or not any(len(lost) for lost in windows.values()):
         return None
@@ -207,7 +207,7 @@ def _in_held_out(
             break
         together = in_order(windows[own], found.windows[own])
         problem = LostProblem(parameters, [experiment], step, {own: together}, neutral)
-        _, fitted = fitted_windows(bench, problem, unit, alone=True)
+        _, fitted = fitted_windows(bench, problem, unit, found.windows, alone=True)
         if too_much(fitted[own], experiment):
             break
         windows = fitted

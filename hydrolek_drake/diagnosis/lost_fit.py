@@ -1,9 +1,19 @@
 """Windows in which commands got lost, fitted: least squares, and each tried elsewhere, where these do not lead."""
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from hydrolek_drake.diagnosis.lost_problem import LostProblem
-from hydrolek_drake.diagnosis.lost_windows import GAIN, WINDOW_S, Windows, in_order, joined, recording_of
+from hydrolek_drake.diagnosis.lost_windows import (
+    GAIN,
+    NONE,
+    WINDOW_S,
+    Windows,
+    in_order,
+    joined,
+    recording_of,
+)
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.least_squares import Fit, fit_from
 
@@ -19,7 +29,11 @@ LENGTHS_S = tuple(WINDOW_S * share for share in (0.02, 0.05, 0.1, 0.2, 0.5, 1.0)
 
 
 def fitted_windows(
-    bench: Workbench, problem: LostProblem, nominal: np.ndarray, alone: bool = False
+    bench: Workbench,
+    problem: LostProblem,
+    nominal: np.ndarray,
+    fresh: Mapping[str, Windows] | None,
+    alone: bool = False,
 ) -> tuple[Fit, dict[str, Windows]]:
     """The fit, from some nominal parameters on, and windows without which the data would not do.
 
@@ -27,9 +41,13 @@ def fitted_windows(
         bench: stops it, and counts.
         problem: with the windows about which they lie.
         nominal: parameters. # (n,)
+        fresh: recording -> those of its windows that were not fitted yet, which are tried elsewhere before, and all
+            after the fit; None where they are where they belong, but for what a finer step changes.
         alone: leave these as they are.
     """
-    problem, moved = problem.about(_elsewhere(bench, problem, nominal, dict(problem.begun))), False
+    moved = fresh is None
+    if fresh is not None:
+        problem = problem.about(_elsewhere(bench, problem, nominal, dict(problem.begun), fresh))
     while True:
         begun = problem.start(nominal)
         moving = np.arange(begun.size) >= nominal.size if alone else None
@@ -44,22 +62,27 @@ def fitted_windows(
             problem = problem.about(kept)
             continue
         kept = {name: joined(lost) for name, lost in kept.items()}
-        elsewhere = kept if moved else _elsewhere(bench, problem, nominal, kept)
+        elsewhere = kept if moved else _elsewhere(bench, problem, nominal, kept, kept)
         if elsewhere is kept:
             return fit, kept
         problem, moved = problem.about(elsewhere), True
 
 
 def _elsewhere(
-    bench: Workbench, problem: LostProblem, nominal: np.ndarray, windows: dict[str, Windows]
+    bench: Workbench,
+    problem: LostProblem,
+    nominal: np.ndarray,
+    windows: dict[str, Windows],
+    moving: Mapping[str, Windows],
 ) -> dict[str, Windows]:
-    """The windows, one after the other, where they leave least with everything else as it is; the same if none moves.
+    """Some windows, one after the other, where they leave least with all else as it is; the same if none moves.
 
     Args:
         bench: rollouts side by side.
         problem: with the recordings.
         nominal: parameters. # (n,)
-        windows: fitted.
+        windows: all of them.
+        moving: recording -> those that are tried elsewhere.
     """
     records = problem.parameters.records(nominal)
     step, latest = problem.longest_step, windows
@@ -72,9 +95,9 @@ def _elsewhere(
             bench.alive()
             return float(np.sum(alone.left(records, {own: lost}) ** 2))
 
-        for number in range(len(latest[own])):
-            others, (begin, end) = np.delete(latest[own], number, axis=0), latest[own][number]
-            places = [*tried_about(float(begin), float(end), others), latest[own][number]]
+        for window in moving.get(own, NONE):
+            others, (begin, end) = latest[own][(latest[own] != window).any(axis=1)], window
+            places = [*tried_about(float(begin), float(end), others), window]
             least = bench.side_by_side(lambda place, o=others: left(in_order(o, place[None])), places)
             best = int(np.argmin(least))
             if least[best] < least[-1] - GAIN * max(least[best] / max(experiment.counted, 1), 1.0):

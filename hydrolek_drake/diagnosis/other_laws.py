@@ -4,11 +4,13 @@ One effect does not do: a sine at one of the machine's inputs, such as a pump's 
 at one that says how the machine is built, such as a card's ramp. Both take a few seconds to look for. No effect of the
 list repeats itself in time, so that two of them can only make up for a sine; a constant has one parameter, and two
 effects have two at least.
-Two do not do: any law. Three effects at once are less likely than one thing that is in no list (`law_choice.MANY`).
+Two do not do: any law, and then commands that got lost, which have numbers for every time that it happens and take
+minutes to fit. Three effects at once are less likely than one thing that is in no list (`law_choice.MANY`).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -67,24 +69,45 @@ class OtherLaws:
     apart: bool = False
 
     def __call__(self, nominal: Hypothesis, effects: int) -> FoundLaw | None:
-        """The law that explains both recordings, or None.
+        """The law of the machine that explains both recordings, or None.
 
         Args:
             nominal: the model without effects.
             effects: how many of them do not explain the training data.
         """
+        return self._asked(
+            nominal, partial(_asked_for, effects=effects, apart=self.apart and not self._several)
+        )
+
+    def lost(self, nominal: Hypothesis) -> FoundLaw | None:
+        """Commands that got lost, if that explains both recordings, or None.
+
+        Args:
+            nominal: the model without effects.
+        """
+        return self._asked(nominal, _lost)
+
+    @property
+    def _several(self) -> bool:
+        return len({experiment.joint for experiment in self.held_out}) > 1
+
+    def _asked(self, nominal: Hypothesis, question: "_Question") -> FoundLaw | None:
+        """What is asked of the only joint, or of the one that is followed worst."""
         bench = self.bench
         weighted = bench.with_training(weighted_by(bench, nominal, bench.training))
         weighted.first_s = bench.first_s
         left = weighted.refit(nominal, bench.fine, 1)
         held_out = weighted_by(bench, nominal, self.held_out)
-        if len({experiment.joint for experiment in self.held_out}) == 1:
-            scales = next(iter(self.scales.values()))
-            law = _asked_for(weighted, left, held_out, scales, effects, apart=self.apart)
+        if self._several:
+            law = _at_one_joint(weighted, left, held_out, self.scales, question)
         else:
-            law = _at_one_joint(weighted, left, held_out, self.scales, effects)
+            law = question(weighted, left, held_out, next(iter(self.scales.values())), 1.0)
         bench.evaluations += weighted.evaluations
         return law
+
+
+_Question = Callable[[Workbench, Hypothesis, Sequence[Experiment], Scales, float], FoundLaw | None]
+"""Training data and fits, the model that leaves something, held-out data, scales of the joint, slack."""
 
 
 def _asked_for(
@@ -92,9 +115,9 @@ def _asked_for(
     left: Hypothesis,
     held_out: Sequence[Experiment],
     scales: Scales,
-    effects: int,
-    slack: float = 1.0,
+    slack: float,
     *,
+    effects: int,
     apart: bool = False,
 ) -> FoundLaw | None:
     """The law at the only joint of some data that explains them, or None."""
@@ -109,9 +132,7 @@ def _asked_for(
     law = best_of(bench, asked, laws, ahead_to_beat(ahead.over_noise))
     if law is not None and apart:
         law = law_by_both(bench, left, law, held_out) or law
-    if law is None or not predicting(law, slack):
-        return _lost(bench, asked) if first and left.fit.over_noise > NEAR else None
-    return law if _explaining(law, slack) else None
+    return law if law is not None and predicting(law, slack) and _explaining(law, slack) else None
 
 
 def _explaining(law: FoundLaw, slack: float = 1.0) -> bool:
@@ -119,11 +140,15 @@ def _explaining(law: FoundLaw, slack: float = 1.0) -> bool:
     return law.law.periodic or law.fit.over_noise <= slack * ABOVE_NOISE
 
 
-def _lost(bench: Workbench, asked: Asked) -> FoundLaw | None:
+def _lost(
+    bench: Workbench, left: Hypothesis, held_out: Sequence[Experiment], scales: Scales, slack: float
+) -> FoundLaw | None:
     """Commands that got lost, if that explains the data: windows could make up for a little of much."""
-    left = asked.left
+    if left.fit.over_noise <= NEAR:
+        return None
+    asked = Asked.of(bench, left, held_out, scales)
     needed = MOST_LOST * (left.fit.objective - left.fit.counted)
-    lost = lost_commands(bench, left, asked.held_out, asked.span, asked.step, needed, EXPLAINED)
+    lost = lost_commands(bench, left, held_out, asked.span, asked.step, needed, EXPLAINED)
     return lost if lost is not None and predicting(lost) else None
 
 
@@ -143,7 +168,7 @@ def _at_one_joint(
     left: Hypothesis,
     held_out: Sequence[Experiment],
     scales: Mapping[str, Scales],
-    effects: int,
+    question: _Question,
 ) -> FoundLaw | None:
     """The law at the joint that is followed worst that explains its data, if the others' are explained without."""
     ahead = bench.residuals(left, held_out, bench.fine)
@@ -153,7 +178,7 @@ def _at_one_joint(
     ):
         return None
     one = one_joint(bench, left, held_out, joint, scales[joint])
-    found = _asked_for(one.bench, one.nominal, one.held_out, one.scales, effects, SLACK)
+    found = question(one.bench, one.nominal, one.held_out, one.scales, SLACK)
     bench.evaluations += one.bench.evaluations
     if found is None:
         return None

@@ -5,6 +5,7 @@ that none of them was fitted to (`evidence`).
 """
 
 from collections.abc import Callable, Sequence
+from typing import Protocol
 
 from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.beginning import shown_by
@@ -37,8 +38,16 @@ from hydrolek_drake.diagnosis.settling import moved_on
 from hydrolek_drake.diagnosis.weighing import weigh_anew
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
-Other = Callable[[Hypothesis, int], FoundLaw | None]
-"""What explains what the nominal model leaves, other than effects of the list, of which so many do not."""
+
+class Other(Protocol):
+    """What explains what the nominal model leaves, other than effects of the list."""
+
+    def __call__(self, nominal: Hypothesis, effects: int, /) -> FoundLaw | None:
+        """A law of the machine, where so many effects do not explain the data."""
+
+    def lost(self, nominal: Hypothesis, /) -> FoundLaw | None:
+        """Commands that got lost."""
+
 
 MATERIAL_GAIN = 0.3
 """A third effect is also looked for if one promises to take this share of the squared residuals: far from the noise,
@@ -115,25 +124,30 @@ def _go_on(
     say: Callable[[str], None],
     other: Other | None = None,
 ) -> None:
-    """Add effects to the models of the beam as long as that pays, and nothing else explains the data.
-
-    What is the recordings' own, such as commands that got lost, has numbers for every time that it happens, far more
-    than two effects have, so that two are tried before it is believed.
-    """
+    """Add effects to the models of the beam as long as that pays, and nothing else explains the data."""
     material = MATERIAL_GAIN / bench.alike
     while beam:
         while found.rounds < MOST_GROWN and _worth_going_on(found, material):
             candidates, beam = _grown(bench, found, beam, candidates, say)
-            if found.law is not None and not outdoes(found.law, found.best):
-                found.law = None
-            if found.law is None and other is not None and _something_else_may_do(found, material):
-                law = other(found.baseline, found.rounds)
-                found.law = law if law is not None and outdoes(law, found.best) else None
-            if found.law is not None and (found.law.of_the_machine or found.rounds > 1):
+            found.law = None if other is None else _explained_otherwise(other, found, material)
+            if found.law is not None:
                 return
-        if found.law is not None:
-            return
         beam = exchanged(bench, found, candidates)
+
+
+def _explained_otherwise(other: Other, found: Search, material: float) -> FoundLaw | None:
+    """What explains the data better than the effects found so far, other than more of them; None if nothing does.
+
+    What is the recordings' own, such as commands that got lost, has numbers for every time that it happens, far more
+    than two effects have, so that two are tried before.
+    """
+    questions: list[Callable[[], FoundLaw | None]] = []
+    if _something_else_may_do(found, material):
+        questions.append(lambda: other(found.baseline, found.rounds))
+    if _lost_may_do(found, material):
+        questions.append(lambda: other.lost(found.baseline))
+    told = (question() for question in questions)
+    return next((law for law in told if law is not None and outdoes(law, found.best)), None)
 
 
 def _grown(
@@ -198,6 +212,13 @@ def _something_else_may_do(found: Search, material: float) -> bool:
     if found.rounds == 1 and found.best.fit.over_noise > EXPLAINED:
         return True
     return found.rounds <= 2 and _worth_going_on(found, material)
+
+
+def _lost_may_do(found: Search, material: float) -> bool:
+    """Whether two effects leave something, or one does and no second one is tried."""
+    if found.rounds == 1:
+        return found.best.fit.over_noise > EXPLAINED and not _worth_going_on(found, material)
+    return found.rounds == 2 and found.best.fit.over_noise > ABOVE_NOISE
 
 
 def _worth_going_on(found: Search, material: float) -> bool:

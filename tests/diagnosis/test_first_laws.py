@@ -144,20 +144,22 @@ def test_a_law_in_place_of_effects_must_outdo_them(law, effects, left, better) -
 
 
 @pytest.mark.parametrize(
-    ("of_the_machine", "two_leave", "most_rounds", "asked_at", "told"),
+    ("law_at", "two_leave", "most_rounds", "asked", "told"),
     [
-        (True, 1.0, 2, [1], True),  # a law of the machine ends the search
-        # what is the recordings' own waits until two effects have been tried, stays if they do not do better, ...
-        (False, 1.0, 2, [1], False),
-        (False, 1.5, 2, [1], True),
-        # ... and gives way to another law if they do and leave something
-        (False, 1.0, 3, [1, 2], False),
+        (1, 1.5, 2, ["law"], "law"),  # a law of the machine ends the search
+        (2, 1.5, 3, ["law", "law"], "law"),
+        # what is the recordings' own waits until two effects have been tried, and is not asked where they do, ...
+        (None, 1.0, 2, ["law"], None),
+        (None, 1.5, 2, ["law", "lost"], "lost"),
+        (None, 1.5, 3, ["law", "law", "lost"], "lost"),
+        # ... or until no second one promises anything
+        (None, 1.5, 1, ["law", "lost"], "lost"),
     ],
 )
 def test_two_effects_are_tried_before_what_is_the_recordings_own(
-    monkeypatch, of_the_machine, two_leave, most_rounds, asked_at, told
+    monkeypatch, law_at, two_leave, most_rounds, asked, told
 ) -> None:
-    found, asked = Search(), []
+    found, questions = Search(), []
     found.keep(_with_effects(0, 2.0))
     left_by = {1: 1.5, 2: two_leave, 3: two_leave}
 
@@ -166,14 +168,21 @@ def test_two_effects_are_tried_before_what_is_the_recordings_own(
         found.keep(_with_effects(found.rounds, left_by[found.rounds]))
         return candidates, beam
 
-    def other(nominal, effects):
-        asked.append(effects)
-        if effects > 1:
-            return None
-        return SimpleNamespace(fit=_with_effects(0, 1.03).fit, of_the_machine=of_the_machine)
+    class Other:
+        def __call__(self, nominal, effects):
+            questions.append("law")
+            return self._law("law") if effects == law_at else None
+
+        def lost(self, nominal):
+            questions.append("lost")
+            return self._law("lost")
+
+        def _law(self, what):
+            return SimpleNamespace(fit=_with_effects(0, 1.03).fit, what=what)
 
     monkeypatch.setattr(search, "_grown", grown)
     monkeypatch.setattr(search, "exchanged", lambda *given: [])
-    monkeypatch.setattr(search, "_worth_going_on", lambda found, material: found.rounds < most_rounds)
-    search._go_on(SimpleNamespace(alike=1.0), [], found, [found.best], lambda text: None, other)
-    assert (found.law is not None, asked) == (told, asked_at)
+    monkeypatch.setattr(search, "_worth_going_on", lambda found, material: found.rounds < max(most_rounds, 1))
+    search._go_on(SimpleNamespace(alike=1.0), [], found, [found.best], lambda text: None, Other())
+    assert questions == asked
+    assert (None if found.law is None else found.law.what) == told

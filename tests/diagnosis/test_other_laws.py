@@ -9,7 +9,8 @@ import pytest
 from hydrolek_drake.diagnosis import law_scan, other_laws, search, unlisted
 from hydrolek_drake.diagnosis.attempt import PREDICTED, predicting
 from hydrolek_drake.diagnosis.baseline import fit_baseline
-from hydrolek_drake.diagnosis.effort import NOISE_KNOWN
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED
+from hydrolek_drake.diagnosis.effort import NEAR, NOISE_KNOWN
 from hydrolek_drake.diagnosis.law_naming import BETTER, ahead_to_beat
 from hydrolek_drake.diagnosis.laws import BUILT, TERMS
 from hydrolek_drake.diagnosis.other_laws import OtherLaws, worth_it
@@ -87,7 +88,6 @@ def test_what_is_no_sine_must_come_to_the_noise(
     monkeypatch.setattr(other_laws, "weighted_by", lambda bench, nominal, experiments: experiments)
     monkeypatch.setattr(Asked, "of", lambda *given: Asked(given[1], (), (), None, 1e-3))
     monkeypatch.setattr(other_laws, "promising", lambda *given: tried.append(given[-1]) or [form])
-    monkeypatch.setattr(other_laws, "lost_commands", lambda *_: None)
     monkeypatch.setattr(other_laws, "best_of", lambda *given: beaten.append(given[-1]) or law)
     nominal = SimpleNamespace(fit=SimpleNamespace(objective=2000.0, counted=1000, over_noise=1.4))
     bench = SimpleNamespace(
@@ -158,5 +158,28 @@ def test_what_is_no_sine_must_leave_no_more_than_the_noise_may_be(monkeypatch, p
     monkeypatch.setattr(other_laws, "promising", lambda *given: [])
     monkeypatch.setattr(other_laws, "best_of", lambda *given: law)
     bench = SimpleNamespace(residuals=lambda *given: 2.0 * np.ones(10), fine=1e-3)
-    found = other_laws._asked_for(bench, None, [SimpleNamespace(counted=10)], None, 2)
+    found = other_laws._asked_for(bench, None, [SimpleNamespace(counted=10)], None, 1.0, effects=2)
     assert (found is law) is told
+
+
+@pytest.mark.parametrize(
+    ("nominal", "ahead", "told"),
+    [(1.4, PREDICTED - 0.01, True), (1.4, PREDICTED + 0.01, False), (NEAR, 1.0, False)],
+)
+def test_lost_commands_must_predict_and_are_not_asked_near_the_noise(
+    monkeypatch, nominal, ahead, told
+) -> None:
+    lost = SimpleNamespace(fit=SimpleNamespace(over_noise=EXPLAINED), held_out_over_noise=ahead)
+    asked: list[tuple] = []
+    monkeypatch.setattr(other_laws, "weighted_by", lambda bench, nominal, experiments: experiments)
+    monkeypatch.setattr(Asked, "of", lambda *given: Asked(given[1], (), (), None, 1e-3))
+    monkeypatch.setattr(other_laws, "lost_commands", lambda *given: asked.append(given) or lost)
+    left = SimpleNamespace(fit=SimpleNamespace(objective=2000.0, counted=1000, over_noise=nominal))
+    bench = SimpleNamespace(
+        training=(), first_s=12.0, fine=1e-3, evaluations=0, refit=lambda hypothesis, *_: hypothesis
+    )
+    bench.with_training = lambda _: bench
+    others = OtherLaws(bench, (SimpleNamespace(joint="joint", counted=100),), {"joint": None})
+    assert (others.lost(left) is lost) is told
+    assert len(asked) == (nominal > NEAR)
+    assert all(given[-2:] == (0.25 * 1000.0, EXPLAINED) for given in asked)
