@@ -108,14 +108,16 @@ def test_while_a_search_goes_on_the_other_joints_must_be_explained(
     monkeypatch.setattr(Workbench, "residuals", lambda self, hypothesis, *_: hypothesis.fit.residuals)
     law = SimpleNamespace(parameters={})
     asked_at = []
-    monkeypatch.setattr(
-        other_laws, "_asked_for", lambda one, *given: asked_at.append(one.training[0].joint) or law
-    )
+
+    def question(one, *given):
+        asked_at.append(one.training[0].joint)
+        return law
+
     monkeypatch.setattr(module, "replace", lambda law, **new: SimpleNamespace(**{**vars(law), **new}))
     monkeypatch.setattr(other_laws, "told_anew", lambda *_: Told(law, tuple(experiments), tuple(experiments)))
     monkeypatch.setattr(other_laws, "predicting", lambda *_: True)
     monkeypatch.setattr(other_laws, "_explaining", lambda *_: True)
-    found = other_laws._at_one_joint(bench, left, experiments, dict.fromkeys(MOVING, None), 1)
+    found = other_laws._at_one_joint(bench, left, experiments, dict.fromkeys(MOVING, None), question)
     assert asked_at == (["right_j3"] if asked else [])
     assert (found is not None) == asked
 
