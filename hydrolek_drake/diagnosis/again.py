@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from hydrolek_drake.diagnosis.attempt import PREDICTED, Known, attempt, attempted, unexcited
+from hydrolek_drake.diagnosis.attempt import PREDICTED, Known, attempt, attempted, unexcited, whole
 from hydrolek_drake.diagnosis.balance import told, weighed, weights_by
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, conclude
@@ -70,7 +70,7 @@ def by_their_noise(
     if own.fit.over_noise > min(FAR, NEARER * known.found.best.fit.over_noise):
         return None
     say("this comes near the noise of every signal: going on from there")
-    return _whole(
+    return whole(
         attempted(
             bench,
             known.found,
@@ -91,7 +91,7 @@ def by_more_data(known: Known, candidates: Sequence[Candidate], say: Callable[[s
         return None
     say("the held-out recording shows more than the training data: fitting parts of both")
     both, kept = mixed(known.bench.training, known.held_out)
-    second = _whole(attempt(known.bench.with_training(both), candidates, kept, say))
+    second = whole(attempt(known.bench.with_training(both), candidates, kept, say))
     return replace(second, conclusion=conclude(second.judged, accounted=True))
 
 
@@ -271,7 +271,7 @@ def _gone_on(
     for fitted in bench.side_by_side(lambda h: bench.refit(h, bench.fine, LOOK), fits):
         found.keep(fitted)
     found.weighed_at = found.baseline.fit.over_noise
-    second = _whole(
+    second = whole(
         attempted(bench, found, lambda: search_on(bench, candidates, found, found.best, say), held_out, say)
     )
     second = replace(second, conclusion=conclude(second.judged, accounted=accounted))
@@ -279,14 +279,3 @@ def _gone_on(
         return None
     better = second.conclusion.best.unaccounted < known.conclusion.best.unaccounted
     return second if better or accounted else None
-
-
-def _whole(known: Known) -> Known:
-    """The same, if it was not interrupted.
-
-    Raises:
-        KeyboardInterrupt: it was.
-    """
-    if known.interrupted:
-        raise KeyboardInterrupt
-    return known

@@ -95,6 +95,17 @@ def attempted(
     return Known(bench, found, weighted, judged, conclude(judged), interrupted)
 
 
+def whole(known: Known) -> Known:
+    """The same, if it was not interrupted.
+
+    Raises:
+        KeyboardInterrupt: it was.
+    """
+    if known.interrupted:
+        raise KeyboardInterrupt
+    return known
+
+
 def _judged(
     bench: Workbench, found: Search, held_out: Sequence[Experiment], *, evenly: bool
 ) -> tuple[tuple[Experiment, ...], tuple[Judged, ...]]:

@@ -175,10 +175,10 @@ class Inquiry:
             return answer
         if predicting(law):
             return with_a_law
-        both = law_by_both(answer.known.bench, best, law, answer.known.held_out)
-        if both is None or best.effects:
+        if best.effects:
             return answer
-        return self._in_parts_of_both(replace(with_a_law, law=both))
+        both = law_by_both(answer.known.bench, best, law, answer.known.held_out)
+        return answer if both is None else self._in_parts_of_both(replace(with_a_law, law=both))
 
     def _by_effects_elsewhere(self, answer: Answer) -> Answer:
         """Known effects in place of a law, if from other places they explain both recordings better."""

@@ -40,11 +40,6 @@ def covariance_of(fit: Fit) -> np.ndarray:
     return scale * np.linalg.pinv(jacobian.T @ jacobian)
 
 
-def half_widths(fit: Fit) -> np.ndarray:
-    """Half of the 95 % intervals of the places in the unit cube. # (n,)."""
-    return NORMAL * np.sqrt(np.maximum(np.diag(covariance_of(fit)), 0.0))
-
-
 def intervals_of(parameters: ParameterSet, fit: Fit) -> dict[str, Interval]:
     """Full path -> fitted value with its 95 % interval, cut at the range of the search.
 
@@ -52,8 +47,9 @@ def intervals_of(parameters: ParameterSet, fit: Fit) -> dict[str, Interval]:
         parameters: the first ones of the fit; those of a law may follow.
         fit: whose unit cube is theirs.
     """
+    half = NORMAL * np.sqrt(np.maximum(np.diag(covariance_of(fit)), 0.0))
     found = {}
-    for free, u, h in zip(parameters.free, fit.unit, half_widths(fit), strict=False):
+    for free, u, h in zip(parameters.free, fit.unit, half, strict=False):
         low, high = (free.from_unit(float(np.clip(u + sign * h, 0.0, 1.0))) for sign in (-1.0, 1.0))
         found[free.path] = Interval(free.from_unit(float(u)), low, high)
     return found

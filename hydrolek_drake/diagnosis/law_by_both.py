@@ -8,7 +8,7 @@ explains both, which what only imitates it hardly does. Of effects the same is a
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from hydrolek_drake.diagnosis.attempt import Known, attempted, predicting
+from hydrolek_drake.diagnosis.attempt import Known, attempted, predicting, whole
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, LOOK
 from hydrolek_drake.diagnosis.found import Search
@@ -67,7 +67,4 @@ def known_by_both(known: Known, law: FoundLaw, say: Callable[[str], None]) -> Kn
             found.keep(hypothesis)
         found.weighed_at = found.baseline.fit.over_noise
 
-    second = attempted(again, found, fit_again, kept, say)
-    if second.interrupted:
-        raise KeyboardInterrupt
-    return second
+    return whole(attempted(again, found, fit_again, kept, say))
