@@ -2,7 +2,10 @@
 
 import pytest
 
+from hydrolek_drake.linear_algebra import in_one_thread
 from hydrolek_drake.rigs import Rig, load_rig
+
+in_one_thread()  # tests run side by side
 
 MOVING = ("right_j2", "right_j3")
 

@@ -113,6 +113,8 @@ def _dispatch(arguments: list[str]) -> int:
 def _run_command(name: str, arguments: list[str]) -> int:
     import typer
 
+    from hydrolek_drake.linear_algebra import in_one_thread
+
     entry = COMMANDS[name]
     found: Any = getattr(importlib.import_module(entry.module), entry.attribute)
     if not isinstance(found, typer.Typer):
@@ -124,9 +126,10 @@ def _run_command(name: str, arguments: list[str]) -> int:
     ]  # ClickException: some versions of typer carry their own click
     assert issubclass(click_error, Exception)
     try:
-        status = typer.main.get_command(found).main(
-            arguments, prog_name=f"hydrolek {name}", standalone_mode=False
-        )
+        with in_one_thread():
+            status = typer.main.get_command(found).main(
+                arguments, prog_name=f"hydrolek {name}", standalone_mode=False
+            )
     except click_error as error:
         said: Any = error  # its type is typer's or click's
         problem = " ".join(said.format_message().split()).rstrip(".")

@@ -17,7 +17,7 @@ from hydrolek_drake.identification.parameter_set import free_parameters
 LEAK = {"effects.cylinder.cross_port_leakage.conductance_m3_per_s_Pa": 1.5e-12}
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def led(bench, recorded):
     """Effect that the other search found -> what becomes of the first one, which found nothing."""
     how = {"largest_V": 4.0, "pressure_noise_Pa": 2e4}
@@ -25,10 +25,12 @@ def led(bench, recorded):
     held_out = recorded(bench.with_values(LEAK), bench, seed=7, **how)
     candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", training))
 
+    with ThreadPoolExecutor(2) as pool:
+        baseline = fit_baseline(Workbench(bench, free_parameters(bench), training, pool))
+
     def lead(name):
         with ThreadPoolExecutor(2) as pool:
             workbench = Workbench(bench, free_parameters(bench), training, pool)
-            baseline = fit_baseline(workbench)
             first, other = Search(), Search()
             for found in (first, other):
                 found.keep(baseline)

@@ -33,24 +33,26 @@ SPAN = Span(REACH, None, 1.0, 1.0, 1.0)
 NEARLY_NOISE, FAR_FROM_NOISE = 1.1, 1.3
 
 
-def _recorded(machine, model, name, seed):
+def _recorded_twice(machine, model):
     """Both joints under the same voltages; so short a recording would tell little of what others do."""
     rng = np.random.default_rng(4)
     volts = np.repeat(rng.uniform(-3.0, 3.0, (13, 2)), 50, axis=0)[: TIME.size]
     volts[:50] = 0.0
     station = make_station(machine, command=command_source(TIME, volts), sizes=StepSizes(step=2.5e-4))
     reading = run(station, TIME[-1]).signals["reading"][: TIME.size]
-    noisy = reading + np.radians(NOISE_DEG) * np.random.default_rng(seed).standard_normal(reading.shape)
-    signals = {f"{j}.command": volts[:, i] for i, j in enumerate(MOVING)}
-    signals |= {f"{j}.angle": noisy[:, i] for i, j in enumerate(MOVING)}
-    return felt_together(model, experiments_of(model, Recording(name, TIME, signals, Path(f"{name}.csv"))))
+    recordings = []
+    for name, noise in (("train", rng.spawn(1)[0]), ("holdout", rng.spawn(1)[0])):
+        noisy = reading + np.radians(NOISE_DEG) * noise.standard_normal(reading.shape)
+        signals = {f"{j}.command": volts[:, i] for i, j in enumerate(MOVING)}
+        signals |= {f"{j}.angle": noisy[:, i] for i, j in enumerate(MOVING)}
+        recordings.append(Recording(name, TIME, signals, Path(f"{name}.csv")))
+    return [felt_together(model, experiments_of(model, recording)) for recording in recordings]
 
 
 def test_a_shaken_joint_and_the_one_beside_it_are_explained_by_the_diagram_with_the_law(two_joints) -> None:
     rows = law_record("load", SPAN, None, SHAKING_Nm, 0.0, SHAKING_Hz)
     machine = replace(two_joints, laws={SHAKEN: terms_of(rows, ("N m", "rad"), "planted", "planted")})
-    training = _recorded(machine, two_joints, "train", 4)
-    held_out = _recorded(machine, two_joints, "holdout", 5)
+    training, held_out = _recorded_twice(machine, two_joints)
     shakes = Law(Input("load", "load", "moment", "N m", 1000.0), (), SHAKING_Hz, 0.0, (0.3, 0.1))
     with ThreadPoolExecutor(2) as pool:
         bench = Workbench(two_joints, free_parameters(two_joints), training, pool)
