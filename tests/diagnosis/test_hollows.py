@@ -152,7 +152,9 @@ def test_starts_are_thinned_evenly(count: int) -> None:
     assert len({b["at"] - a["at"] for a, b in pairwise(chosen)}) <= 1
 
 
-@pytest.mark.parametrize("dismissed", [False, True])
+@pytest.mark.parametrize(
+    "dismissed", [False, pytest.param(True, marks=pytest.mark.long("takes a quarter of a minute more"))]
+)
 def test_effects_that_go_astray_ahead_are_fitted_from_the_rigs_own_numbers(known_so_far, dismissed) -> None:
     """Named or dismissed: numbers that the nominal model had bent are not led back by themselves."""
     known, candidates = known_so_far(COULOMB, {"coulomb_N": 1200.0}, (COULOMB,), RIVALS[:1])

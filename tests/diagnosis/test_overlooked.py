@@ -72,8 +72,8 @@ def test_what_promised_nothing_is_found_where_the_held_out_data_leave_more_than_
 def test_what_promises_enough_is_found_whatever_the_held_out_data_leave(nominal_alone, monkeypatch) -> None:
     known, candidates = nominal_alone({f"effects.{DRIFT}.rate_rad_per_min": SLOW_rad_per_min})
     monkeypatch.setattr(overlooked, "MORE_AHEAD", math.inf)
-    second = by_what_was_overlooked(known, candidates, lambda text: None)
-    assert [c.id for c in second.conclusion.best.hypothesis.effects] == [DRIFT]
+    better = overlooked.overlooked(known.bench, known.conclusion.best, candidates, known.held_out)
+    assert [c.id for c in better[0].effects] == [DRIFT]
 
 
 def test_a_healthy_machine_is_not_asked_for_more(nominal_alone) -> None:

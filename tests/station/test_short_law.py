@@ -15,7 +15,7 @@ from hydrolek_drake.station.simulation import command_source, initial_context, r
 from hydrolek_drake.station.station import make_station
 from hydrolek_drake.station.step_sizes import StepSizes
 
-TIMES = np.arange(0.0, 3.0, 0.01)
+TIMES = np.arange(0.0, 2.0, 0.01)
 COMMAND = np.where(TIMES < 0.3, 0.0, 5.0 * np.sign(np.sin(2.0 * np.pi * 0.45 * (TIMES - 0.3))))
 STEP = 2.5e-4
 
