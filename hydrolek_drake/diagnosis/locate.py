@@ -12,6 +12,7 @@ from hydrolek_drake.diagnosis.law_at_a_joint import left_at
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.replay.conditions import conditions_of, growth, shares
 from hydrolek_drake.replay.noise import samples_in, smoothed
 from hydrolek_drake.replay.spans import SMOOTHING_S, worst_spans
@@ -83,6 +84,16 @@ def growing_spans(time: np.ndarray, difference: np.ndarray, noise: float) -> tup
     return tuple(sorted((span.start, span.end) for span in spans))
 
 
+def share_of(baseline: Fit, taken: float) -> float:
+    """Which share of what the nominal model leaves above the noise something takes, 0 to 1.
+
+    Args:
+        baseline: the fitted nominal model; it may leave less than the noise where the noise is told too high.
+        taken: fall of the squared residuals.
+    """
+    return taken / max(baseline.chi_squared - baseline.counted, taken) if taken > 0.0 else 0.0
+
+
 def locate(
     bench: Workbench, best: Hypothesis, baseline: Hypothesis, experiments: tuple[Experiment, ...]
 ) -> tuple[Location, ...]:
@@ -94,8 +105,7 @@ def locate(
         baseline: the nominal model, refitted.
         experiments: the training data.
     """
-    total = max(baseline.fit.chi_squared - best.fit.chi_squared, np.finfo(float).tiny)
-    explained = total / max(baseline.fit.chi_squared - best.fit.counted, total)
+    explained = share_of(baseline.fit, baseline.fit.chi_squared - best.fit.chi_squared)
     found = []
     weights = []
     for candidate in best.effects:
@@ -145,14 +155,12 @@ def locate_law(bench: Workbench, best: Hypothesis, baseline: Hypothesis, law: Fo
         bench.parameters(()).records(bench.parameters(()).unit(law.parameters))
     ).signals
     holds = conditions_for(bench.rig, experiment, signals)
-    total = max(baseline.fit.chi_squared - baseline.fit.counted, np.finfo(float).tiny)
     before, _ = left_at(law.joint, best.fit.residuals, bench.training)
-    share = (before - law.fit.chi_squared) / total
     parts = [law.condition, "" if law.acts else told_condition(experiment.time, law.difference, holds)]
     return Location(
         stage=law.law.input.stage,
         joint=experiment.joint,
-        share=float(np.clip(share, 0.0, 1.0)),
+        share=share_of(baseline.fit, before - law.fit.chi_squared),
         when=law.acts or growing_spans(experiment.time, law.difference, experiment.channels[0].noise),
         condition="; ".join(part for part in parts if part),
     )
