@@ -23,6 +23,7 @@ class Candidate:
         starts: full path -> value, where searches begin.
         utmost: full path -> how far the range of a parameter may be widened: what it can be at all, or the range that
             the rig states. A moment lies in the recording and has none.
+        beneath: no larger than this, its size says no more than what the model's own equations simplify.
     """
 
     effect: Effect
@@ -30,6 +31,7 @@ class Candidate:
     free: tuple[Free, ...]
     starts: tuple[dict[str, float], ...]
     utmost: Mapping[str, tuple[float, float]] = field(compare=False)
+    beneath: float = 0.0
 
     @property
     def id(self) -> str:
@@ -56,6 +58,10 @@ class Candidate:
     def size(self) -> Free:
         """The parameter that switches it on."""
         return next(free for free in self.free if free.path == self.size_path)
+
+    def says_something(self, values: Mapping[str, float]) -> bool:
+        """Whether its size, among fitted values, is beyond what the model's own equations simplify."""
+        return self.beneath == 0.0 or abs(values[self.size_path] - self.effect.neutral_size) > self.beneath
 
     def taken_over(self, other: "Candidate", values: dict[str, float]) -> dict[str, float]:
         """Full path -> value of this effect's parameters that another one, fitted, also has; within the ranges."""
@@ -128,7 +134,14 @@ def _candidate(effect: Effect, rig: Rig, joint: str, scales: Scales) -> Candidat
         free.append(Free(path, lower, upper, log))
         inside = sorted({min(max(value, lower), upper) for value in begin})
         starts.append([(path, value) for value in inside])
-    return Candidate(effect, joint, tuple(free), tuple(dict(c) for c in itertools.product(*starts)), utmost)
+    return Candidate(
+        effect,
+        joint,
+        tuple(free),
+        tuple(dict(c) for c in itertools.product(*starts)),
+        utmost,
+        getattr(scales, effect.beneath) if effect.beneath else 0.0,
+    )
 
 
 def widenings(

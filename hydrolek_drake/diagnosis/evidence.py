@@ -93,7 +93,7 @@ def judge(bench: Workbench, found: Search, held_out: Sequence[Experiment]) -> li
     latest |= {h.ids: h for h in slightly_worse(bench, refitted, latest, slight=0.0)}
 
     def weighed(fits: Sequence[Hypothesis]) -> list[Judged]:
-        paying = [h for h in fits if pays(h, fits)]
+        paying = [h for h in fits if pays(h, fits) and all(c.says_something(h.values) for c in h.effects)]
         judged = bench.side_by_side(lambda h: _predicted(bench, h, held_out, counted, finer), paying)
         return with_probabilities([j for j in judged if predicts(j, judged)])
 

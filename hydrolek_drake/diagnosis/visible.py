@@ -53,7 +53,11 @@ def visible_sizes(bench: Workbench, hypothesis: Hypothesis, scores: Sequence[Sco
     own = hypothesis.ids
     wanted = [s for s in scores if s.candidate.size_path not in own and 0.0 < s.visible_from < math.inf]
     sizes = bench.side_by_side(lambda s: _visible_size(bench, hypothesis, s, across), wanted)
-    found = [Visible(s.candidate, size) for s, size in zip(wanted, sizes, strict=True) if math.isfinite(size)]
+    found = [
+        Visible(s.candidate, max(size, s.candidate.beneath))
+        for s, size in zip(wanted, sizes, strict=True)
+        if math.isfinite(size)
+    ]
     return tuple(sorted(found, key=lambda v: v.candidate.id))
 
 

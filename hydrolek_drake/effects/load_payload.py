@@ -25,6 +25,7 @@ EFFECT = Effect(
         "valve.asymmetric_overlap": "a shifted null leaves the pressures at rest alone",
     },
     needs={"load": ("rotating", "arm", "sliding")},
+    beneath="rod_payload",
 )
 
 

@@ -37,6 +37,8 @@ class Scales:
         payload: mass at the tool whose weight is the load force or, if that is less, whose inertia makes the load
             swing `SLOWED` times slower on the oil [kg]: about a vertical axis nothing weighs. Infinite without either.
         capacity: volume that a full chamber's travel takes over the supply pressure [m^3/Pa].
+        rod_payload: mass at the tool with the moment of inertia by which the rod's own differs between places of what
+            was recorded, where the model has that of mid-travel [kg].
     """
 
     force: float
@@ -56,6 +58,7 @@ class Scales:
     inertia: float
     payload: float
     capacity: float
+    rod_payload: float = 0.0
     unity: float = 1.0
 
     @property
@@ -111,7 +114,13 @@ def motor_scales(force: float, speed: float, inertia: float, travel: float, dura
 
 
 def hydraulic_scales(
-    joint: Any, full_flow: float, lever: float, travel: float, duration: float, nearest: float
+    joint: Any,
+    full_flow: float,
+    lever: float,
+    travel: float,
+    duration: float,
+    nearest: float,
+    levers: tuple[float, float],
 ) -> Scales:
     """Scales of a hydraulic joint.
 
@@ -122,6 +131,7 @@ def hydraulic_scales(
         travel: of the joint in the recording [rad or m].
         duration: of the recording [s].
         nearest: to its retracted end that the actuator came [m or rad].
+        levers: the shortest and the longest within what was recorded [m/rad or 1].
     """
     pressure = float(joint["supply"]["pressure"] - joint["supply"]["tank_pressure"])
     area = float(joint["cylinder"]["area_a"])
@@ -155,4 +165,7 @@ def hydraulic_scales(
             SLOWED**2 * float(load["inertia"]) / spun if spun > 0.0 else math.inf,
         ),
         capacity=area * travel * lever / pressure,
+        rod_payload=float(joint["cylinder"]["rod_mass"]) * (levers[1] ** 2 - levers[0] ** 2) / spun
+        if spun > 0.0
+        else 0.0,
     )

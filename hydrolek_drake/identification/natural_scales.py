@@ -40,8 +40,18 @@ def natural_scales(rig: Rig, joint: str, experiments: Sequence[Experiment]) -> S
     inlet = inlet_conductance(pressure, HALF * pressure, HALF * pressure, record)
     _, lever = stroke_and_lever(0.5 * (low + high), record)
     # a linkage may turn round within what was recorded
-    nearest = min(stroke_and_lever(at, record)[0] for at in np.linspace(low, high, PLACES).tolist())
-    return hydraulic_scales(record, inlet * HALF * pressure, abs(lever), travel, duration, nearest)
+    places = [stroke_and_lever(at, record) for at in np.linspace(low, high, PLACES).tolist()]
+    nearest = min(stroke for stroke, _ in places)
+    levers = [abs(at) for _, at in places]
+    return hydraulic_scales(
+        record,
+        inlet * HALF * pressure,
+        abs(lever),
+        travel,
+        duration,
+        nearest,
+        (min(levers), max(levers)),
+    )
 
 
 def _fastest(experiment: Experiment) -> float:

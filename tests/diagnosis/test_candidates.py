@@ -1,7 +1,9 @@
 """Which effects are candidates on which machine, and how far each is searched."""
 
 import math
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
@@ -9,6 +11,8 @@ from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.effects.scales import SLOWED, Scales, hydraulic_scales
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import ParameterSet
+from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout.one_point import stroke_and_lever
 
@@ -60,7 +64,9 @@ def test_a_payload_is_searched_up_to_what_an_arm_could_carry(joint) -> None:
     rig = load_rig(f"hydrolek_{joint}")
     record = rig.records()[0]
     load = record["load"]
-    scales = hydraulic_scales(record, full_flow=5e-5, lever=0.12, travel=1.0, duration=30.0, nearest=0.0)
+    scales = hydraulic_scales(
+        record, 5e-5, lever=0.12, travel=1.0, duration=30.0, nearest=0.0, levers=(0.1, 0.12)
+    )
     weight = abs(load["payload_gravity_cos"]) + abs(load["payload_gravity_sin"])
     assert scales.payload * load["payload_inertia"] <= SLOWED**2 * load["inertia"] * (1.0 + 1e-12)
     assert scales.payload * weight <= scales.load_force * (1.0 + 1e-12)
@@ -68,10 +74,31 @@ def test_a_payload_is_searched_up_to_what_an_arm_could_carry(joint) -> None:
     assert 50.0 < scales.range_of(payload)[1] < 500.0  # an arm lifts 150 kg (thesis)
 
 
+@pytest.mark.parametrize("joint", ["left_j4", "right_j5"])  # a vane has no rod
+def test_a_payload_must_spin_more_than_the_rod_is_wrong(joint, recorded) -> None:
+    """Thesis (4.9): M_R l^2 in mid-travel, while the lever l changes over the movement."""
+    rig = load_rig(f"hydrolek_{joint}")
+    record = rig.records()[0]
+    load, low, high = record["load"], -0.9, -0.5
+    time = np.arange(0.0, 10.0, 0.01)
+    signals = {f"{joint}.command": np.sign(np.sin(time)), f"{joint}.angle": np.linspace(low, high, time.size)}
+    experiments = experiments_of(rig, Recording("moved", time, signals, Path("moved.csv")))
+    scales = natural_scales(rig, joint, experiments)
+    levers = [stroke_and_lever(at, record)[1] for at in np.linspace(low, high, 1001).tolist()]
+    differs = record["cylinder"]["rod_mass"] * (max(levers) ** 2 - min(levers) ** 2)
+    assert (differs > 0.0) == (joint == "right_j5")
+    assert scales.rod_payload * load["payload_inertia"] == pytest.approx(differs, rel=0.01)
+
+    [payload] = [c for c in candidates_of(rig, joint, scales) if c.id == "load.payload"]
+    assert payload.says_something({payload.size_path: 1.01 * scales.rod_payload + 1e-3})
+    assert payload.says_something({payload.size_path: 0.99 * scales.rod_payload}) == (joint == "left_j4")
+
+
 def test_every_effect_says_how_far_it_is_searched() -> None:
     fields = {*Scales.__dataclass_fields__, "damping", "load_damping", "load_stiffness", "drift_per_min"}
     for effect in EFFECTS.values():
         assert set(effect.search) == {p.name for p in effect.parameters}, effect.id
+        assert effect.beneath in {"", *fields}
         for search in effect.search.values():
             assert search.of in fields and search.beyond in {"", *fields}
             assert all(search.lowest <= start <= search.largest for start in search.starts)

@@ -114,6 +114,21 @@ def test_a_model_that_predicts_is_left_as_it_is(known_so_far) -> None:
     assert _again(known, candidates) is None
 
 
+def test_what_says_no_more_than_the_equations_simplify_is_not_named(known_so_far) -> None:
+    known, _ = known_so_far(COULOMB, {"coulomb_N": 1200.0}, {COULOMB}, (), **NOISY)
+    bench, fitted = known.bench, known.found.best
+    [effect] = fitted.effects
+
+    def judged(beneath_N):
+        found = Search(scores=known.found.scores)
+        found.keep(known.found.baseline)
+        found.keep(replace(fitted, effects=(replace(effect, beneath=beneath_N),)))
+        return conclude(judge(bench, found, known.held_out)).best.hypothesis.effects
+
+    assert [c.id for c in judged(1000.0)] == [COULOMB]
+    assert judged(1500.0) == ()
+
+
 def test_only_a_model_that_reaches_the_noise_of_both_data_is_gone_on_with(known_so_far, monkeypatch) -> None:
     right, candidates = known_so_far(COULOMB, {"coulomb_N": 1200.0}, {COULOMB}, RIVALS[:2], **NOISY)
     named = right.conclusion.best
