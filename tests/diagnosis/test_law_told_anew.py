@@ -41,7 +41,7 @@ def _recorded_twice(machine, model):
     station = make_station(machine, command=command_source(TIME, volts), sizes=StepSizes(step=2.5e-4))
     reading = run(station, TIME[-1]).signals["reading"][: TIME.size]
     recordings = []
-    for name, noise in (("train", rng.spawn(1)[0]), ("holdout", rng.spawn(1)[0])):
+    for name, noise in zip(("train", "holdout"), rng.spawn(2), strict=True):
         noisy = reading + np.radians(NOISE_DEG) * noise.standard_normal(reading.shape)
         signals = {f"{j}.command": volts[:, i] for i, j in enumerate(MOVING)}
         signals |= {f"{j}.angle": noisy[:, i] for i, j in enumerate(MOVING)}
