@@ -15,6 +15,7 @@ from hydrolek_drake.diagnosis.effort import (
     ABOVE_NOISE,
     AT_NOISE,
     BEAM,
+    FALLING,
     FAR,
     HOPELESS,
     MOST_EFFECTS,
@@ -34,7 +35,6 @@ from hydrolek_drake.diagnosis.improving import (
 )
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.score import scores_of
-from hydrolek_drake.diagnosis.settling import moved_on
 from hydrolek_drake.diagnosis.weighing import weigh_anew
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
@@ -172,7 +172,7 @@ def _grown(
     if pruned.fit.over_noise > AT_NOISE:
         widen(bench, found, pruned, candidates)
         lead_on(bench, found)
-        if bench.together and moved_on(pruned, found.best):
+        if bench.together and _moved_on(pruned, found.best):
             weigh_anew(bench, found)
     if found.best.fit.over_noise < NEAR:
         widen_where_promised(bench, found, candidates)
@@ -201,6 +201,11 @@ def outdoes(law: FoundLaw, best: Hypothesis) -> bool:
     # the law's data are weighed by what the nominal model leaves, so that multiples of the noise are compared
     left, needed = law.fit.over_noise**2 * best.fit.counted, gain_needed(best.fit)
     return left + needed * LAW_COSTS < best.fit.objective + needed * len(best.effects)
+
+
+def _moved_on(before: Hypothesis, after: Hypothesis) -> bool:
+    """Whether a fit has taken `FALLING` of what was left beyond the noise."""
+    return after.fit.over_noise - 1.0 < (1.0 - FALLING) * (before.fit.over_noise - 1.0)
 
 
 def _words(count: int) -> str:

@@ -7,7 +7,7 @@ the delayed command changes, so that a fit sees the transport delay as a smooth 
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -17,7 +17,7 @@ from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.law import up_to_the_spool
 from hydrolek_drake.physics.probes import Probe, probe_at
 from hydrolek_drake.physics.solenoid import GAMMA
-from hydrolek_drake.rollout.rates import State, Turned, felt_at, rates, turned
+from hydrolek_drake.rollout.rates import Slopes, State, Turned, felt_at, rates, turned
 
 SIGNALS = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool", "supply_pressure", "force")
 
@@ -29,6 +29,42 @@ NOT_PULLED = np.zeros((0, len(PULLED)))
 def _implicit(h: float, slope: float) -> float:
     """By how much a stiff rate is lessened in a step of `h` seconds, 1 for one that is not."""
     return 1.0 if slope == 0.0 else 1.0 / (1.0 - GAMMA * h * slope)
+
+
+@njit
+def first_stage(s: State, k: State, slope: Slopes, h: float) -> State:
+    """State after a step of `h` seconds with the rates at its beginning, the stiff ones lessened."""
+    return State(
+        s.p_a + h * (k.p_a * _implicit(h, slope.p_a)),
+        s.p_b + h * (k.p_b * _implicit(h, slope.p_b)),
+        s.q + h * k.q,
+        s.w + h * (k.w * _implicit(h, slope.w)),
+        s.flow + h * k.flow,
+        s.tilt + h * k.tilt,
+        s.tilt_rate + h * (k.tilt_rate * _implicit(h, slope.tilt_rate)),
+        s.lead_q + h * k.lead_q,
+        s.lead_w + h * (k.lead_w * _implicit(h, slope.lead_w)),
+    )
+
+
+@njit
+def second_stage(s: State, k: State, m: State, slope: Slopes, h: float) -> State:
+    """State after a step of `h` seconds: rates `k` at its beginning, `m` where the first stage ended."""
+    c_a, c_b, c_w = _implicit(h, slope.p_a), _implicit(h, slope.p_b), _implicit(h, slope.w)
+    c_t, c_l = _implicit(h, slope.tilt_rate), _implicit(h, slope.lead_w)
+    k_a, k_b, k_w, k_t, k_l = k.p_a * c_a, k.p_b * c_b, k.w * c_w, k.tilt_rate * c_t, k.lead_w * c_l
+    half = 0.5 * h
+    return State(
+        max(s.p_a + half * (3.0 * k_a + (m.p_a - 2.0 * k_a) * c_a), 0.0),
+        max(s.p_b + half * (3.0 * k_b + (m.p_b - 2.0 * k_b) * c_b), 0.0),
+        s.q + half * (k.q + m.q),
+        s.w + half * (3.0 * k_w + (m.w - 2.0 * k_w) * c_w),
+        s.flow + half * (k.flow + m.flow),
+        s.tilt + half * (k.tilt + m.tilt),
+        s.tilt_rate + half * (3.0 * k_t + (m.tilt_rate - 2.0 * k_t) * c_t),
+        s.lead_q + half * (k.lead_q + m.lead_q),
+        s.lead_w + half * (3.0 * k_l + (m.lead_w - 2.0 * k_l) * c_l),
+    )
 
 
 @njit
@@ -47,49 +83,90 @@ def _step(
     joint: Any,
 ) -> State:
     """One Rosenbrock-W step of `h` seconds; the spool goes from `x` to `x_next` meanwhile."""
-    k, slope, _, _ = rates(s, x, voltage, time, inertia, probe, law, near, joint)
-    c_a, c_b, c_w = _implicit(h, slope.p_a), _implicit(h, slope.p_b), _implicit(h, slope.w)
-    c_t, c_l = _implicit(h, slope.tilt_rate), _implicit(h, slope.lead_w)
-    k_a, k_b, k_w, k_t, k_l = k.p_a * c_a, k.p_b * c_b, k.w * c_w, k.tilt_rate * c_t, k.lead_w * c_l
-    middle = State(
-        s.p_a + h * k_a,
-        s.p_b + h * k_b,
-        s.q + h * k.q,
-        s.w + h * k_w,
-        s.flow + h * k.flow,
-        s.tilt + h * k.tilt,
-        s.tilt_rate + h * k_t,
-        s.lead_q + h * k.lead_q,
-        s.lead_w + h * k_l,
-    )
-    m, _, _, _ = rates(middle, x_next, voltage, time + h, inertia, probe_next, law, near, joint)
-    half = 0.5 * h
-    return State(
-        max(s.p_a + half * (3.0 * k_a + (m.p_a - 2.0 * k_a) * c_a), 0.0),
-        max(s.p_b + half * (3.0 * k_b + (m.p_b - 2.0 * k_b) * c_b), 0.0),
-        s.q + half * (k.q + m.q),
-        s.w + half * (3.0 * k_w + (m.w - 2.0 * k_w) * c_w),
-        s.flow + half * (k.flow + m.flow),
-        s.tilt + half * (k.tilt + m.tilt),
-        s.tilt_rate + half * (3.0 * k_t + (m.tilt_rate - 2.0 * k_t) * c_t),
-        s.lead_q + half * (k.lead_q + m.lead_q),
-        s.lead_w + half * (3.0 * k_l + (m.lead_w - 2.0 * k_l) * c_l),
-    )
+    k, slope, _, _, _ = rates(s, x, voltage, time, inertia, probe, law, near, joint)
+    middle = first_stage(s, k, slope, h)
+    m, _, _, _, _ = rates(middle, x_next, voltage, time + h, inertia, probe_next, law, near, joint)
+    return second_stage(s, k, m, slope, h)
+
+
+class Drive(NamedTuple):
+    """What moves between a joint's command and its ports."""
+
+    behind: float  # voltage behind the ramp [V]
+    currents: Currents  # of the coils
+    x: float  # spool position [m]
+    xd: float  # its velocity
 
 
 @njit
-def _inertia_at(time: float, rod: float, joint: Any) -> float:
+def driven_on(
+    d: Drive,
+    s: State,
+    volts: float,
+    voltage: float,
+    time: float,
+    h: float,
+    spool_steps: int,
+    early: bool,
+    probe: Probe,
+    probe_next: Probe,
+    law: np.ndarray | None,
+    joint: Any,
+) -> tuple[Drive, float]:
+    """Advance ramp, coils and spool by `h` seconds; also the voltage that drives meanwhile.
+
+    Args:
+        d: where they are.
+        s: the rest of the state.
+        volts: of the command that acts.
+        voltage: of the drive, without what a law adds to the command.
+        time: since switching on [s].
+        h: [s].
+        spool_steps: steps of the spool within `h`.
+        early: whether a law acts before the spool or on it.
+        probe: inputs from outside now.
+        probe_next: after the step.
+        law: how inputs from outside follow from the state, or None.
+        joint: parameter record.
+    """
+    gain = 0.0
+    now = probe
+    if early:
+        now = felt_at(probe, law, time, s, d.x, joint)
+        gain = now.amplifier - probe.amplifier
+        voltage = command.drive_voltage(volts + now.command, joint)
+    behind, drive = command.ramped(d.behind, voltage, h, now.ramp, joint)
+    currents, driving = amplifier.following(d.currents, drive, time + 0.5 * h, h, now.coil_time, joint)
+    gain += 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
+    closing_a, closing_b = valve.flow_forces(
+        supply.supply_pressure(s.flow, joint) + now.supply, s.p_a, s.p_b, now.flow_force, joint
+    )
+    x, xd = solenoid.advance(
+        d.x, d.xd, gain * driving.a, gain * driving.b, h, spool_steps, joint, closing_a, closing_b
+    )
+    return Drive(behind, currents, x, xd), drive
+
+
+@njit
+def acts_early(law: np.ndarray | None, joint: Any) -> bool:
+    """Whether a law acts before the spool or on it."""
+    return up_to_the_spool(law) or (law is not None and joint.valve.flow_force > 0.0)
+
+
+@njit
+def inertia_at(time: float, rod: float, joint: Any) -> float:
+    """Inertia of the load with its payload and of the rod at the joint [kg m^2 or kg]."""
     return load.moving_inertia(time, joint) + rod
 
 
 @njit
-def _arrived(command_values: np.ndarray, held: int, joint: Any) -> float:
+def arrived(command_values: np.ndarray, held: int, joint: Any) -> float:
     """The command that acts [V]; neutral until the first one has arrived, as in the Diagram's transport delay."""
     return command_values[held] if held >= 0 else joint.command.neutral
 
 
 @njit
-def _out_of_bounds(x: float, s: State) -> bool:
+def out_of_bounds(x: float, s: State) -> bool:
     """Whether anything is NaN or far beyond what a machine can do."""
     return not (
         abs(s.q) < 1e3
@@ -101,6 +178,45 @@ def _out_of_bounds(x: float, s: State) -> bool:
         and abs(s.tilt) < 1e3
         and abs(s.lead_q) < 1e3
     )
+
+
+@njit
+def written(
+    d: Drive,
+    s: State,
+    play: float,
+    volts: float,
+    time: float,
+    inertia: float,
+    probe: Probe,
+    law: np.ndarray | None,
+    near: Turned,
+    joint: Any,
+    out: np.ndarray,
+) -> float:
+    """Write a joint's `SIGNALS` at one moment, see `integrate`; the flow that it draws then [m^3/s].
+
+    Args:
+        d: ramp, coils and spool.
+        s: the rest of the state.
+        play: what the sensor's play reads.
+        volts: of the command that acts.
+        time: since switching on [s].
+        inertia: of what moves.
+        probe: inputs from outside.
+        law: how such inputs follow from the state, or None.
+        near: a place that the joint is near to or at.
+        joint: parameter record.
+        out: receives the signals. # (8,)
+    """
+    now = felt_at(probe, law, time, s, d.x, joint)
+    voltage = command.drive_voltage(volts + now.command, joint)
+    drive = d.behind if joint.command.ramp + now.ramp > 0.0 else voltage
+    _, _, p_supply, force, drawn = rates(s, d.x, drive, time, inertia, probe, law, near, joint)
+    out[0] = sensor.reading(play, time, joint) + now.sensor
+    out[1], out[2], out[3], out[4], out[5] = s.q, s.w, s.p_a, s.p_b, d.x
+    out[6], out[7] = p_supply, force
+    return drawn
 
 
 @njit
@@ -155,11 +271,11 @@ def integrate(
         Number of rows written; less than n if the simulation diverged at that row.
     """
     joint = joints[0]
-    x, xd = state[0], state[1]
+    d = Drive(state[13], Currents(state[14], state[15]), state[0], state[1])
     s = State(state[2], state[3], state[4], state[5], state[6], state[7], state[8], state[9], state[10])
     playing = hooks.linkage_gap(joint) > 0.0
     rocking = hooks.base_stiffness(joint) > 0.0
-    early = up_to_the_spool(law) or (law is not None and joint.valve.flow_force > 0.0)
+    early = acts_early(law, joint)
     delay = command.transport_delay(joint)
     rod = load.reflected_rod_inertia(joint)
     begin = times[0]
@@ -167,8 +283,6 @@ def integrate(
     held = -1  # nothing has arrived yet
     play = state[11]
     on = begin - state[12]
-    behind = state[13]
-    currents = Currents(state[14], state[15])
     t = begin
     for row in range(len(times)):
         target = times[row]
@@ -183,57 +297,29 @@ def integrate(
             if following <= last and command_times[following] + delay < target:
                 until = max(command_times[following] + delay, t)
             probe = probe_at(t, begin, probe_spacing, probe_values)
-            arrived = _arrived(command_values, held, joint)
-            voltage = command.drive_voltage(arrived + probe.command, joint)
+            volts = arrived(command_values, held, joint)
+            voltage = command.drive_voltage(volts + probe.command, joint)
             steps = max(math.ceil((until - t) / longest_step - 1e-9), 1)
             h = (until - t) / steps
             if h > 0.0:
                 for i in range(steps):
                     time = t + i * h - on
-                    gain = 0.0
-                    now = probe
-                    if early:
-                        now = felt_at(probe, law, time, s, x, joint)
-                        gain = now.amplifier - probe.amplifier
-                        voltage = command.drive_voltage(arrived + now.command, joint)
-                    behind, drive = command.ramped(behind, voltage, h, now.ramp, joint)
-                    currents, driving = amplifier.following(
-                        currents, drive, time + 0.5 * h, h, now.coil_time, joint
-                    )
                     probe_next = probe_at(t + (i + 1) * h, begin, probe_spacing, probe_values)
-                    gain += 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
-                    closing_a, closing_b = valve.flow_forces(
-                        supply.supply_pressure(s.flow, joint) + now.supply,
-                        s.p_a,
-                        s.p_b,
-                        now.flow_force,
-                        joint,
+                    x = d.x
+                    d, drive = driven_on(
+                        d, s, volts, voltage, time, h, spool_steps, early, probe, probe_next, law, joint
                     )
-                    x_next, xd = solenoid.advance(
-                        x, xd, gain * driving.a, gain * driving.b, h, spool_steps, joint, closing_a, closing_b
-                    )
-                    inertia = _inertia_at(time, rod, joint)
-                    s = _step(s, x, x_next, drive, time, h, inertia, probe, probe_next, law, near, joint)
-                    x = x_next
+                    inertia = inertia_at(time, rod, joint)
+                    s = _step(s, x, d.x, drive, time, h, inertia, probe, probe_next, law, near, joint)
                     probe = probe_next
                     play = sensor.played(play, s.q - s.tilt, joint)
             t = until
-        if _out_of_bounds(x, s):
+        if out_of_bounds(d.x, s):
             return row
         probe = probe_at(t, begin, probe_spacing, probe_values)
-        now = felt_at(probe, law, t - on, s, x, joint)
-        voltage = command.drive_voltage(_arrived(command_values, held, joint) + now.command, joint)
-        inertia = _inertia_at(t - on, rod, joint)
-        driven = behind if joint.command.ramp + now.ramp > 0.0 else voltage
-        _, _, p_supply, force = rates(s, x, driven, t - on, inertia, probe, law, near, joint)
-        out[row, 0] = sensor.reading(play, t - on, joint) + now.sensor
-        out[row, 1] = s.q
-        out[row, 2] = s.w
-        out[row, 3] = s.p_a
-        out[row, 4] = s.p_b
-        out[row, 5] = x
-        out[row, 6] = p_supply
-        out[row, 7] = force
+        inertia = inertia_at(t - on, rod, joint)
+        volts = arrived(command_values, held, joint)
+        written(d, s, play, volts, t - on, inertia, probe, law, near, joint, out[row])
         if pull_time > 0.0 and row + 1 < len(times):
             share = 1.0 - math.exp((t - times[row + 1]) / pull_time)
             s, by = _pulled(s, share, out[row, 0], measured[row])
@@ -242,9 +328,9 @@ def integrate(
         s = State(s.p_a, s.p_b, s.q, s.w, s.flow, s.tilt, s.tilt_rate, s.q, s.w)
     if not rocking:
         s = State(s.p_a, s.p_b, s.q, s.w, s.flow, 0.0, 0.0, s.lead_q, s.lead_w)
-    state[0], state[1] = x, xd
+    state[0], state[1] = d.x, d.xd
     state[2], state[3], state[4], state[5], state[6] = s.p_a, s.p_b, s.q, s.w, s.flow
     state[7], state[8], state[9], state[10] = s.tilt, s.tilt_rate, s.lead_q, s.lead_w
     state[11], state[12] = play, times[-1] - on
-    state[13], state[14], state[15] = behind, currents.a, currents.b
+    state[13], state[14], state[15] = d.behind, d.currents.a, d.currents.b
     return len(times)

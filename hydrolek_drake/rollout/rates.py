@@ -83,8 +83,8 @@ def rates(
     law: np.ndarray | None,
     near: Turned,
     joint: Any,
-) -> tuple[State, Slopes, float, float]:
-    """Rates of the state, their stiff slopes, the supply pressure [Pa] and the rod force [N].
+) -> tuple[State, Slopes, float, float, float]:
+    """Rates of the state, their stiff slopes, supply pressure [Pa], rod force [N] and flow drawn [m^3/s].
 
     Args:
         s: state.
@@ -110,7 +110,7 @@ def rates(
     probe, braking = felt(outside, law, lever, seen)
 
     rate_a = rate_b = slope_a = slope_b = 0.0
-    flow_rate = 0.0
+    flow_rate = drawn = 0.0
     p_supply = 0.0
     slope_f = 0.0
     if not oil:
@@ -169,4 +169,5 @@ def rates(
         Slopes(slope_a, slope_b, slope_w, slope_tilt, slope_lead),
         p_supply,
         force,
+        drawn,
     )

@@ -56,13 +56,16 @@ class Outcome:
     state: np.ndarray
 
 
-def rest_state(joint: np.ndarray, position: float | None = None, time: float = 0.0) -> np.ndarray:
+def rest_state(
+    joint: np.ndarray, position: float | None = None, time: float = 0.0, carried: float | None = None
+) -> np.ndarray:
     """State at rest in balance (bench.md 6): side B at its given pressure, side A carries the load.
 
     Args:
         joint: parameter record, shape (1,).
         position: joint position [rad or m]; None for the rig's own.
         time: since switching on [s], for loads that are picked up later and for what warms up.
+        carried: gravity's moment on it [N m]; None for what it is with the other joints held.
     """
     record = joint[0]
     q = float(record["load"]["initial_position"]) if position is None else position
@@ -73,7 +76,8 @@ def rest_state(joint: np.ndarray, position: float | None = None, time: float = 0
     if record["cylinder"]["variant"] == cylinder.ELECTRIC_MOTOR:
         state[9] = q
         return state
-    needed = load.gravity_load(q, time, record) - load.stop_load(q, 0.0, record)
+    carried = load.gravity_load(q, time, record) if carried is None else carried
+    needed = carried - load.stop_load(q, 0.0, record)
     tilt, lead = rest_tilt_and_lead(record, q, needed)
     state[2], state[3] = rest_pressures(record, lead - tilt, needed)
     state[7], state[9] = tilt, lead
