@@ -3,7 +3,7 @@
 import time as clock
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from threadpoolctl import threadpool_limits
 
@@ -19,6 +19,7 @@ from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
 from hydrolek_drake.diagnosis.moments import intervals_of_moments
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
+from hydrolek_drake.diagnosis.settling import with_numbers_together
 from hydrolek_drake.diagnosis.splitting import prepared
 from hydrolek_drake.diagnosis.visible import Visible, visible_sizes
 from hydrolek_drake.diagnosis.workbench import Workbench
@@ -159,6 +160,11 @@ def _diagnosed(
     proposal: Proposal | None = None
     visible: tuple[Visible, ...] = ()
     try:
+        if bench.together and best.effects and law is None:
+            say("fitting the numbers with all joints at once")
+            told, held_out = with_numbers_together(bench, conclusion.best, held_out, FINER * bench.fine)
+            judged = tuple(told if j is conclusion.best else j for j in judged)
+            conclusion, best = replace(conclusion, best=told), told.hypothesis
         places = locate(bench, best, found.baseline, bench.training)
         if law is not None:
             places = (locate_law(bench, best, found.baseline, law), *places)

@@ -33,7 +33,7 @@ def weighted_by(
     A recorded signal's own movement passes for noise where it is fast; most of it is gone in the residual.
     The error of the integration is told from a second rollout with half the step: the method is of second
     order, so the coarser one is wrong by 4/3 of their difference. What joints that move at the same time do
-    is told by the Diagram where the model is near the noise, and known to `OTHERS_UNKNOWN` elsewhere.
+    is told by rolling out all joints where the model is near the noise, and known to `OTHERS_UNKNOWN` elsewhere.
     """
     problem = bench.problem(hypothesis.effects, bench.fine, experiments)
     records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
@@ -81,7 +81,9 @@ def settled(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:
     if not near or not bench.together:
         return bench.refit(hypothesis, bench.fine, POLISH if near else 1)
     fitted = bench.refit(hypothesis, bench.fine, 2 * LOOK)
-    return fitted if fitted.fit.over_noise <= AT_NOISE else settled_together(bench, fitted)
+    if fitted.fit.over_noise <= AT_NOISE and not fitted.effects:
+        return fitted  # of which nobody asks the numbers
+    return settled_together(bench, fitted)
 
 
 def weigh_anew(bench: Workbench, found: Search) -> None:
@@ -95,7 +97,7 @@ def weigh_anew(bench: Workbench, found: Search) -> None:
         return
     if bench.together and not found.best.effects:
         return  # by which the data are weighed already
-    if bench.together and AT_NOISE < found.best.fit.over_noise < FAR:
+    if bench.together and found.best.fit.over_noise < FAR:
         best = _settled_or_anew(bench, found.best)
     else:
         best = found.best

@@ -149,12 +149,13 @@ class Workbench:
         experiments: Sequence[Experiment] | None = None,
         pull_time: float | None = None,
         difference: float = DIFFERENCE,
+        kind: type[Problem] = Problem,
     ) -> Problem:
         """Residuals of this model, on the training data unless others are given."""
         parameters = self.parameters(effects)
         prior = np.full(len(parameters), np.inf)
         prior[: len(self.nominal)] = SPREAD
-        return Problem(
+        return kind(
             parameters,
             experiments or self.training,
             step,

@@ -15,8 +15,10 @@ from numba import njit
 
 from hydrolek_drake.physics import load
 from hydrolek_drake.physics.probes import PROBES
+from hydrolek_drake.physics.serial_arm import moments_along
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.one_point import stroke_and_lever
+from hydrolek_drake.rollout.together import arm_links, carriers_of, payloads
 
 SPACING_S = 0.01
 """Spacing of the samples of what the others do [s]."""
@@ -109,8 +111,8 @@ def probes_of(
         Joint -> spacing [s] and rows of `probes.PROBES`, from its beginning on.
     """
     records = dict(zip(rig.joints, rig.records(), strict=True))
-    moments = _loads_of_others(rig, records, motions)
     total = np.sum(list(flows.values()), axis=0)
+    moments = _loads_of_others(rig, records, motions, spacing * np.arange(total.size))
     found = {}
     for joint, after in firsts.items():
         rows = np.zeros((total.size, len(PROBES)))
@@ -124,51 +126,32 @@ def _loads_of_others(
     rig: Rig,
     records: Mapping[str, np.void],
     motions: Mapping[str, Motion],
+    times: np.ndarray,
 ) -> dict[str, np.ndarray]:
     """Joint -> moment by which the moving arm resists more than with the other joints held [N m]."""
-    arm = [joint for joint in motions if rig.variant(joint, "load") == "arm"]
+    arm = [joint for joint in rig.joints if joint in motions and rig.variant(joint, "load") == "arm"]
     if not arm:
         return {}
-    from pydrake.multibody.tree import MultibodyForces
-
-    from hydrolek_drake.kinematics.arms import arm_joint, make_arms_plant
-
-    held = dict(rig.held) | {
-        joint: float(records[joint]["load"]["initial_position"])
-        for joint in rig.joints
-        if rig.variant(joint, "load") == "arm" and joint not in arm
-    }
-    plant = make_arms_plant()
-    context = plant.CreateDefaultContext()
-    for joint, position in held.items():
-        arm_joint(plant, joint).set_angle(context, position)
-    places = [arm_joint(plant, joint).velocity_start() for joint in arm]
-    moved = [np.stack([motions[joint][order] for joint in arm], axis=1) for order in range(3)]
-    still = (plant.GetPositions(context).copy(), *(np.zeros(plant.num_velocities()) for _ in range(2)))
-    forces = MultibodyForces(plant)
-    needed = np.empty((len(moved[0]), len(arm)))
-    for n in range(len(needed)):
-        q, w, a = (rest.copy() for rest in still)
-        q[places], w[places], a[places] = (series[n] for series in moved)
-        plant.SetPositions(context, q)
-        plant.SetVelocities(context, w)
-        plant.CalcForceElementsContribution(context, forces)
-        needed[n] = plant.CalcInverseDynamics(context, a, forces)[places]
+    position, velocity, acceleration = (
+        np.stack([motions[joint][order] for joint in arm], axis=1) for order in range(3)
+    )
+    hanging = payloads(carriers_of(rig, arm, rig.records()), times)
+    needed = moments_along(arm_links(rig, arm), position, velocity, acceleration, hanging)
     more = {}
     for column, joint in enumerate(arm):
-        angle, _, acceleration = motions[joint]
-        alone = load.moving_inertia(0.0, records[joint]) * acceleration + _carried(records[joint], angle)
-        more[joint] = needed[:, column] - alone
+        angle, _, accelerated = motions[joint]
+        more[joint] = needed[:, column] - _alone(records[joint], times, angle, accelerated)
     return more
 
 
 @njit(cache=True)
-def _carried(joint: Any, position: np.ndarray) -> np.ndarray:
-    """Gravity's moment on a joint with the others held [N m]. # (n,)."""
-    carried = np.empty(position.size)
+def _alone(joint: Any, times: np.ndarray, position: np.ndarray, acceleration: np.ndarray) -> np.ndarray:
+    """Moment that a joint's motion needs with the others held [N m]. # (n,)."""
+    needed = np.empty(position.size)
     for n in range(position.size):
-        carried[n] = load.gravity_load(position[n], 0.0, joint)
-    return carried
+        carried = load.gravity_load(position[n], times[n], joint)
+        needed[n] = load.moving_inertia(times[n], joint) * acceleration[n] + carried
+    return needed
 
 
 def rows_at(probes: tuple[float, np.ndarray], spacing: float, count: int) -> np.ndarray:

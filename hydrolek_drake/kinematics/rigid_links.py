@@ -53,7 +53,7 @@ def rigid_links(joints: Sequence[str], held: Mapping[str, float]) -> Links:
             )
         )
     columns = [np.ascontiguousarray(np.array(column)) for column in zip(*found, strict=True)]
-    return Links(*columns, gravity=np.array(plant.gravity_field().gravity_vector()))
+    return Links(*[*columns, np.array(plant.gravity_field().gravity_vector())])
 
 
 def _moving_body(plant: MultibodyPlant, body: RigidBody, rows: Mapping[object, int]) -> RigidBody | None:

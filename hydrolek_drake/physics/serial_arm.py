@@ -50,10 +50,8 @@ class Scratch(NamedTuple):
 
 def scratch(count: int) -> Scratch:
     """Room for so many links."""
-    vectors = [np.zeros((count, 3)) for _ in range(8)]
-    return Scratch(
-        np.zeros((count, 3, 3)), *vectors[:7], np.zeros(count), vectors[7], np.zeros((count, 3, 3))
-    )
+    matrices, vectors = np.zeros((2, count, 3, 3)), np.zeros((8, count, 3))
+    return Scratch(*[matrices[0], *vectors[:7], np.zeros(count), vectors[7], matrices[1]])
 
 
 @njit
@@ -88,12 +86,17 @@ def _cross(a: Vector, b: Vector) -> Vector:
 
 @njit
 def _times(matrices: np.ndarray, i: int, v: Vector) -> Vector:
-    m = matrices[i]
+    m = matrices
     return (
-        m[0, 0] * v[0] + m[0, 1] * v[1] + m[0, 2] * v[2],
-        m[1, 0] * v[0] + m[1, 1] * v[1] + m[1, 2] * v[2],
-        m[2, 0] * v[0] + m[2, 1] * v[1] + m[2, 2] * v[2],
+        m[i, 0, 0] * v[0] + m[i, 0, 1] * v[1] + m[i, 0, 2] * v[2],
+        m[i, 1, 0] * v[0] + m[i, 1, 1] * v[1] + m[i, 1, 2] * v[2],
+        m[i, 2, 0] * v[0] + m[i, 2, 1] * v[1] + m[i, 2, 2] * v[2],
     )
+
+
+@njit
+def _put_column(matrices: np.ndarray, i: int, column: int, v: Vector) -> None:
+    matrices[i, 0, column], matrices[i, 1, column], matrices[i, 2, column] = v
 
 
 @njit
@@ -107,33 +110,28 @@ def _turn(links: Links, i: int, angle: float, base: bool, turned: np.ndarray) ->
         (v * x * y + s * z, c + v * y * y, v * y * z - s * x),
         (v * x * z - s * y, v * y * z + s * x, c + v * z * z),
     )
-    fixed = links.turn[i]
+    fixed = links.turn
     for row in range(3):
-        r0, r1, r2 = fixed[row, 0], fixed[row, 1], fixed[row, 2]
+        r0, r1, r2 = fixed[i, row, 0], fixed[i, row, 1], fixed[i, row, 2]
         for column in range(3):
             turned[i, row, column] = r0 * about[0][column] + r1 * about[1][column] + r2 * about[2][column]
     if base:
         return
-    p = turned[links.parent[i]]
+    p = links.parent[i]
     for column in range(3):
-        a, b, c3 = turned[i, 0, column], turned[i, 1, column], turned[i, 2, column]
-        for row in range(3):
-            turned[i, row, column] = p[row, 0] * a + p[row, 1] * b + p[row, 2] * c3
+        own = turned[i, 0, column], turned[i, 1, column], turned[i, 2, column]
+        _put_column(turned, i, column, _times(turned, p, own))
 
 
 @njit
 def _bodies(links: Links, i: int, payload: float, s: Scratch) -> None:
     """Mass, first moment and inertia of a link with its payload, in the base's axes."""
-    r = s.turned[i]
+    r, own = s.turned, links.inertia
     s.mass[i] = links.mass[i]
     _put(s.moment, i, _times(s.turned, i, _of(links.moment, i)))
-    own = links.inertia[i]
-    for a in range(3):
-        for b in range(a, 3):
-            value = 0.0
-            for k in range(3):
-                value += r[a, k] * (own[k, 0] * r[b, 0] + own[k, 1] * r[b, 1] + own[k, 2] * r[b, 2])
-            s.inertia[i, a, b] = s.inertia[i, b, a] = value
+    for b in range(3):  # R I R', column by column
+        column = _times(r, i, _times(own, i, (r[i, b, 0], r[i, b, 1], r[i, b, 2])))
+        _put_column(s.inertia, i, b, column)
     hangs = payload * links.carries[i]
     if hangs > 0.0:
         at = _times(s.turned, i, _of(links.tool, i))
@@ -229,6 +227,45 @@ def motion_equation(
         _add_about(s.inertia, p, s.mass[j], out, _of(s.moment, j))
         _put(s.moment, p, _plus(_of(s.moment, p), _plus(_of(s.moment, j), _scaled(s.mass[j], out))))
         s.mass[p] += s.mass[j]
+
+
+def moments_along(
+    links: Links, q: np.ndarray, w: np.ndarray, a: np.ndarray, payload: np.ndarray | None = None
+) -> np.ndarray:
+    """Moments that a motion needs, M(q) q'' + c(q, q') [N m]. # (k, n).
+
+    Args:
+        links: what turns.
+        q: joint angles [rad]. # (k, n)
+        w: joint speeds [rad/s]. # (k, n)
+        a: joint accelerations [rad/s^2]. # (k, n)
+        payload: that hangs on each link that carries one [kg]; None for none. # (k, n)
+    """
+    needed = np.zeros(q.shape)
+    hanging = np.zeros(q.shape) if payload is None else payload
+    moved = [np.ascontiguousarray(series, dtype=float) for series in (q, w, a)]
+    _moments_along(links, *moved, hanging, scratch(q.shape[1]), needed)
+    return needed
+
+
+@njit(cache=True)
+def _moments_along(
+    links: Links,
+    q: np.ndarray,
+    w: np.ndarray,
+    a: np.ndarray,
+    payload: np.ndarray,
+    s: Scratch,
+    needed: np.ndarray,
+) -> None:
+    n = q.shape[1]
+    matrix, bias = np.zeros((n, n)), np.empty(n)  # entries between two arms stay zero
+    for k in range(len(q)):
+        motion_equation(links, q[k], w[k], payload[k], s, matrix, bias)
+        for i in range(n):
+            needed[k, i] = bias[i]
+            for j in range(n):
+                needed[k, i] += matrix[i, j] * a[k, j]
 
 
 @njit

@@ -5,14 +5,13 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+from numba import njit
 
 from hydrolek_drake.compiled import read_only
-from hydrolek_drake.kinematics.rigid_links import rigid_links
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.law import LAW, law_of
-from hydrolek_drake.physics.serial_arm import Links, motion_equation, scratch
+from hydrolek_drake.physics.serial_arm import Links, moments_along, scratch
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.kernel import Drive, State
 from hydrolek_drake.rollout.rollout import rest_state
 from hydrolek_drake.rollout.together_kernel import TOLD, integrate_together, room
 
@@ -47,93 +46,153 @@ class Together:
     diverged: str | None
 
 
+class JointsTogether:
+    """Joints of a machine that move together, ready to be driven again and again.
+
+    Attributes:
+        joints: that move, in the rig's order; the rest is held where the rig has it.
+    """
+
+    def __init__(self, rig: Rig, joints: Sequence[str]) -> None:
+        """Prepare.
+
+        Args:
+            rig: the machine.
+            joints: that move; all are hydraulic.
+        """
+        self._rig = rig
+        self.joints = tuple(j for j in rig.joints if j in joints)
+        self._places = [rig.joints.index(joint) for joint in self.joints]
+        self._links = arm_links(rig, self.joints)
+        self._longest_step = rig.value("integration.longest_step")
+        self._spool_steps = round(rig.value("integration.spool_steps"))
+
+    def roll_out(
+        self,
+        records: np.ndarray,
+        command_times: np.ndarray,
+        command_values: np.ndarray,
+        times: np.ndarray,
+        positions: np.ndarray,
+        longest_step: float | None = None,
+    ) -> Together:
+        """Drive the joints from rest.
+
+        Args:
+            records: of all joints of the rig, which may have other values than it. # (rig's joints,)
+            command_times: [s], increasing. # (m,)
+            command_values: [V], each held until the next, neutral before the first has arrived. # (m, joints)
+            times: when signals are wanted [s], increasing. # (k,)
+            positions: where the joints rest at the first of these [rad or m]. # (joints,)
+            longest_step: of the integration [s]; None for the rig's own.
+        """
+        own = np.ascontiguousarray(records[self._places])
+        carriers = carriers_of(self._rig, self.joints, records)
+        begun = [
+            rest_state(own[i : i + 1], float(positions[i]), carried=carried)
+            for i, carried in enumerate(self._carried(carriers, positions))
+        ]
+        laws = [law_of(own[i : i + 1]) for i in range(len(own))]
+        rows = [np.zeros(0, LAW) if law is None else law for law in laws]
+        told = np.full((times.size, len(own), len(TOLD)), np.nan)
+        changes = np.concatenate([[True], np.any(np.diff(command_values, axis=0) != 0.0, axis=1)])
+        done = integrate_together(
+            own,
+            carriers,
+            np.array([state[2:11] for state in begun]),
+            np.array([[*state[13:16], *state[:2]] for state in begun]),
+            np.array([state[11] for state in begun]),
+            read_only(command_times[changes]),
+            read_only(command_values[changes]),
+            read_only(times),
+            longest_step or self._longest_step,
+            self._spool_steps,
+            np.concatenate(rows) if any(map(len, rows)) else None,
+            np.concatenate([[0], np.cumsum([len(law) for law in rows])]),
+            self._links,
+            scratch(len(self._links.mass)),
+            room(len(own)),
+            told,
+        )
+        diverged = None if done == times.size else f"left all bounds at {times[done]:.3f} s"
+        return Together(times, self.joints, dict(zip(TOLD, np.moveaxis(told, 2, 0), strict=True)), diverged)
+
+    def _carried(self, carriers: np.ndarray, positions: np.ndarray) -> list[float | None]:
+        """Gravity's moment on each joint at rest [N m]; None where it carries no other joint."""
+        if not len(self._links.mass):
+            return [None] * len(carriers)
+        still = np.zeros((1, len(carriers)))
+        hanging = payloads(carriers, still[:, 0])
+        return moments_along(self._links, positions[None, :], still, still, hanging)[0].tolist()
+
+
 def moving_with(rig: Rig, joints: Sequence[str]) -> tuple[str, ...]:
     """Joints that move when some are driven: all of their arms, which give way on their oil; else these alone."""
-    sides = {joint.split("_")[0] for joint in joints if rig.variant(joint, "load") == "arm"}
+    sides = {joint.split("_")[0] for joint in joints if _of_arm(rig, joint)}
     return tuple(j for j in rig.joints if j in joints or (_of_arm(rig, j) and j.split("_")[0] in sides))
 
 
-def roll_out_together(
-    rig: Rig,
-    joints: Sequence[str],
-    command_times: np.ndarray,
-    command_values: np.ndarray,
-    times: np.ndarray,
-    positions: np.ndarray,
-    longest_step: float | None = None,
-) -> Together:
-    """Drive joints that move together, from rest.
+def arm_links(rig: Rig, joints: Sequence[str]) -> Links:
+    """Links that turn about some joints, in their order, with the rest where the rig holds it; none if no arm has them.
 
     Args:
         rig: the machine.
-        joints: that move, in the rig's order; the rest is held. All are hydraulic.
-        command_times: [s], increasing. # (m,)
-        command_values: [V], each held until the next, neutral before the first has arrived. # (m, joints)
-        times: when signals are wanted [s], increasing. # (k,)
-        positions: where they rest at the first of these [rad or m]. # (joints,)
-        longest_step: of the integration [s]; None for the rig's own.
+        joints: that move, each after those that carry it.
     """
-    places = [rig.joints.index(joint) for joint in joints]
-    records = rig.records()
-    own = np.ascontiguousarray(records[places])
-    links = _links(rig, joints, records)
-    begun = [rest_state(own[i : i + 1], float(q), carried=c) for i, (q, c) in _at_rest(own, links, positions)]
-    states = np.array([state[2:11] for state in begun])
-    drives = np.array([[state[13], state[14], state[15], state[0], state[1]] for state in begun])
-    assert states.shape[1] == len(State._fields) and drives.shape[1] == len(Drive._fields) + 1
-    laws = [law_of(own[i : i + 1]) for i in range(len(own))]
-    rows = [np.zeros(0, LAW) if law is None else law for law in laws]
-    first = np.concatenate([[0], np.cumsum([len(law) for law in rows])])
-    told = np.full((times.size, len(own), len(TOLD)), np.nan)
-    changes = np.concatenate([[True], np.any(np.diff(command_values, axis=0) != 0.0, axis=1)])
-    done = integrate_together(
-        own,
-        states,
-        drives,
-        np.array([state[11] for state in begun]),
-        read_only(command_times[changes]),
-        read_only(command_values[changes]),
-        read_only(times),
-        longest_step or rig.value("integration.longest_step"),
-        round(rig.value("integration.spool_steps")),
-        np.concatenate(rows),
-        first,
-        links,
-        scratch(len(links.mass)),
-        room(len(own)),
-        told,
-    )
-    diverged = None if done == times.size else f"left all bounds at {times[done]:.3f} s"
-    signals = {name: told[:, :, place] for place, name in enumerate(TOLD)}
-    return Together(times, tuple(joints), signals, diverged)
+    if not _of_arm(rig, joints[0]):
+        return _NO_LINKS
+    starts = {j: rig.value(f"joints.{j}.load.initial_position") for j in rig.joints if _of_arm(rig, j)}
+    held = {j: q for j, q in {**starts, **rig.held}.items() if j not in joints}
+    return _links_of(tuple(joints), tuple(sorted(held.items())))
 
 
-def _at_rest(own: np.ndarray, links: Links, positions: np.ndarray) -> list[tuple[int, tuple[float, float | None]]]:
-    """Joint -> where it rests, and gravity's moment on it there; None where it carries no other joint."""
-    n = len(links.mass)
-    carried: list[float | None] = [None] * len(own)
-    if n:
-        bias = np.zeros(n)
-        hanging = np.array([hooks.payload(0.0, record) for record in own])
-        still, q = np.zeros(n), np.array(positions, dtype=float)
-        motion_equation(links, q, still, hanging, scratch(n), np.zeros((n, n)), bias)
-        carried = bias.tolist()
-    return list(enumerate(zip(np.array(positions).tolist(), carried, strict=True)))
+def carriers_of(rig: Rig, joints: Sequence[str], records: np.ndarray) -> np.ndarray:
+    """Records that say what hangs on the tool of each joint's arm: those of its first joint with a payload.
+
+    An arm has one tool, and all of its joints feel the same payload, as in the Diagram.
+
+    Args:
+        rig: the machine.
+        joints: of the links.
+        records: of all joints of the rig. # (rig's joints,)
+
+    Returns:
+        # (joints,)
+    """
+    loaded = records["effects"]["load_payload"]["mass_kg"] > 0.0
+    places = []
+    for joint in joints:
+        arm = [rig.joints.index(j) for j in rig.joints if j.split("_")[0] == joint.split("_")[0]]
+        places.append(next((place for place in arm if loaded[place]), rig.joints.index(joint)))
+    return np.ascontiguousarray(records[places])
+
+
+def payloads(carriers: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """What hangs on the tool of each joint's arm [kg]. # (k, joints).
+
+    Args:
+        carriers: see `carriers_of`. # (joints,)
+        times: since switching on [s]. # (k,)
+    """
+    hanging = np.empty((len(times), len(carriers)))
+    _payloads(carriers, times, hanging)
+    return hanging
+
+
+@njit(cache=True)
+def _payloads(carriers: np.ndarray, times: np.ndarray, hanging: np.ndarray) -> None:
+    for k in range(len(times)):
+        for i in range(len(carriers)):
+            hanging[k, i] = hooks.payload(times[k], carriers[i])
 
 
 def _of_arm(rig: Rig, joint: str) -> bool:
     return rig.variant(joint, "load") == "arm"
 
 
-def _links(rig: Rig, joints: Sequence[str], records: np.ndarray) -> Links:
-    """Links of the arms, with what does not move where the rig holds it."""
-    if not _of_arm(rig, joints[0]):
-        return _NO_LINKS
-    resting = dict(zip(rig.joints, records["load"]["initial_position"].tolist(), strict=True))
-    held = {j: q for j, q in {**resting, **rig.held}.items() if j not in joints}
-    return _links_of(tuple(joints), tuple(sorted(held.items())))
-
-
 @cache
 def _links_of(joints: tuple[str, ...], held: tuple[tuple[str, float], ...]) -> Links:
+    # Drake takes a second to load, and joints mostly move alone
+    from hydrolek_drake.kinematics.rigid_links import rigid_links
+
     return rigid_links(joints, dict(held))

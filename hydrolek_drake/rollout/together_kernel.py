@@ -15,7 +15,7 @@ from numba import njit
 
 from hydrolek_drake.physics import command, hooks, load, sensor, supply
 from hydrolek_drake.physics.amplifier import Currents
-from hydrolek_drake.physics.angle import Angle
+from hydrolek_drake.physics.angle import Angle, angle_near
 from hydrolek_drake.physics.probes import SUPPLY, Probe, added, no_probe
 from hydrolek_drake.physics.serial_arm import Links, Scratch, accelerations, motion_equation
 from hydrolek_drake.physics.solenoid import GAMMA
@@ -48,6 +48,7 @@ class Room(NamedTuple):
     volts: np.ndarray  # voltage that drives meanwhile. # (n,)
     spool: np.ndarray  # its position before the step. # (n,)
     inertia: np.ndarray  # of each joint with the others held. # (n,)
+    rod: np.ndarray  # part of it that is the rod's. # (n,)
     drag: np.ndarray  # D. # (n,)
     drawn: np.ndarray  # from the supply. # (n,)
     torque: np.ndarray  # (n,)
@@ -59,30 +60,44 @@ class Room(NamedTuple):
 
 def room(n: int) -> Room:
     """Room for so many joints."""
-    return Room(
-        *(np.zeros((n, width)) for width in (9, 9, 9, 5, 6)),
-        *(np.zeros(n) for _ in range(8)),
-        np.zeros((n, n)),
-        np.zeros((n, n)),
-    )
+    wide = [np.zeros((n, width)) for width in (len(State._fields),) * 3 + (len(Slopes._fields), 6)]
+    return Room(*wide, *np.zeros((9, n)), *np.zeros((2, n, n)))
 
 
 @njit
 def _state(rows: np.ndarray, i: int) -> State:
-    r = rows[i]
-    return State(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8])
+    r = rows
+    return State(r[i, 0], r[i, 1], r[i, 2], r[i, 3], r[i, 4], r[i, 5], r[i, 6], r[i, 7], r[i, 8])
 
 
 @njit
 def _keep(rows: np.ndarray, i: int, s: State) -> None:
-    r = rows[i]
-    r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8] = s
+    rows[i, 0], rows[i, 1], rows[i, 2], rows[i, 3], rows[i, 4] = s.p_a, s.p_b, s.q, s.w, s.flow
+    rows[i, 5], rows[i, 6], rows[i, 7], rows[i, 8] = s.tilt, s.tilt_rate, s.lead_q, s.lead_w
 
 
 @njit
 def _near(rows: np.ndarray, i: int) -> Turned:
-    r = rows[i]
-    return Turned(Angle(r[0], r[1], r[2]), Angle(r[3], r[4], r[5]))
+    r = rows
+    return Turned(Angle(r[i, 0], r[i, 1], r[i, 2]), Angle(r[i, 3], r[i, 4], r[i, 5]))
+
+
+@njit
+def _own(laws: np.ndarray | None, first: np.ndarray, i: int) -> np.ndarray | None:
+    """Rows of a joint's law; none for any is known when this is compiled, as in `law.felt`."""
+    if laws is None:
+        return None
+    return laws[first[i] : first[i + 1]]
+
+
+@njit
+def _slopes(rows: np.ndarray, i: int) -> Slopes:
+    return Slopes(rows[i, 0], rows[i, 1], rows[i, 2], rows[i, 3], rows[i, 4])
+
+
+@njit
+def _drive(rows: np.ndarray, i: int) -> Drive:
+    return Drive(rows[i, 0], Currents(rows[i, 1], rows[i, 2]), rows[i, 3], rows[i, 4])
 
 
 @njit
@@ -90,15 +105,15 @@ def _shared(
     time: float,
     states: np.ndarray,
     spool: np.ndarray,
-    laws: np.ndarray,
+    laws: np.ndarray | None,
     first: np.ndarray,
     joints: np.ndarray,
 ) -> float:
     """What laws of all joints add to the supply pressure [Pa]."""
     total = 0.0
-    if len(laws) > 0:
+    if laws is not None:
         for i in range(len(joints)):
-            own = laws[first[i] : first[i + 1]]
+            own = _own(laws, first, i)
             total += felt_at(no_probe(), own, time, _state(states, i), spool[i], joints[i]).supply
     return total
 
@@ -110,14 +125,14 @@ def _from_others(
     time: float,
     states: np.ndarray,
     spool: np.ndarray,
-    laws: np.ndarray,
+    laws: np.ndarray | None,
     first: np.ndarray,
     joints: np.ndarray,
 ) -> Probe:
     """What a joint feels of the other joints' laws: their part of the supply pressure."""
-    if shared == 0.0:
+    if laws is None or shared == 0.0:
         return no_probe()
-    own = felt_at(no_probe(), laws[first[i] : first[i + 1]], time, _state(states, i), spool[i], joints[i])
+    own = felt_at(no_probe(), _own(laws, first, i), time, _state(states, i), spool[i], joints[i])
     return added(no_probe(), SUPPLY, shared - own.supply)
 
 
@@ -126,12 +141,13 @@ def _all_rates(
     states: np.ndarray,
     spool: np.ndarray,
     time: float,
-    laws: np.ndarray,
+    laws: np.ndarray | None,
     first: np.ndarray,
     links: Links,
     scratch: Scratch,
     r: Room,
     later: bool,
+    carriers: np.ndarray,
     joints: np.ndarray,
 ) -> None:
     """Rates of all joints into `r.rates` with their slopes, or into `r.later`; M into `r.mass` or `r.factor`.
@@ -146,17 +162,17 @@ def _all_rates(
         joint = joints[i]
         s = _state(states, i)
         outside = _from_others(i, shared, time, states, spool, laws, first, joints)
-        own = laws[first[i] : first[i + 1]]
-        k, slope, _, _, drawn = rates(
-            s, spool[i], r.volts[i], time, r.inertia[i], outside, own, _near(r.near, i), joint
-        )
+        own = _own(laws, first, i)
+        near = _near(r.near, i)
+        k, slope, _, _, drawn = rates(s, spool[i], r.volts[i], time, r.inertia[i], outside, own, near, joint)
         _keep(into, i, k)
         total += drawn
         if not later:
-            row = r.slopes[i]
-            row[0], row[1], row[2], row[3], row[4] = slope
-        r.torque[i] = k.w * r.inertia[i] + load.gravity_load(s.q, time, joint)
-        r.payload[i] = hooks.payload(time, joint)
+            r.slopes[i, 0], r.slopes[i, 1], r.slopes[i, 2] = slope.p_a, slope.p_b, slope.w
+            r.slopes[i, 3], r.slopes[i, 4] = slope.tilt_rate, slope.lead_w
+        carried = load.gravity_load_at(angle_near(s.q, near.position), time, joint)
+        r.torque[i] = k.w * r.inertia[i] + carried
+        r.payload[i] = hooks.payload(time, carriers[i])
     for i in range(n):
         into[i, 4] = supply.flow_rate_of_change(states[i, 4], total, joints[i])
     if len(links.mass) == 0:
@@ -164,7 +180,7 @@ def _all_rates(
     matrix = r.factor if later else r.mass
     motion_equation(links, states[:, 2], states[:, 3], r.payload, scratch, matrix, r.bias)
     for i in range(n):
-        matrix[i, i] += load.reflected_rod_inertia(joints[i])
+        matrix[i, i] += r.rod[i]
         r.torque[i] -= r.bias[i]
 
 
@@ -210,11 +226,12 @@ def _step(
     time: float,
     h: float,
     spool_steps: int,
-    laws: np.ndarray,
+    laws: np.ndarray | None,
     first: np.ndarray,
     links: Links,
     scratch: Scratch,
     r: Room,
+    carriers: np.ndarray,
     joints: np.ndarray,
 ) -> None:
     """One step of `h` seconds of all joints; rows of `drives` are those of `Drive`."""
@@ -222,10 +239,9 @@ def _step(
     shared = _shared(time, states, drives[:, 3], laws, first, joints)
     for i in range(n):
         joint = joints[i]
-        own = laws[first[i] : first[i + 1]]
+        own = _own(laws, first, i)
         outside = _from_others(i, shared, time, states, drives[:, 3], laws, first, joints)
-        row = drives[i]
-        d = Drive(row[0], Currents(row[1], row[2]), row[3], row[4])
+        d = _drive(drives, i)
         voltage = command.drive_voltage(commands[i], joint)
         early = acts_early(own, joint)
         s = _state(states, i)
@@ -233,29 +249,27 @@ def _step(
         d, r.volts[i] = driven_on(
             d, s, commands[i], voltage, time, h, spool_steps, early, outside, outside, own, joint
         )
-        row[0], row[1], row[2], row[3], row[4] = d.behind, d.currents.a, d.currents.b, d.x, d.xd
-        r.inertia[i] = inertia_at(time, load.reflected_rod_inertia(joint), joint)
+        drives[i, 0], drives[i, 1], drives[i, 2] = d.behind, d.currents.a, d.currents.b
+        drives[i, 3], drives[i, 4] = d.x, d.xd
+        r.inertia[i] = inertia_at(time, r.rod[i], joint)
     linked = len(links.mass) > 0
-    _all_rates(states, r.spool, time, laws, first, links, scratch, r, False, joints)
+    _all_rates(states, r.spool, time, laws, first, links, scratch, r, False, carriers, joints)
     if linked:
         _arm_begins(r, h)
     for i in range(n):
-        slope = r.slopes[i]
-        stiff = Slopes(slope[0], slope[1], slope[2], slope[3], slope[4])
-        _keep(r.middle, i, first_stage(_state(states, i), _state(r.rates, i), stiff, h))
-    _all_rates(r.middle, drives[:, 3], time + h, laws, first, links, scratch, r, True, joints)
+        _keep(r.middle, i, first_stage(_state(states, i), _state(r.rates, i), _slopes(r.slopes, i), h))
+    _all_rates(r.middle, drives[:, 3], time + h, laws, first, links, scratch, r, True, carriers, joints)
     if linked:
         _arm_goes_on(r, h)
     for i in range(n):
-        slope = r.slopes[i]
-        stiff = Slopes(slope[0], slope[1], slope[2], slope[3], slope[4])
-        s = second_stage(_state(states, i), _state(r.rates, i), _state(r.later, i), stiff, h)
+        s = second_stage(_state(states, i), _state(r.rates, i), _state(r.later, i), _slopes(r.slopes, i), h)
         _keep(states, i, s)
 
 
 @njit(cache=True, nogil=True)
 def integrate_together(
     joints: np.ndarray,
+    carriers: np.ndarray,
     states: np.ndarray,
     drives: np.ndarray,
     plays: np.ndarray,
@@ -264,7 +278,7 @@ def integrate_together(
     times: np.ndarray,
     longest_step: float,
     spool_steps: int,
-    laws: np.ndarray,
+    laws: np.ndarray | None,
     first: np.ndarray,
     links: Links,
     scratch: Scratch,
@@ -275,6 +289,7 @@ def integrate_together(
 
     Args:
         joints: parameter records, shape (n,).
+        carriers: records that say what hangs on each link, shape (n,).
         states: rows of `State`; all have the flow of the supply, shape (n, 9).
         drives: rows of `Drive`, shape (n, 5).
         plays: what the sensors' plays read, shape (n,).
@@ -283,7 +298,7 @@ def integrate_together(
         times: when to write [s], shape (k,); the integration starts at the first, when the machine is switched on.
         longest_step: [s].
         spool_steps: spool steps within one step.
-        laws: rows of `law.LAW` of all joints, joint after joint.
+        laws: rows of `law.LAW` of all joints, joint after joint, or None.
         first: which of them is a joint's first one, and their number at the end, shape (n + 1,).
         links: of the arms that the joints turn, in their order, or without rows.
         scratch: room for as many.
@@ -299,6 +314,7 @@ def integrate_together(
     delays = np.empty(n)
     acting = np.empty(n)
     for i in range(n):
+        r.rod[i] = load.reflected_rod_inertia(joints[i])
         delays[i] = command.transport_delay(joints[i])
         acting[i] = arrived(command_values[:, i], -1, joints[i])
     on = times[0]
@@ -332,7 +348,7 @@ def integrate_together(
                         states,
                         drives,
                         acting,
-                        t + step * h,
+                        t + step * h - on,
                         h,
                         spool_steps,
                         laws,
@@ -340,6 +356,7 @@ def integrate_together(
                         links,
                         scratch,
                         r,
+                        carriers,
                         joints,
                     )
                     for i in range(n):
@@ -348,13 +365,12 @@ def integrate_together(
         now = t - on
         shared = _shared(now, states, drives[:, 3], laws, first, joints)
         for i in range(n):
-            joint, s, own = joints[i], _state(states, i), laws[first[i] : first[i + 1]]
+            joint, s, own = joints[i], _state(states, i), _own(laws, first, i)
             if out_of_bounds(drives[i, 3], s):
                 return row
-            d = drives[i]
-            drive = Drive(d[0], Currents(d[1], d[2]), d[3], d[4])
+            drive = _drive(drives, i)
             outside = _from_others(i, shared, now, states, drives[:, 3], laws, first, joints)
-            inertia = inertia_at(now, load.reflected_rod_inertia(joint), joint)
+            inertia = inertia_at(now, r.rod[i], joint)
             acts = arrived(command_values[:, i], held[i], joint)
             told = out[row, i]
             told[8] = written(

@@ -1,99 +1,132 @@
 """Joints that move together: parameters are fitted with what the joints do to each other."""
 
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis import settling, weighing
-from hydrolek_drake.diagnosis.settling import corrected
-from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.diagnosis import weighing
+from hydrolek_drake.diagnosis.candidates import candidates_of
+from hydrolek_drake.diagnosis.intervals import intervals_of
+from hydrolek_drake.diagnosis.judged import Judged
+from hydrolek_drake.diagnosis.settling import ProblemTogether, settled_together, with_numbers_together
+from hydrolek_drake.diagnosis.together import OneRecording, felt_together, recordings_of
+from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.parameter_set import free_parameters
+from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.recordings import Recording
+from hydrolek_drake.rigs import Rig, load_rig
+from hydrolek_drake.rollout.together import JointsTogether
 
-NAMES = ("a", "b", "c", "d")
-TRUTH = np.array([0.3, 0.6, 0.45, 0.7])
-NOISE = 1e-3
-
-
-class _Bench:
-    """Residuals own (u - truth) + others (told - truth) over the noise: `told` is what the Diagram was asked with."""
-
-    together, fine = True, 5e-4
-
-    def __init__(self, start: np.ndarray):
-        rng = np.random.default_rng(3)
-        self.own = rng.standard_normal((40, 4))
-        round_and_round = np.kron(np.eye(2), [[0.0, -1.1], [1.1, 0.0]])  # turns lead ever farther away
-        self.others = self.own @ round_and_round + 0.3 * rng.standard_normal((40, 4))
-        self.recorded = self.training = (start,)
-        self.rig = SimpleNamespace(with_values=lambda values: np.array([values[n] for n in NAMES]))
-        self.noise = NOISE * rng.standard_normal(40)
-
-    def parameters(self, effects):
-        return SimpleNamespace(values=lambda unit: dict(zip(NAMES, unit, strict=True)))
-
-    def movable(self, effects, parameters):
-        return np.ones(4, dtype=bool)
-
-    def alive(self):
-        pass
-
-    def fit(self, effects, values, step, most_steps):
-        unit = np.array([values[n] for n in NAMES])
-        if most_steps > 1:  # of its own rollouts, with the others as told: to the end
-            known = self.others @ (self.training[0] - TRUTH) + self.noise
-            unit = TRUTH - np.linalg.lstsq(self.own, known, rcond=None)[0]
-        left = self.own @ (unit - TRUTH) + self.others @ (self.training[0] - TRUTH) + self.noise
-        fit = Fit(unit, left / NOISE, np.zeros(4), self.own / NOISE, np.zeros((4, 4)), 40, 1)
-        return SimpleNamespace(effects=effects, values=dict(zip(NAMES, unit, strict=True)), fit=fit)
-
-    def refit(self, hypothesis, step, most_steps):
-        return self.fit(hypothesis.effects, hypothesis.values, step, most_steps)
+MOVING = ("right_j2", "right_j3")
+TIME = np.arange(0.0, 10.0 + 0.005, 0.01)
+NOISE_DEG = 0.05
+DROOP = "joints.right_j2.effects.supply.pressure_droop.resistance_Pa_s_per_m3"
+TRUTH = {
+    DROOP: 3e10,
+    "joints.right_j2.cylinder.area_a": 1.03,  # times the rig's own
+    "joints.right_j3.cylinder.area_a": 0.98,
+    "joints.right_j2.valve.full_opening_b": 0.97,
+    "joints.right_j3.amplifier.max_current_a": 1.02,
+}
 
 
-@pytest.fixture(autouse=True)
-def diagram(monkeypatch):
-    """The Diagram tells what the others do with the values that it is asked with."""
-
-    monkeypatch.setattr(settling, "felt_together", lambda rig, experiments: [rig])
-
-
-def test_it_ends_where_turns_with_the_diagram_do_not() -> None:
-    start = TRUTH + 0.02
-    bench = _Bench(start)
-    turns = bench.fit((), dict(zip(NAMES, start, strict=True)), bench.fine, 1)
-    for _ in range(20):
-        bench.training = (turns.fit.unit,)
-        turns = bench.refit(turns, bench.fine, 30)
-    bench.training = (turns.fit.unit,)
-    assert bench.refit(turns, bench.fine, 1).fit.over_noise > 10.0
-
-    bench.training = (start,)
-    begun = bench.fit((), dict(zip(NAMES, start, strict=True)), bench.fine, 1)
-    found = settling.settled_together(bench, begun)
-    least = np.linalg.lstsq(bench.own + bench.others, bench.noise, rcond=None)[1]
-    assert found.fit.chi_squared == pytest.approx(least[0] / NOISE**2, rel=1e-3)
-    assert found.fit.unit == pytest.approx(TRUTH, abs=2.0 * NOISE)
-    assert bench.training[0] == pytest.approx(found.fit.unit, abs=1e-12)  # told by the place that counts
+def _recorded(rig: Rig, machine: Rig, seed: int, moving: tuple[str, ...] = MOVING) -> list[Experiment]:
+    """A noisy recording of joints of the machine, as experiments of the rig."""
+    rng = np.random.default_rng(seed)
+    volts = np.repeat(rng.uniform(-4.0, 4.0, (21, 2)), 50, axis=0)[: TIME.size]
+    volts[:50] = 0.0
+    records = machine.records()
+    places = [machine.joints.index(joint) for joint in moving]
+    starts = records["load"]["initial_position"][places]
+    done = JointsTogether(machine, moving).roll_out(records, TIME, volts, TIME, starts, 2.5e-4)
+    noise = np.radians(NOISE_DEG) * rng.standard_normal((TIME.size, 2))
+    signals = {f"{j}.command": volts[:, i] for i, j in enumerate(moving)}
+    signals |= {f"{j}.angle": done.signals["reading"][:, i] + noise[:, i] for i, j in enumerate(moving)}
+    return experiments_of(rig, Recording(f"made {seed}", TIME, signals, Path(f"made_{seed}.csv")))
 
 
-def test_the_best_place_counts_and_not_the_last(monkeypatch) -> None:
-    bench = _Bench(TRUTH + 0.02)
-    begun = bench.fit((), dict(zip(NAMES, TRUTH + 0.02, strict=True)), bench.fine, 1)
-    monkeypatch.setattr(settling, "damped_step", lambda best, jacobian, moving, damping: np.full(4, 0.05))
-    found = settling.settled_together(bench, begun)
-    assert found.fit.unit == pytest.approx(TRUTH + 0.02)
-    assert bench.training[0] == pytest.approx(TRUTH + 0.02)
+@pytest.fixture(scope="module")
+def machine(two_joints) -> Rig:
+    """A machine whose pump gives way, with numbers of its own."""
+    own = {path: two_joints.value(path) * size for path, size in TRUTH.items() if path != DROOP}
+    return two_joints.with_values({**own, DROOP: TRUTH[DROOP]})
 
 
-def test_a_corrected_jacobian_agrees_with_every_way_and_is_left_alone_across_them() -> None:
-    rng = np.random.default_rng(1)
-    jacobian, ways, changes = rng.normal(size=(7, 4)), rng.normal(size=(2, 4)), rng.normal(size=(2, 7))
-    told = corrected(jacobian, list(ways), list(changes))
-    for way, change in zip(ways, changes, strict=True):
-        assert told @ way == pytest.approx(change)
-    across = np.linalg.svd(ways)[2][2:]
-    assert told @ across.T == pytest.approx(jacobian @ across.T)
-    assert corrected(jacobian, [], []) is jacobian
+@pytest.fixture(scope="module")
+def begun(two_joints, machine) -> Iterator[tuple[Workbench, object]]:
+    """The droop fitted with what measured angles tell of the other joint."""
+    training = _recorded(two_joints, machine, 1)
+    nominal = free_parameters(two_joints, [path for path in TRUTH if path != DROOP])
+    with ThreadPoolExecutor(1) as pool:
+        bench = Workbench(two_joints, nominal, training, pool)
+        scales = natural_scales(two_joints, MOVING[0], training)
+        droop = next(c for c in candidates_of(two_joints, MOVING[0], scales) if c.size_path == DROOP)
+        yield bench, bench.fit((droop,), {DROOP: 1e10}, bench.fine, 15)
+
+
+def _true_place(bench: Workbench, machine: Rig, effects) -> np.ndarray:
+    parameters = bench.parameters(effects)
+    return parameters.unit({path: machine.value(path) for path in parameters.paths})
+
+
+def test_a_droop_that_the_joints_share_is_fitted_to_its_size(begun, machine) -> None:
+    bench, by_angles = begun
+    recorded = bench.training
+    assert by_angles.fit.over_noise > 1.2  # smoothed angles do not tell how the joints shake each other
+    found = settled_together(bench, by_angles)
+    problem = bench.problem(found.effects, bench.fine, kind=ProblemTogether)
+    left = problem.residuals(found.fit.unit)
+    true = problem.residuals(_true_place(bench, machine, found.effects))
+    assert left @ left < true @ true  # at the bottom: lower than where the truth lies
+    assert found.values[DROOP] == pytest.approx(TRUTH[DROOP], rel=0.02)
+    assert found.fit.over_noise == pytest.approx(np.sqrt(left @ left / problem.counted), abs=0.02)
+
+    ahead = _recorded(bench.rig, machine, 2)
+    told, held_out = with_numbers_together(bench, Judged(found, np.zeros(1), 1), ahead, 0.5 * bench.fine)
+    counted = sum(experiment.counted for experiment in held_out)
+    chance = 4.0 / np.sqrt(2.0 * counted)
+    assert np.sqrt(told.held_out @ told.held_out / counted) == pytest.approx(1.0, abs=chance)
+    for path, known in intervals_of(bench.parameters(found.effects), told.hypothesis.fit).items():
+        width = 0.5 * (known.high - known.low)
+        assert abs(known.value - machine.value(path)) < 2.0 * width, path
+        assert width < 0.05 * machine.value(path), path
+    bench.training = recorded
+
+
+def test_a_jacobian_of_one_joint_at_a_time_lacks_what_it_does_to_the_others(begun, machine) -> None:
+    bench, by_angles = begun
+    unit = _true_place(bench, machine, by_angles.effects)
+    recorded = bench.training
+    bench.training = tuple(felt_together(machine, recorded))
+    problem = bench.problem(by_angles.effects, bench.fine, kind=ProblemTogether)
+    alone = bench.problem(by_angles.effects, bench.fine).jacobian(unit)
+    together = problem.jacobian(unit)
+    way = 1e-4 * np.ones(unit.size)
+    change = problem.residuals(unit + way) - problem.residuals(unit)
+    amiss, much_amiss = (np.linalg.norm(j @ way - change) / np.linalg.norm(change) for j in (together, alone))
+    assert amiss < 0.02
+    assert much_amiss > 5.0 * amiss
+    bench.training = recorded
+
+
+def test_joints_that_do_not_move_are_held() -> None:
+    whole = load_rig("hydrolek", {})
+    group = recordings_of(_recorded(whole, whole, 3))[0]
+    recording = OneRecording(whole, group)
+    short = recording.times[:300]
+    every = recording.roll_out(whole.records(), short)
+    fewer = recording.without_still(whole.records()).roll_out(whole.records(), short)
+    assert len(every.joints) == 7
+    assert set(MOVING) < set(fewer.joints) < set(every.joints)
+    for joint in MOVING:
+        one, other = (d.signals["reading"][:, d.joints.index(joint)] for d in (every, fewer))
+        assert one == pytest.approx(other, abs=1e-8)
 
 
 @pytest.mark.parametrize("effects", [("droop",), ("droop", "friction")])

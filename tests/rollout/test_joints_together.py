@@ -1,0 +1,104 @@
+"""Joints that move together: the compiled rollout moves as the Diagram does, and as a joint alone where it is alone."""
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.rollout import roll_out
+from hydrolek_drake.rollout.rollout import rest_state
+from hydrolek_drake.rollout.together import JointsTogether, moving_with
+from hydrolek_drake.station.simulation import command_source, initial_context, run
+from hydrolek_drake.station.station import make_station
+from hydrolek_drake.station.step_sizes import StepSizes
+
+MOVING = ("right_j2", "right_j3")
+TIME = np.arange(0.0, 4.0 + 0.005, 0.01)
+ALLOWED_DEG = 0.02
+"""What the rollout's own step may cost (hydrolek.yaml)."""
+LAW = {"at": "supply", "sine": 4e5, "frequency": 1.5}
+
+
+def _volts(joints: int, seed: int = 4) -> np.ndarray:
+    rng = np.random.default_rng(seed)
+    volts = np.repeat(rng.uniform(-3.0, 3.0, (9, joints)), 50, axis=0)[: TIME.size]
+    volts[:50] = 0.0
+    return volts
+
+
+def _off_deg(rig, step: float | None = None) -> np.ndarray:
+    """Largest difference of each joint's reading between the rollout of all and the Diagram."""
+    volts, records = _volts(2), rig.records()
+    places = records["load"]["initial_position"]
+    station = make_station(rig, command=command_source(TIME, volts), sizes=StepSizes(step=2.5e-4))
+    wanted = run(station, TIME[-1], context=initial_context(station, places)).signals["reading"]
+    done = JointsTogether(rig, MOVING).roll_out(records, TIME, volts, TIME, places, step)
+    assert done.diverged is None
+    return np.degrees(np.abs(done.signals["reading"] - wanted[: TIME.size]).max(axis=0))
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {},
+        {"joints.right_j2.effects.supply.pressure_droop.resistance_Pa_s_per_m3": 3e10},
+        {
+            "joints.right_j2.effects.load.payload.mass_kg": 15.0,
+            "joints.right_j2.effects.load.payload.time_s": 1.7,
+        },
+        {
+            "joints.right_j3.effects.cylinder.coulomb_friction.coulomb_N": 2000.0,
+            "joints.right_j2.effects.valve.null_leakage.conductance_m3_per_s_Pa": 1e-13,
+        },
+        {"joints.right_j2.effects.base.compliance.stiffness_Nm_per_rad": 2e5},
+        {"joints.right_j2.effects.linkage.backlash.gap_rad": 0.005},
+    ],
+    ids=["healthy", "droop", "payload", "friction and leak", "rocking base", "play"],
+)
+def test_joints_move_as_in_the_diagram(two_joints, values) -> None:
+    step = 1e-4 if any("backlash" in path for path in values) else None  # contacts, as in docs/agreement.md
+    assert _off_deg(two_joints.with_values(values), step).max() < ALLOWED_DEG
+
+
+def test_a_joint_that_moves_alone_moves_as_in_its_own_rollout(two_joints) -> None:
+    volts, records = _volts(1), two_joints.records()
+    alone = load_rig("hydrolek_right_j2", {})
+    start = rest_state(alone.records(), 0.2)
+    wanted = roll_out(
+        alone.records(),
+        TIME,
+        volts[:, 0],
+        TIME,
+        state=start,
+        longest_step=alone.value("integration.longest_step"),
+    ).signals
+    done = JointsTogether(two_joints, MOVING[:1]).roll_out(records, TIME, volts, TIME, np.array([0.2]))
+    assert done.signals["reading"][:, 0] == pytest.approx(wanted.reading, abs=1e-9)
+    assert done.signals["pressure_a"][:, 0] == pytest.approx(wanted.pressure_a, rel=1e-6)
+
+
+def test_its_error_falls_with_the_square_of_the_step(two_joints) -> None:
+    volts, records = _volts(2), two_joints.records()
+    machine, places = JointsTogether(two_joints, MOVING), records["load"]["initial_position"]
+
+    def reading(step: float) -> np.ndarray:
+        return machine.roll_out(records, TIME, volts, TIME, places, step).signals["reading"]
+
+    exact = reading(1e-5)
+    coarse, fine = (np.sqrt(np.mean((reading(h) - exact) ** 2)) for h in (2e-4, 1e-4))
+    assert 3.0 < coarse / fine < 5.5
+
+
+def test_joints_of_an_arm_give_way_and_those_of_the_other_do_not() -> None:
+    whole = load_rig("hydrolek", {})
+    assert moving_with(whole, ["right_j3"]) == tuple(f"right_j{n}" for n in range(1, 8))
+    bench = load_rig("joint_bench", {})
+    assert moving_with(bench, bench.joints) == bench.joints
+
+
+def test_a_divergence_is_told_with_its_time(two_joints) -> None:
+    records = two_joints.with_values({"fluid.bulk_modulus": 1e16}).records()
+    places = records["load"]["initial_position"]
+    done = JointsTogether(two_joints, MOVING).roll_out(records, TIME, _volts(2), TIME, places)
+    assert done.diverged is not None
+    assert "left all bounds at" in done.diverged
+    assert np.isnan(done.signals["reading"][-1]).all()
