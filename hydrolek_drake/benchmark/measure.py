@@ -14,6 +14,7 @@ import numpy as np
 from hydrolek_drake.benchmark.plain_bench import simulate_plainly
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
+from hydrolek_drake.rollout.together import JointsTogether
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import make_station
 from hydrolek_drake.station.step_sizes import StepSizes
@@ -64,6 +65,17 @@ def measure(seed: int, repeats: int, report: Callable[[str], None]) -> dict[str,
         speeds.append(
             _diagram_speed(f"diagram, both arms, 1 ms, {label}", whole, times, volts, sizes, repeats)
         )
+    report("both arms compiled")
+    together = JointsTogether(whole, whole.joints)
+    own_records, own_step = whole.records(), whole.value("integration.longest_step")
+    rest = own_records["load"]["initial_position"]
+
+    def all_joints() -> None:
+        together.roll_out(own_records, times, volts, times, rest)
+
+    all_joints()
+    all_name = f"rollout, both arms, {own_step * 1e3:g} ms"
+    speeds.append(_speed(all_name, times[-1], all_joints, repeats))
     rig = load_rig("joint_bench")
     times, volts = random_voltage(40.0, 1, generator)
     report("one joint as a Drake diagram")

@@ -1,8 +1,8 @@
 """A law at one of several joints that move together, fitted with what they do to each other beside it.
 
-What shakes one joint shakes the others through arm and pump, and they answer. The Diagram of a model without the law
+What shakes one joint shakes the others through arm and pump, and they answer. A rollout of all joints without the law
 knows nothing of that (`together`), so that a right law leaves more than noise at its own joint, and the others look as
-if they lacked something. The Diagram with the law tells the movement anew; the law is fitted with that, in turn.
+if they lacked something. One with the law tells the movement anew; the law is fitted with that, in turn.
 """
 
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 
 ROUNDS = 3
-"""So often at most Diagram and fit take turns."""
+"""So often at most rollout and fit take turns."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ def told_anew(bench: Workbench, nominal: Hypothesis, law: FoundLaw, held_out: Se
 def beside(
     bench: Workbench, nominal: Hypothesis, law: FoundLaw, held_out: Sequence[Experiment]
 ) -> tuple[tuple[Experiment, ...], tuple[Experiment, ...]]:
-    """Training and held-out data of all joints, with what these do to each other by the Diagram with a law.
+    """Training and held-out data of all joints, with what these do to each other beside a law.
 
     Args:
         bench: training data.
@@ -90,7 +90,7 @@ def beside(
 def _felt(
     bench: Workbench, nominal: Hypothesis, law: FoundLaw, experiments: Sequence[Experiment], *, ahead: bool
 ) -> tuple[Experiment, ...]:
-    """Recordings as the Diagram with a law has them; each held-out one with the law's own values there."""
+    """Recordings as the machine with a law has them; each held-out one with the law's own values there."""
     told: list[Experiment] = []
     held = iter(law.ahead)
     for group in recordings_of(experiments):

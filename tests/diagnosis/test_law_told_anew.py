@@ -20,9 +20,7 @@ from hydrolek_drake.identification.parameter_set import free_parameters
 from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs.short_law import terms_of
-from hydrolek_drake.station.simulation import command_source, run
-from hydrolek_drake.station.station import make_station
-from hydrolek_drake.station.step_sizes import StepSizes
+from hydrolek_drake.rollout.together import JointsTogether
 
 SHAKEN, _ = MOVING = ("right_j2", "right_j3")
 TIME = np.arange(0.0, 6.0 + 0.005, 0.01)
@@ -38,8 +36,10 @@ def _recorded_twice(machine, model):
     rng = np.random.default_rng(4)
     volts = np.repeat(rng.uniform(-3.0, 3.0, (13, 2)), 50, axis=0)[: TIME.size]
     volts[:50] = 0.0
-    station = make_station(machine, command=command_source(TIME, volts), sizes=StepSizes(step=2.5e-4))
-    reading = run(station, TIME[-1]).signals["reading"][: TIME.size]
+    records = machine.records()
+    starts = records["load"]["initial_position"]
+    done = JointsTogether(machine, MOVING).roll_out(records, TIME, volts, TIME, starts, 2.5e-4)
+    reading = done.signals["reading"]
     recordings = []
     for name, noise in zip(("train", "holdout"), rng.spawn(2), strict=True):
         noisy = reading + np.radians(NOISE_DEG) * noise.standard_normal(reading.shape)
@@ -49,7 +49,7 @@ def _recorded_twice(machine, model):
     return [felt_together(model, experiments_of(model, recording)) for recording in recordings]
 
 
-def test_a_shaken_joint_and_the_one_beside_it_are_explained_by_the_diagram_with_the_law(two_joints) -> None:
+def test_a_shaken_joint_and_the_one_beside_it_are_explained_by_the_machine_with_the_law(two_joints) -> None:
     rows = law_record("load", SPAN, None, SHAKING_Nm, 0.0, SHAKING_Hz)
     machine = replace(two_joints, laws={SHAKEN: terms_of(rows, ("N m", "rad"), "planted", "planted")})
     training, held_out = _recorded_twice(machine, two_joints)

@@ -1,4 +1,4 @@
-"""What joints that move together do to each other, told by the Diagram: their own rollouts then move as there."""
+"""What joints that move together do to each other, told by a rollout of all: their own rollouts then move so too."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -10,9 +10,7 @@ from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
-from hydrolek_drake.station.simulation import command_source, run
-from hydrolek_drake.station.station import make_station
-from hydrolek_drake.station.step_sizes import StepSizes
+from hydrolek_drake.rollout.together import JointsTogether
 
 MOVING = ("right_j2", "right_j3")
 TIME = np.arange(0.0, 8.0 + 0.005, 0.01)
@@ -27,8 +25,10 @@ def _recorded(machine, name: str = "made") -> tuple[list[Experiment], np.ndarray
     rng = np.random.default_rng(4)
     volts = np.repeat(rng.uniform(-3.0, 3.0, (17, 2)), 50, axis=0)[: TIME.size]
     volts[:50] = 0.0
-    station = make_station(machine, command=command_source(TIME, volts), sizes=StepSizes(step=2.5e-4))
-    reading = run(station, TIME[-1]).signals["reading"][: TIME.size]
+    records = machine.records()
+    starts = records["load"]["initial_position"]
+    done = JointsTogether(machine, MOVING).roll_out(records, TIME, volts, TIME, starts, 2.5e-4)
+    reading = done.signals["reading"]
     noisy = reading + np.radians(NOISE_DEG) * rng.standard_normal(reading.shape)
     signals = {f"{j}.command": volts[:, i] for i, j in enumerate(MOVING)}
     signals |= {f"{j}.angle": noisy[:, i] for i, j in enumerate(MOVING)}
@@ -49,15 +49,15 @@ def _off_deg(experiments: list[Experiment], machine, reading: np.ndarray) -> lis
 
 
 @pytest.mark.parametrize("resistance", [0.0, 3e10])
-def test_joints_shake_each_other_as_in_the_diagram(two_joints, healthy, resistance):
+def test_joints_alone_move_as_beside_each_other(two_joints, healthy, resistance):
     machine = two_joints.with_values({DROOP: resistance})
     experiments, reading = _recorded(machine) if resistance else healthy
     by_angles = _off_deg(experiments, machine, reading)
     together = felt_together(machine, experiments)
-    by_the_diagram = _off_deg(together, machine, reading)
-    # smoothed angles alone make a healthy joint look as if something were missing, the Diagram does not
+    by_all_at_once = _off_deg(together, machine, reading)
+    # smoothed angles alone make a healthy joint look as if something were missing, a rollout of all does not
     assert min(by_angles) > 2.0 * ALLOWED_DEG
-    assert max(by_the_diagram) < ALLOWED_DEG
+    assert max(by_all_at_once) < ALLOWED_DEG
     told = [np.degrees(np.sqrt(np.mean(e.others_error[0] ** 2))) for e in together]
     assert max(told) < ALLOWED_DEG
 
@@ -76,7 +76,7 @@ def test_joints_that_move_alone_stay_as_they_are(two_joints, healthy):
     assert all(a is b for a, b in zip(felt_together(two_joints, experiments), experiments, strict=True))
 
 
-def test_where_the_diagram_leaves_all_bounds_measured_angles_must_do(two_joints, healthy):
+def test_where_the_joints_leave_all_bounds_measured_angles_must_do(two_joints, healthy):
     experiments, _ = healthy
     wild = two_joints.with_values({"fluid.bulk_modulus": 1e16})
     again = felt_together(wild, experiments)

@@ -1,9 +1,14 @@
 """Joints that move together: the compiled rollout moves as the Diagram does, and as a joint alone where it is alone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from hydrolek_drake.diagnosis.law_terms import Term
+from hydrolek_drake.diagnosis.laws import Reach, Span, law_record
 from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.rigs.short_law import terms_of
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.rollout.rollout import rest_state
 from hydrolek_drake.rollout.together import JointsTogether, moving_with
@@ -15,7 +20,6 @@ MOVING = ("right_j2", "right_j3")
 TIME = np.arange(0.0, 4.0 + 0.005, 0.01)
 ALLOWED_DEG = 0.02
 """What the rollout's own step may cost (hydrolek.yaml)."""
-LAW = {"at": "supply", "sine": 4e5, "frequency": 1.5}
 
 
 def _volts(joints: int, seed: int = 4) -> np.ndarray:
@@ -57,6 +61,28 @@ def _off_deg(rig, step: float | None = None) -> np.ndarray:
 def test_joints_move_as_in_the_diagram(two_joints, values) -> None:
     step = 1e-4 if any("backlash" in path for path in values) else None  # contacts, as in docs/agreement.md
     assert _off_deg(two_joints.with_values(values), step).max() < ALLOWED_DEG
+
+
+def test_laws_of_two_joints_act_as_in_the_diagram(two_joints) -> None:
+    span = Span(Reach(1.0, 1.0, 0.0, 0.3, "rad"), None, 1.0, 1.0, 1.0)
+    droops = law_record("supply", span, Term((), speed="|v|"), -2e6)  # of the pump that feeds both
+    shakes = law_record("load", span, None, 300.0, 0.0, 1.3)
+    laws = {
+        joint: terms_of(rows, (unit, "rad"), "planted", "planted")
+        for joint, rows, unit in zip(MOVING, (droops, shakes), ("Pa", "N m"), strict=True)
+    }
+    rig = replace(two_joints, laws=laws)
+    assert _off_deg(rig).max() < ALLOWED_DEG
+    shaken = replace(rig, laws={MOVING[1]: laws[MOVING[1]]})
+    places = rig.records()["load"]["initial_position"]
+    drooping, steady = (
+        JointsTogether(two_joints, MOVING)
+        .roll_out(r.records(), TIME, _volts(2), TIME, places)
+        .signals["reading"]
+        for r in (rig, shaken)
+    )
+    moved = np.degrees(np.abs(drooping - steady).max(axis=0))
+    assert moved.min() > 10.0 * ALLOWED_DEG  # what one joint's speed takes from the pump, both feel
 
 
 def test_a_joint_that_moves_alone_moves_as_in_its_own_rollout(two_joints) -> None:
