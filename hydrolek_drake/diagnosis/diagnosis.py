@@ -162,9 +162,9 @@ def _diagnosed(
     try:
         if bench.together and best.effects and law is None:
             say("fitting the numbers with all joints at once")
-            told, held_out = with_numbers_together(bench, conclusion.best, held_out, FINER * bench.fine)
-            judged = tuple(told if j is conclusion.best else j for j in judged)
-            conclusion, best = replace(conclusion, best=told), told.hypothesis
+            together, held_out = with_numbers_together(bench, conclusion.best, held_out)
+            judged = tuple(together if j is conclusion.best else j for j in judged)
+            conclusion, best = replace(conclusion, best=together), together.hypothesis
         places = locate(bench, best, found.baseline, bench.training)
         if law is not None:
             places = (locate_law(bench, best, found.baseline, law), *places)
@@ -173,6 +173,7 @@ def _diagnosed(
     except KeyboardInterrupt:  # the verdict stands without what is left
         bench.resume()
         remarks = (*remarks, INTERRUPTED)
+    told = best if bench.together else bench.without_jumps(best)
     return Diagnosis(
         rig=rig,
         verdict=conclusion.verdict,
@@ -185,7 +186,7 @@ def _diagnosed(
         held_out=held_out,
         locations=places,
         intervals={
-            **intervals_of(bench.parameters(best.effects), best.fit),
+            **intervals_of(bench.parameters(best.effects), told.fit),
             **(law.intervals if law is not None else {}),
             **intervals_of_moments(bench, best),
         },

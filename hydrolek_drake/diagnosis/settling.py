@@ -67,35 +67,37 @@ def settled_together(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:
     Returns:
         The place where it ends, with its fit as the joints' own rollouts have it there.
     """
-    there = fitted_together(bench, hypothesis, bench.fine)
+    there = fitted_together(bench, hypothesis)
     bench.training = tuple(felt_together(bench.rig.with_values(there.values), bench.training))
     return bench.refit(there, bench.fine, 1)  # which only tells what is left there
 
 
-def fitted_together(bench: Workbench, hypothesis: Hypothesis, step: float) -> Hypothesis:
+def fitted_together(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:
     """A fit gone on with by rollouts of all joints at once, which also tell its Jacobian.
 
     Args:
         bench: fits, and the training data.
         hypothesis: fitted to these.
-        step: integration step [s].
     """
     bench.alive()
-    problem = bench.problem(hypothesis.effects, step, kind=ProblemTogether)
+    problem = bench.problem(hypothesis.effects, bench.fine, kind=ProblemTogether)
+    moving = bench.movable(hypothesis.effects, problem.parameters)
     fit = fit_from(
         problem,
         hypothesis.fit.unit,
         most_steps=LOOK,
         tolerance=WORTH / problem.counted,
         stop=bench.interrupted,
-        moving=bench.movable(hypothesis.effects, problem.parameters),
+        moving=moving,
     )
     bench.evaluations += fit.evaluations
-    return Hypothesis(hypothesis.effects, problem.parameters.values(fit.unit), fit, step)
+    unit, left = fit.unit, fit.residuals
+    fit = replace(fit, slopes=lambda: problem.jacobian_without_jumps(unit, left, moving))
+    return Hypothesis(hypothesis.effects, problem.parameters.values(unit), fit, bench.fine)
 
 
 def with_numbers_together(
-    bench: Workbench, best: Judged, held_out: Sequence[Experiment], step: float
+    bench: Workbench, best: Judged, held_out: Sequence[Experiment]
 ) -> tuple[Judged, tuple[Experiment, ...]]:
     """The model that is named, with its numbers and their intervals by rollouts of all joints at once.
 
@@ -105,14 +107,13 @@ def with_numbers_together(
         bench: fits, and the training data, which are told anew.
         best: the model, as it was judged.
         held_out: what decided.
-        step: integration step [s].
 
     Returns:
         The model, with what it leaves of the held-out data, and these told anew.
     """
-    there = fitted_together(bench, best.hypothesis, step)
+    there = fitted_together(bench, best.hypothesis)
     rig = bench.rig.with_values(there.values)
     bench.training = tuple(felt_together(rig, bench.training))
     told = felt_together(rig, held_out)
-    ahead = bench.problem(there.effects, step, told, kind=ProblemTogether).residuals(there.fit.unit)
+    ahead = bench.problem(there.effects, bench.fine, told, kind=ProblemTogether).residuals(there.fit.unit)
     return replace(best, hypothesis=there, held_out=ahead), tuple(told)

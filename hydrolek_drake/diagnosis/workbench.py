@@ -247,6 +247,14 @@ class Workbench:
         self.evaluations += problem.evaluations
         return replace(hypothesis, values=problem.parameters.values(fit.unit), fit=fit)
 
+    def without_jumps(self, hypothesis: Hypothesis) -> Hypothesis:
+        """The same fit with slopes that are worth an interval (`Problem.jacobian_without_jumps`)."""
+        problem = self.problem(hypothesis.effects, hypothesis.step)
+        moving = self.movable(hypothesis.effects, problem.parameters)
+        unit = hypothesis.fit.unit
+        slopes = problem.jacobian_without_jumps(unit, problem.residuals(unit), moving)
+        return replace(hypothesis, fit=replace(hypothesis.fit, slopes=slopes))
+
     def residuals(self, hypothesis: Hypothesis, experiments: Sequence[Experiment], step: float) -> np.ndarray:
         """Residuals of a fitted model on any recordings, in units of the noise. # (values,)."""
         problem = self.problem(hypothesis.effects, step, experiments)

@@ -88,7 +88,7 @@ def test_a_droop_that_the_joints_share_is_fitted_to_its_size(begun, machine) -> 
     assert found.fit.over_noise == pytest.approx(np.sqrt(left @ left / problem.counted), abs=0.02)
 
     ahead = _recorded(bench.rig, machine, 2)
-    told, held_out = with_numbers_together(bench, Judged(found, np.zeros(1), 1), ahead, 0.5 * bench.fine)
+    told, held_out = with_numbers_together(bench, Judged(found, np.zeros(1), 1), ahead)
     counted = sum(experiment.counted for experiment in held_out)
     chance = 4.0 / np.sqrt(2.0 * counted)
     assert np.sqrt(told.held_out @ told.held_out / counted) == pytest.approx(1.0, abs=chance)

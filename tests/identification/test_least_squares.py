@@ -94,6 +94,34 @@ class Counting(Problem):
         return super().residuals(unit)
 
 
+class Jumping(Problem):
+    """From a place on a joint stops in the last third, by a hair's breadth of the second parameter."""
+
+    edge = 0.0
+
+    def residuals(self, unit: np.ndarray) -> np.ndarray:
+        left = super().residuals(unit)
+        left[2 * left.size // 3 :] += 1.0 if unit[1] > self.edge else 0.0
+        return left
+
+
+@pytest.mark.parametrize("aside", [-3e-7, 3e-7])
+def test_a_jump_within_a_difference_does_not_make_a_parameter_look_known(bench, planted, aside) -> None:
+    _, experiments = planted
+    parameters = ParameterSet(bench, free_parameters(bench, PATHS))
+    unit = np.full(4, 0.4)
+    smooth = Problem(parameters, experiments).jacobian(unit)
+    problem = Jumping(parameters, experiments)
+    problem.edge = unit[1] + aside
+    at = problem.residuals(unit)
+    told = problem.jacobian_without_jumps(unit, at)
+    assert np.linalg.norm(told - smooth, axis=0) == pytest.approx(
+        0.0, abs=1e-2 * np.linalg.norm(smooth[:, 1])
+    )
+    if aside > 0.0:  # the side on which the Jacobian looks
+        assert np.linalg.norm(problem.jacobian(unit, at)[:, 1]) > 10.0 * np.linalg.norm(smooth[:, 1])
+
+
 def test_slopes_that_lead_a_search_are_the_jacobian_for_less(bench, planted) -> None:
     _, experiments = planted
     parameters = ParameterSet(bench, free_parameters(bench, PATHS))
