@@ -55,6 +55,7 @@ def score(case: Mapping[str, Any], report: Mapping[str, Any]) -> dict[str, Any]:
         result["in_group"] = bool(truth & group)
         result["right_stage"] = set(case["stages"]) <= set(stages)
         result["parameter_errors"] = _errors(case["effects"], report["effects"])
+        result["intervals_hold"] = _held(case["effects"], report["effects"])
     return result
 
 
@@ -73,6 +74,17 @@ def _errors(truth: Mapping[str, Mapping[str, float]], told: Sequence[Mapping[str
         if effect in found
         for name, value in parameters.items()
         if value
+    ]
+
+
+def _held(truth: Mapping[str, Mapping[str, float]], told: Sequence[Mapping[str, Any]]) -> list[bool]:
+    """Whether the 95 % interval of each number of the effects that are named rightly holds the true value."""
+    found = {e["id"]: e["parameters"] for e in told}
+    return [
+        bool(found[effect][name]["low"] <= value <= found[effect][name]["high"])
+        for effect, parameters in truth.items()
+        if effect in found
+        for name, value in parameters.items()
     ]
 
 
@@ -95,6 +107,7 @@ def summary(results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         "doubles_right": _told([r["right"] for r in of["double"]]),
         "unlisted_recognised": _told([r["right"] for r in of["unlisted"]]),
         "unlisted_right_stage": _told([r["right_stage"] for r in of["unlisted"]]),
+        "intervals_that_hold": _told([held for r in results for held in r.get("intervals_hold", [])]),
         "median_parameter_error": float(np.median(errors)) if errors else None,
         "median_seconds": float(np.median(seconds)) if seconds else None,
         "median_seconds_healthy": float(np.median([r["seconds"] for r in of["healthy"]]))

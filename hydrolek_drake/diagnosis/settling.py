@@ -21,7 +21,10 @@ from hydrolek_drake.identification.least_squares import fit_from
 from hydrolek_drake.identification.problem import Problem
 
 WORTH = 1.0
-"""A step that promises less than so many squares moves no parameter by more than its own standard deviation."""
+"""A step that takes less than so many squares moves no parameter by more than its own standard deviation."""
+
+WORTH_TELLING = 0.1
+"""The same where the numbers are to be told: a third of a standard deviation."""
 
 
 class ProblemTogether(Problem):
@@ -67,17 +70,18 @@ def settled_together(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:
     Returns:
         The place where it ends, with its fit as the joints' own rollouts have it there.
     """
-    there = fitted_together(bench, hypothesis)
+    there = fitted_together(bench, hypothesis, WORTH)
     bench.training = tuple(felt_together(bench.rig.with_values(there.values), bench.training))
     return bench.refit(there, bench.fine, 1)  # which only tells what is left there
 
 
-def fitted_together(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:
+def fitted_together(bench: Workbench, hypothesis: Hypothesis, worth: float) -> Hypothesis:
     """A fit gone on with by rollouts of all joints at once, which also tell its Jacobian.
 
     Args:
         bench: fits, and the training data.
         hypothesis: fitted to these.
+        worth: squares that a step must take to be followed by another one.
     """
     bench.alive()
     problem = bench.problem(hypothesis.effects, bench.fine, kind=ProblemTogether)
@@ -86,7 +90,7 @@ def fitted_together(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:
         problem,
         hypothesis.fit.unit,
         most_steps=LOOK,
-        tolerance=WORTH / problem.counted,
+        tolerance=worth / problem.counted,
         stop=bench.interrupted,
         moving=moving,
     )
@@ -111,7 +115,7 @@ def with_numbers_together(
     Returns:
         The model, with what it leaves of the held-out data, and these told anew.
     """
-    there = fitted_together(bench, best.hypothesis)
+    there = fitted_together(bench, best.hypothesis, WORTH_TELLING)
     rig = bench.rig.with_values(there.values)
     bench.training = tuple(felt_together(rig, bench.training))
     told = felt_together(rig, held_out)

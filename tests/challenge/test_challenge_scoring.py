@@ -21,12 +21,11 @@ from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.rigs import load_rig
 
 
-def _report(verdict, effects=(), stages=(), groups=(), probability=0.99):
+def _report(verdict, effects=(), stages=(), groups=(), probability=0.99, low=0.9):
+    known = {"value": 1.1, "low": low, "high": 1.3}
     return {
         "verdict": verdict,
-        "effects": [
-            {"id": e, "probability": probability, "parameters": {"a": {"value": 1.1}}} for e in effects
-        ],
+        "effects": [{"id": e, "probability": probability, "parameters": {"a": known}} for e in effects],
         "locations": [{"stage": s} for s in stages],
         "not_distinguishable": [list(g) for g in groups],
         "fit": {"baseline": {"train_over_noise": 5.0}, "with_effects": {"holdout_over_noise": 1.0}},
@@ -61,6 +60,12 @@ def test_parameter_errors_are_relative() -> None:
     one = score(_case("single", ["a.x"], ["a"]), _report("missing_physics", ["a.x"], ["a"]))
     assert one["parameter_errors"] == pytest.approx([0.1])
     assert summary([one])["median_parameter_error"] == pytest.approx(0.1)
+
+
+def test_intervals_are_counted_that_hold_the_true_value() -> None:
+    case = _case("single", ["a.x"], ["a"])
+    results = [score(case, _report("missing_physics", ["a.x"], ["a"], low=low)) for low in (0.9, 1.05, 1.0)]
+    assert summary(results)["intervals_that_hold"] == {"count": 2, "of": 3, "share": pytest.approx(2 / 3)}
 
 
 def test_unlisted_needs_its_verdict_and_its_stage_first() -> None:
