@@ -1,9 +1,8 @@
 """Equation of motion of turning links, one on another: M(q) q'' + c(q, q') = tau, with gravity in c.
 
-The Diagram's arms are a MultibodyPlant; the compiled rollout of joints that move together has these recursions, and
-tests hold one against the other. Newton-Euler for c and composite bodies for M (Featherstone, Rigid Body Dynamics
-Algorithms, 2008, sections 5.3 and 6.2), in the axes of the base. A link's mass, first moment m r and inertia about its
-own joint add up, so that a payload is three more terms.
+The Diagram's arms are a MultibodyPlant; compiled simulations of whole arms have these recursions, and tests hold one
+against the other. Everything is told in the axes of the base about its origin, where mass, first moment, inertia and
+wrenches of several bodies are simply added (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 2, 5 and 6).
 """
 
 from typing import NamedTuple
@@ -11,7 +10,24 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-Vector = tuple[float, float, float]
+from hydrolek_drake.physics.vectors import (
+    Matrix,
+    Vector,
+    cross,
+    dot,
+    matrix_at,
+    plus,
+    product,
+    put_at,
+    rotation,
+    scaled,
+    second_at,
+    turned,
+    vector_at,
+)
+
+Body = tuple[float, float, float, float, float, float, float, float, float, float]
+"""Mass, first moment, and inertia xx xy xz yy yz zz about the origin."""
 
 ROOT = -1
 """Parent of a link that turns on the base."""
@@ -33,124 +49,20 @@ class Links(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Room for `motion_equation`."""
+    """Room for `motion_equation`, one row for each link."""
 
-    turned: np.ndarray  # axes of each link in those of the base. # (n, 3, 3)
-    out: np.ndarray  # from the parent's joint. # (n, 3)
-    axis: np.ndarray  # (n, 3)
-    rate: np.ndarray  # angular velocity. # (n, 3)
-    angular: np.ndarray  # angular acceleration without q''. # (n, 3)
-    linear: np.ndarray  # acceleration of the joint without q'', less gravity. # (n, 3)
-    force: np.ndarray  # (n, 3)
-    torque: np.ndarray  # about the joint. # (n, 3)
-    mass: np.ndarray  # of a link and all that it carries. # (n,)
-    moment: np.ndarray  # of the same. # (n, 3)
-    inertia: np.ndarray  # of the same. # (n, 3, 3)
+    turn: np.ndarray  # axes in those of the base, row by row. # (n, 9)
+    place: np.ndarray  # of the joint. # (n, 3)
+    rate: np.ndarray  # angular velocity, and velocity of what is at the origin. # (n, 6)
+    change: np.ndarray  # their change without q'', less gravity. # (n, 6)
+    screw: np.ndarray  # axis, and velocity of what is at the origin as it turns with 1 rad/s. # (n, 6)
+    body: np.ndarray  # the link with all that it carries, as in `Body`. # (n, 10)
+    wrench: np.ndarray  # torque about the origin, and force. # (n, 6)
 
 
 def scratch(count: int) -> Scratch:
     """Room for so many links."""
-    matrices, vectors = np.zeros((2, count, 3, 3)), np.zeros((8, count, 3))
-    return Scratch(*[matrices[0], *vectors[:7], np.zeros(count), vectors[7], matrices[1]])
-
-
-@njit
-def _of(rows: np.ndarray, i: int) -> Vector:
-    return rows[i, 0], rows[i, 1], rows[i, 2]
-
-
-@njit
-def _put(rows: np.ndarray, i: int, v: Vector) -> None:
-    rows[i, 0], rows[i, 1], rows[i, 2] = v
-
-
-@njit
-def _plus(a: Vector, b: Vector) -> Vector:
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
-
-
-@njit
-def _scaled(f: float, a: Vector) -> Vector:
-    return f * a[0], f * a[1], f * a[2]
-
-
-@njit
-def _dot(a: Vector, b: Vector) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-@njit
-def _cross(a: Vector, b: Vector) -> Vector:
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-
-
-@njit
-def _times(matrices: np.ndarray, i: int, v: Vector) -> Vector:
-    m = matrices
-    return (
-        m[i, 0, 0] * v[0] + m[i, 0, 1] * v[1] + m[i, 0, 2] * v[2],
-        m[i, 1, 0] * v[0] + m[i, 1, 1] * v[1] + m[i, 1, 2] * v[2],
-        m[i, 2, 0] * v[0] + m[i, 2, 1] * v[1] + m[i, 2, 2] * v[2],
-    )
-
-
-@njit
-def _put_column(matrices: np.ndarray, i: int, column: int, v: Vector) -> None:
-    matrices[i, 0, column], matrices[i, 1, column], matrices[i, 2, column] = v
-
-
-@njit
-def _turn(links: Links, i: int, angle: float, base: bool, turned: np.ndarray) -> None:
-    """Axes of a link: those of its parent, turned to its joint and about its axis (Rodrigues' formula)."""
-    x, y, z = links.axis[i, 0], links.axis[i, 1], links.axis[i, 2]
-    s, c = np.sin(angle), np.cos(angle)
-    v = 1.0 - c
-    about = (
-        (c + v * x * x, v * x * y - s * z, v * x * z + s * y),
-        (v * x * y + s * z, c + v * y * y, v * y * z - s * x),
-        (v * x * z - s * y, v * y * z + s * x, c + v * z * z),
-    )
-    fixed = links.turn
-    for row in range(3):
-        r0, r1, r2 = fixed[i, row, 0], fixed[i, row, 1], fixed[i, row, 2]
-        for column in range(3):
-            turned[i, row, column] = r0 * about[0][column] + r1 * about[1][column] + r2 * about[2][column]
-    if base:
-        return
-    p = links.parent[i]
-    for column in range(3):
-        own = turned[i, 0, column], turned[i, 1, column], turned[i, 2, column]
-        _put_column(turned, i, column, _times(turned, p, own))
-
-
-@njit
-def _bodies(links: Links, i: int, payload: float, s: Scratch) -> None:
-    """Mass, first moment and inertia of a link with its payload, in the base's axes."""
-    r, own = s.turned, links.inertia
-    s.mass[i] = links.mass[i]
-    _put(s.moment, i, _times(s.turned, i, _of(links.moment, i)))
-    for b in range(3):  # R I R', column by column
-        column = _times(r, i, _times(own, i, (r[i, b, 0], r[i, b, 1], r[i, b, 2])))
-        _put_column(s.inertia, i, b, column)
-    hangs = payload * links.carries[i]
-    if hangs > 0.0:
-        at = _times(s.turned, i, _of(links.tool, i))
-        s.mass[i] += hangs
-        _put(s.moment, i, _plus(_of(s.moment, i), _scaled(hangs, at)))
-        _add_about(s.inertia, i, hangs, at, (0.0, 0.0, 0.0))
-
-
-@njit
-def _add_about(inertia: np.ndarray, i: int, mass: float, out: Vector, moment: Vector) -> None:
-    """Add what a body adds to the inertia about a point from which its own point is `out`, beyond its own inertia.
-
-    m (|d|^2 1 - d d') + 2 (d.h) 1 - d h' - h d', with d `out` and h its first moment about its own point.
-    """
-    along = mass * _dot(out, out) + 2.0 * _dot(out, moment)
-    for a in range(3):
-        inertia[i, a, a] += along
-        for b in range(3):
-            inertia[i, a, b] -= mass * out[a] * out[b] + out[a] * moment[b] + moment[a] * out[b]
+    return Scratch(*[np.zeros((count, width)) for width in (9, 3, 6, 6, 6, 10, 6)])
 
 
 @njit
@@ -171,62 +83,121 @@ def motion_equation(
         w: joint speeds [rad/s]. # (n,)
         payload: that hangs on each link that carries one [kg]. # (n,)
         s: room.
-        matrix: receives M [kg m^2]. # (n, n)
+        matrix: receives M [kg m^2], but for entries between links of two arms. # (n, n)
         bias: receives c [N m]. # (n,)
     """
     n = len(q)
-    up = (-links.gravity[0], -links.gravity[1], -links.gravity[2])
-    for i in range(n):
-        p = links.parent[i]
-        base = p == ROOT
-        out = _of(links.offset, i)
-        rate = angular = (0.0, 0.0, 0.0)
-        linear = up
-        if not base:
-            out = _times(s.turned, p, out)
-            rate, angular = _of(s.rate, p), _of(s.angular, p)
-            spun = _cross(rate, _cross(rate, out))
-            linear = _plus(_of(s.linear, p), _plus(_cross(angular, out), spun))
-        _turn(links, i, q[i], base, s.turned)
-        axis = _times(s.turned, i, _of(links.axis, i))
-        turning = _scaled(w[i], axis)
-        angular = _plus(angular, _cross(rate, turning))
-        rate = _plus(rate, turning)
-        _bodies(links, i, payload[i], s)
-        moment = _of(s.moment, i)
-        spun = _cross(rate, _cross(rate, moment))
-        spin = _times(s.inertia, i, rate)
-        _put(s.out, i, out)
-        _put(s.axis, i, axis)
-        _put(s.rate, i, rate)
-        _put(s.angular, i, angular)
-        _put(s.linear, i, linear)
-        _put(s.force, i, _plus(_scaled(s.mass[i], linear), _plus(_cross(angular, moment), spun)))
-        turned_up = _plus(_times(s.inertia, i, angular), _cross(rate, spin))
-        _put(s.torque, i, _plus(turned_up, _cross(moment, linear)))
-    for j in range(n - 1, -1, -1):
-        axis, p = _of(s.axis, j), links.parent[j]
-        bias[j] = _dot(axis, _of(s.torque, j))
-        force, torque = _cross(axis, _of(s.moment, j)), _times(s.inertia, j, axis)
-        i = j
-        while True:
-            matrix[i, j] = matrix[j, i] = _dot(_of(s.axis, i), torque)
-            if links.parent[i] == ROOT:
-                break
-            torque = _plus(torque, _cross(_of(s.out, i), force))
-            i = links.parent[i]
-        if p == ROOT:
-            continue
-        out = _of(s.out, j)
-        _put(s.force, p, _plus(_of(s.force, p), _of(s.force, j)))
-        carried = _plus(_of(s.torque, j), _cross(out, _of(s.force, j)))
-        _put(s.torque, p, _plus(_of(s.torque, p), carried))
-        for a in range(3):
-            for b in range(3):
-                s.inertia[p, a, b] += s.inertia[j, a, b]
-        _add_about(s.inertia, p, s.mass[j], out, _of(s.moment, j))
-        _put(s.moment, p, _plus(_of(s.moment, p), _plus(_of(s.moment, j), _scaled(s.mass[j], out))))
-        s.mass[p] += s.mass[j]
+    for k in range(n):
+        _link(links, k, q[k], w[k], payload[k] * links.carries[k], s)
+    for k in range(n - 1, -1, -1):
+        b = s.body
+        body = (b[k, 0], b[k, 1], b[k, 2], b[k, 3], b[k, 4], b[k, 5], b[k, 6], b[k, 7], b[k, 8], b[k, 9])
+        turning, moving = _momentum(body, vector_at(s.screw, k), second_at(s.screw, k))
+        bias[k] = dot(vector_at(s.screw, k), vector_at(s.wrench, k)) + dot(
+            second_at(s.screw, k), second_at(s.wrench, k)
+        )
+        j = k
+        while j != ROOT:
+            matrix[j, k] = dot(vector_at(s.screw, j), turning) + dot(second_at(s.screw, j), moving)
+            matrix[k, j] = matrix[j, k]
+            j = links.parent[j]
+        p = links.parent[k]
+        if p != ROOT:
+            for r in range(10):
+                s.body[p, r] += s.body[k, r]
+            for r in range(6):
+                s.wrench[p, r] += s.wrench[k, r]
+
+
+@njit
+def _link(links: Links, k: int, angle: float, speed: float, hanging: float, s: Scratch) -> None:
+    """Place, motion, inertia and wrench of one link, from those of the link on which it turns."""
+    p = links.parent[k]
+    turn: Matrix = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+    place = w = v = a_w = (0.0, 0.0, 0.0)
+    a_v = (-links.gravity[0], -links.gravity[1], -links.gravity[2])  # as if the base were accelerated upwards
+    if p != ROOT:
+        t = s.turn
+        turn = (t[p, 0], t[p, 1], t[p, 2], t[p, 3], t[p, 4], t[p, 5], t[p, 6], t[p, 7], t[p, 8])
+        place, w, v = vector_at(s.place, p), vector_at(s.rate, p), second_at(s.rate, p)
+        a_w, a_v = vector_at(s.change, p), second_at(s.change, p)
+    place = plus(place, turned(turn, vector_at(links.offset, k)))
+    axis = vector_at(links.axis, k)
+    turn = product(product(turn, matrix_at(links.turn, k)), rotation(axis, angle))
+    z = turned(turn, axis)
+    lever = cross(place, z)
+    # S' = v x S: the motion of the links before carries the axis along
+    a_w = plus(a_w, scaled(speed, cross(w, z)))
+    a_v = plus(a_v, scaled(speed, plus(cross(w, lever), cross(v, z))))
+    w = plus(w, scaled(speed, z))
+    v = plus(v, scaled(speed, lever))
+    body = _about_origin(links.mass[k], vector_at(links.moment, k), matrix_at(links.inertia, k), turn, place)
+    if hanging > 0.0:
+        body = _with_point(body, hanging, plus(place, turned(turn, vector_at(links.tool, k))))
+    turning, moving = _momentum(body, w, v)
+    rising, pushing = _momentum(body, a_w, a_v)
+    for r in range(9):
+        s.turn[k, r] = turn[r]
+    for r in range(10):
+        s.body[k, r] = body[r]
+    put_at(s.place, k, 0, place)
+    put_at(s.rate, k, 0, w)
+    put_at(s.rate, k, 3, v)
+    put_at(s.change, k, 0, a_w)
+    put_at(s.change, k, 3, a_v)
+    put_at(s.screw, k, 0, z)
+    put_at(s.screw, k, 3, lever)
+    put_at(s.wrench, k, 0, plus(rising, plus(cross(w, turning), cross(v, moving))))
+    put_at(s.wrench, k, 3, plus(pushing, cross(w, moving)))
+
+
+@njit
+def _about_origin(mass: float, moment: Vector, inertia: Matrix, turn: Matrix, place: Vector) -> Body:
+    """A link's mass, moment and inertia in the base's axes about its origin."""
+    a, b, c = turned(turn, moment)
+    half = product(turn, inertia)
+    x, y, z = place
+    # shift from the joint's place p: m (p.p 1 - p p') + 2 (h.p) 1 - h p' - p h'
+    d = mass * (x * x + y * y + z * z) + 2.0 * (a * x + b * y + c * z)
+    xx = half[0] * turn[0] + half[1] * turn[1] + half[2] * turn[2] + d - mass * x * x - 2.0 * a * x
+    yy = half[3] * turn[3] + half[4] * turn[4] + half[5] * turn[5] + d - mass * y * y - 2.0 * b * y
+    zz = half[6] * turn[6] + half[7] * turn[7] + half[8] * turn[8] + d - mass * z * z - 2.0 * c * z
+    xy = half[0] * turn[3] + half[1] * turn[4] + half[2] * turn[5] - mass * x * y - a * y - b * x
+    xz = half[0] * turn[6] + half[1] * turn[7] + half[2] * turn[8] - mass * x * z - a * z - c * x
+    yz = half[3] * turn[6] + half[4] * turn[7] + half[5] * turn[8] - mass * y * z - b * z - c * y
+    return mass, a + mass * x, b + mass * y, c + mass * z, xx, xy, xz, yy, yz, zz
+
+
+@njit
+def _with_point(body: Body, mass: float, place: Vector) -> Body:
+    """A body with a mass at one point."""
+    m, a, b, c, xx, xy, xz, yy, yz, zz = body
+    x, y, z = place
+    return (
+        m + mass,
+        a + mass * x,
+        b + mass * y,
+        c + mass * z,
+        xx + mass * (y * y + z * z),
+        xy - mass * x * y,
+        xz - mass * x * z,
+        yy + mass * (x * x + z * z),
+        yz - mass * y * z,
+        zz + mass * (x * x + y * y),
+    )
+
+
+@njit
+def _momentum(body: Body, w: Vector, v: Vector) -> tuple[Vector, Vector]:
+    """Angular and linear momentum of a body about the origin."""
+    m, a, b, c, xx, xy, xz, yy, yz, zz = body
+    h = (a, b, c)
+    spin = (
+        xx * w[0] + xy * w[1] + xz * w[2],
+        xy * w[0] + yy * w[1] + yz * w[2],
+        xz * w[0] + yz * w[1] + zz * w[2],
+    )
+    return plus(spin, cross(h, v)), plus(scaled(m, v), cross(w, h))
 
 
 def moments_along(

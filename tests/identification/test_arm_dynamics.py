@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.identification.mechanical.arm_bodies import JOINTS, arm_bodies
-from hydrolek_drake.identification.mechanical.arm_dynamics import mass_matrix_and_bias, simulate_joints
+from hydrolek_drake.identification.mechanical.arm_dynamics import simulate_joints
 from hydrolek_drake.kinematics.arms import arm_joint, make_arms_plant
+from hydrolek_drake.physics.serial_arm import moments_along, motion_equation, scratch
 
 GRAVITY = 9.81
 
@@ -31,23 +32,18 @@ def test_mass_matrix_and_bias_are_those_of_the_plant(right_arm, seed):
     expected = plant.CalcMassMatrix(context)[np.ix_(indices, indices)]
     # the other arm stands still, so it adds nothing to the bias of this one
     torque = (plant.CalcBiasTerm(context) - plant.CalcGravityGeneralizedForces(context))[indices]
-    bodies = arm_bodies()
     matrix, bias = np.empty((JOINTS, JOINTS)), np.empty(JOINTS)
-    mass_matrix_and_bias(
-        q, v, bodies.offsets, bodies.axes, *bodies.with_masses(masses), GRAVITY, matrix, bias
-    )
+    links = arm_bodies().with_masses(masses, GRAVITY)
+    motion_equation(links, q, v, np.zeros(JOINTS), scratch(JOINTS), matrix, bias)
     np.testing.assert_allclose(matrix, expected, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(bias, torque, rtol=1e-6, atol=1e-6 * np.abs(torque).max())
 
 
 def _swing(step, duration=2.0):
-    bodies = arm_bodies()
     masses = np.array([4.6, 5.1, 22.5, 1.6, 4.1, 4.7])
     count = round(duration / step)
     command = np.tile([10.0, 150.0, 60.0, 5.0, 20.0, 1.0], (count, 1))
-    angles = simulate_joints(
-        command, step, 1.0, 231.8, 53.4, bodies.offsets, bodies.axes, *bodies.with_masses(masses), GRAVITY
-    )
+    angles = simulate_joints(command, step, 1.0, 231.8, 53.4, arm_bodies().with_masses(masses, GRAVITY))
     return angles[:: round(0.1 / step)]
 
 
@@ -59,11 +55,10 @@ def test_simulation_converges_with_first_order():
 
 
 def test_arm_comes_to_rest_where_springs_gain_and_gravity_balance():
-    bodies = arm_bodies()
     masses = np.array([4.6, 5.1, 22.5, 1.6, 4.1, 4.7])
     push = np.array([5.0, 150.0, 60.0, 5.0, 20.0, 1.0])
-    arguments = (bodies.offsets, bodies.axes, *bodies.with_masses(masses), GRAVITY)
-    last = simulate_joints(np.tile(push, (8000, 1)), 0.02, 1.0, 231.8, 53.4, *arguments)[-1]
-    matrix, bias = np.empty((JOINTS, JOINTS)), np.empty(JOINTS)
-    mass_matrix_and_bias(last, np.zeros(JOINTS), *arguments, matrix, bias)
-    np.testing.assert_allclose(bias + 53.4 * last, push, atol=1e-3)
+    links = arm_bodies().with_masses(masses, GRAVITY)
+    last = simulate_joints(np.tile(push, (8000, 1)), 0.02, 1.0, 231.8, 53.4, links)[-1]
+    still = np.zeros((1, JOINTS))
+    held = moments_along(links, last[None], still, still)[0]
+    np.testing.assert_allclose(held + 53.4 * last, push, atol=1e-3)

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from hydrolek_drake.physics.serial_arm import Links
+
 JOINTS = 6
 
 
@@ -31,11 +33,12 @@ class ArmBodies:
     jaw_moment: np.ndarray
     jaw_inertia: np.ndarray
 
-    def with_masses(self, masses: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Masses, moments and inertias for `arm_dynamics`: shapes stay, masses scale, the jaw is added.
+    def with_masses(self, masses: np.ndarray, gravity: float) -> Links:
+        """Links whose shapes stay while their masses scale; the jaw is added.
 
         Args:
             masses: of links 1 to 6 [kg]. # (6,)
+            gravity: along -Y of the arm's base [m/s^2].
         """
         moments = masses[:, None] * self.moments_per_kg
         inertias = masses[:, None, None] * self.inertias_per_kg
@@ -43,7 +46,18 @@ class ArmBodies:
         total[-1] += self.jaw_mass
         moments[-1] += self.jaw_moment
         inertias[-1] += self.jaw_inertia
-        return total, moments, inertias
+        return Links(
+            parent=np.arange(JOINTS) - 1,
+            turn=np.tile(np.eye(3), (JOINTS, 1, 1)),
+            offset=self.offsets,
+            axis=self.axes,
+            mass=total,
+            moment=moments,
+            inertia=inertias,
+            carries=np.zeros(JOINTS),
+            tool=np.zeros((JOINTS, 3)),
+            gravity=np.array([0.0, -gravity, 0.0]),
+        )
 
 
 @cache

@@ -17,7 +17,8 @@ import numpy as np
 import yaml
 
 from hydrolek_drake.identification.mechanical.arm_bodies import JOINTS, arm_bodies
-from hydrolek_drake.identification.mechanical.arm_dynamics import mass_matrix_and_bias, simulate_joints
+from hydrolek_drake.identification.mechanical.arm_dynamics import simulate_joints
+from hydrolek_drake.physics.serial_arm import Links, moments_along
 from hydrolek_drake.units import si_factor
 
 
@@ -69,39 +70,21 @@ def simulate(chromosome: np.ndarray, command: np.ndarray, sample: float) -> np.n
     Returns:
         [rad], NaN after a divergence. # (n, 6)
     """
-    bodies = arm_bodies()
-    masses, moments, inertias = bodies.with_masses(np.asarray(chromosome[3:], dtype=float))
     gain = float(chromosome[0]) * si_factor(mechanical_parameters().units[0], "N m/V")
-    return simulate_joints(
-        command,
-        sample,
-        gain,
-        float(chromosome[1]),
-        float(chromosome[2]),
-        bodies.offsets,
-        bodies.axes,
-        masses,
-        moments,
-        inertias,
-        float(mechanical_data()["gravity"]["value"]),
-    )
+    damping, stiffness = float(chromosome[1]), float(chromosome[2])
+    return simulate_joints(command, sample, gain, damping, stiffness, _links(chromosome))
 
 
 def holding_voltage(chromosome: np.ndarray) -> np.ndarray:
     """Voltage of each joint that holds the straight arm against gravity [V]. # (6,)."""
-    bodies = arm_bodies()
-    matrix, bias = np.empty((JOINTS, JOINTS)), np.empty(JOINTS)
-    mass_matrix_and_bias(
-        np.zeros(JOINTS),
-        np.zeros(JOINTS),
-        bodies.offsets,
-        bodies.axes,
-        *bodies.with_masses(np.asarray(chromosome[3:], dtype=float)),
-        float(mechanical_data()["gravity"]["value"]),
-        matrix,
-        bias,
-    )
-    return bias / (float(chromosome[0]) * si_factor(mechanical_parameters().units[0], "N m/V"))
+    still = np.zeros((1, JOINTS))
+    moments = moments_along(_links(chromosome), still, still, still)[0]
+    return moments / (float(chromosome[0]) * si_factor(mechanical_parameters().units[0], "N m/V"))
+
+
+def _links(chromosome: np.ndarray) -> Links:
+    gravity = float(mechanical_data()["gravity"]["value"])
+    return arm_bodies().with_masses(np.asarray(chromosome[3:], dtype=float), gravity)
 
 
 @dataclass(frozen=True)
