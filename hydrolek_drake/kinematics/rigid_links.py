@@ -7,15 +7,18 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import RigidBody
 
 from hydrolek_drake.kinematics.arms import arm_joint, arm_joint_names, make_arms_plant
-from hydrolek_drake.physics.serial_arm import ROOT, Links
+from hydrolek_drake.physics.serial_arm import ROOT, link
 
 
-def rigid_links(joints: Sequence[str], held: Mapping[str, float]) -> Links:
-    """Links that turn about some joints of the arms, in their order; all other joints are held.
+def rigid_links(joints: Sequence[str], held: Mapping[str, float]) -> np.ndarray:
+    """Rows of `serial_arm.link` for the links that turn about some joints of the arms; all other joints are held.
 
     Args:
         joints: that move, each after those that carry it.
         held: angles in rad of joints that do not move; those that are not named are held at zero.
+
+    Returns:
+        # (joints, 36)
 
     Raises:
         InputError: a name is none of the arms' joints.
@@ -40,7 +43,7 @@ def rigid_links(joints: Sequence[str], held: Mapping[str, float]) -> Links:
         tool = plant.GetFrameByName(f"{joint.name().split('_')[0]}_tool")
         carries = tool.body().index() in {body.index() for body in welded}
         found.append(
-            (
+            link(
                 parent,
                 pose.rotation().matrix(),
                 pose.translation(),
@@ -48,12 +51,11 @@ def rigid_links(joints: Sequence[str], held: Mapping[str, float]) -> Links:
                 inertia.get_mass(),
                 inertia.get_mass() * inertia.get_com(),
                 inertia.CopyToFullMatrix6()[:3, :3],
-                float(carries),
-                tool.CalcPose(context, frame).translation() if carries else np.zeros(3),
+                np.array(plant.gravity_field().gravity_vector()),
+                tool.CalcPose(context, frame).translation() if carries else None,
             )
         )
-    columns = [np.ascontiguousarray(np.array(column)) for column in zip(*found, strict=True)]
-    return Links(*[*columns, np.array(plant.gravity_field().gravity_vector())])
+    return np.array(found)
 
 
 def _moving_body(plant: MultibodyPlant, body: RigidBody, rows: Mapping[object, int]) -> RigidBody | None:

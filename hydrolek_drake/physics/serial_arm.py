@@ -5,8 +5,6 @@ against the other. Everything is told in the axes of the base about its origin, 
 wrenches of several bodies are simply added (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 2, 5 and 6).
 """
 
-from typing import NamedTuple
-
 import numpy as np
 from numba import njit
 
@@ -21,7 +19,6 @@ from hydrolek_drake.physics.vectors import (
     put_at,
     rotation,
     scaled,
-    second_at,
     turned,
     vector_at,
 )
@@ -33,97 +30,117 @@ ROOT = -1
 """Parent of a link that turns on the base."""
 
 
-class Links(NamedTuple):
-    """Links that turn, each after the one on which it turns; one row for each."""
+PARENT, TURN, OFFSET, AXIS, MASS, MOMENT, INERTIA, CARRIES, TOOL, GRAVITY = (
+    0,
+    1,
+    10,
+    13,
+    16,
+    17,
+    20,
+    29,
+    30,
+    33,
+)
+"""Where a link's numbers begin in its row, see `link`."""
 
-    parent: np.ndarray  # row of the link on which it turns, or `ROOT`. # (n,) int
-    turn: np.ndarray  # axes of its joint in the parent's, at joint angle zero. # (n, 3, 3)
-    offset: np.ndarray  # from the parent's joint to its own, in the parent's axes [m]. # (n, 3)
-    axis: np.ndarray  # about which it turns, in its own axes. # (n, 3)
-    mass: np.ndarray  # [kg]. # (n,)
-    moment: np.ndarray  # mass times centre of gravity from its joint [kg m]. # (n, 3)
-    inertia: np.ndarray  # about its joint [kg m^2]. # (n, 3, 3)
-    carries: np.ndarray  # 1 where a payload hangs, else 0. # (n,)
-    tool: np.ndarray  # where it hangs, from its joint [m]. # (n, 3)
-    gravity: np.ndarray  # in the base's axes [m/s^2]. # (3,)
+LINK_SIZE = 36
 
+_TURN, _PLACE, _W, _V, _CHANGE_W, _CHANGE_V, _SCREW_W, _SCREW_V, _BODY, _TORQUE, _FORCE = (
+    0, 9, 12, 15, 18, 21, 24, 27, 30, 40, 43,
+)  # fmt: skip
+"""Where a link's turn, place, velocities and so on begin in its row of `scratch`."""
 
-class Scratch(NamedTuple):
-    """Room for `motion_equation`, one row for each link."""
-
-    turn: np.ndarray  # axes in those of the base, row by row. # (n, 9)
-    place: np.ndarray  # of the joint. # (n, 3)
-    rate: np.ndarray  # angular velocity, and velocity of what is at the origin. # (n, 6)
-    change: np.ndarray  # their change without q'', less gravity. # (n, 6)
-    screw: np.ndarray  # axis, and velocity of what is at the origin as it turns with 1 rad/s. # (n, 6)
-    body: np.ndarray  # the link with all that it carries, as in `Body`. # (n, 10)
-    wrench: np.ndarray  # torque about the origin, and force. # (n, 6)
+_SCRATCH_SIZE = 46
 
 
-def scratch(count: int) -> Scratch:
-    """Room for so many links."""
-    return Scratch(*[np.zeros((count, width)) for width in (9, 3, 6, 6, 6, 10, 6)])
+def link(
+    parent: int,
+    turn: np.ndarray,
+    offset: np.ndarray,
+    axis: np.ndarray,
+    mass: float,
+    moment: np.ndarray,
+    inertia: np.ndarray,
+    gravity: np.ndarray,
+    tool: np.ndarray | None = None,
+) -> np.ndarray:
+    """A link's numbers in a row, as compiled code takes them: one array is handed on for less than ten. # (36,).
+
+    Args:
+        parent: row of the link on which it turns, which comes before it, or `ROOT`.
+        turn: axes of its joint in the parent's, at joint angle zero. # (3, 3)
+        offset: from the parent's joint to its own, in the parent's axes [m]. # (3,)
+        axis: about which it turns, in its own axes, a unit vector. # (3,)
+        mass: [kg].
+        moment: mass times centre of gravity from its joint [kg m]. # (3,)
+        inertia: about its joint [kg m^2]. # (3, 3)
+        gravity: in the base's axes [m/s^2]. # (3,)
+        tool: where a payload hangs, from its joint [m]; None where none does. # (3,)
+    """
+    hangs = np.zeros(4) if tool is None else np.append(1.0, tool)
+    parts = (parent, np.ravel(turn), offset, axis, mass, moment, np.ravel(inertia), hangs, gravity)
+    return np.concatenate([np.atleast_1d(np.asarray(part, dtype=float)) for part in parts])
+
+
+def scratch(count: int) -> np.ndarray:
+    """Room for `motion_equation` of so many links. # (count, 46)."""
+    return np.zeros((count, _SCRATCH_SIZE))
 
 
 @njit
 def motion_equation(
-    links: Links,
+    links: np.ndarray,
     q: np.ndarray,
     w: np.ndarray,
     payload: np.ndarray,
-    s: Scratch,
+    s: np.ndarray,
     matrix: np.ndarray,
     bias: np.ndarray,
 ) -> None:
     """Mass matrix, and the moments that hold the speeds as they are, against gravity too.
 
     Args:
-        links: what turns.
+        links: what turns, rows of `link`. # (n, 36)
         q: joint angles [rad]. # (n,)
         w: joint speeds [rad/s]. # (n,)
         payload: that hangs on each link that carries one [kg]. # (n,)
-        s: room.
+        s: `scratch`. # (n, 46)
         matrix: receives M [kg m^2], but for entries between links of two arms. # (n, n)
         bias: receives c [N m]. # (n,)
     """
     n = len(q)
     for k in range(n):
-        _link(links, k, q[k], w[k], payload[k] * links.carries[k], s)
+        _put_link(links, k, q[k], w[k], payload[k] * links[k, CARRIES], s)
     for k in range(n - 1, -1, -1):
-        b = s.body
-        body = (b[k, 0], b[k, 1], b[k, 2], b[k, 3], b[k, 4], b[k, 5], b[k, 6], b[k, 7], b[k, 8], b[k, 9])
-        turning, moving = _momentum(body, vector_at(s.screw, k), second_at(s.screw, k))
-        bias[k] = dot(vector_at(s.screw, k), vector_at(s.wrench, k)) + dot(
-            second_at(s.screw, k), second_at(s.wrench, k)
-        )
+        z, lever = vector_at(s, k, _SCREW_W), vector_at(s, k, _SCREW_V)
+        turning, moving = _momentum(_body_at(s, k), z, lever)
+        bias[k] = dot(z, vector_at(s, k, _TORQUE)) + dot(lever, vector_at(s, k, _FORCE))
         j = k
         while j != ROOT:
-            matrix[j, k] = dot(vector_at(s.screw, j), turning) + dot(second_at(s.screw, j), moving)
+            matrix[j, k] = dot(vector_at(s, j, _SCREW_W), turning) + dot(vector_at(s, j, _SCREW_V), moving)
             matrix[k, j] = matrix[j, k]
-            j = links.parent[j]
-        p = links.parent[k]
+            j = int(links[j, PARENT])
+        p = int(links[k, PARENT])
         if p != ROOT:
-            for r in range(10):
-                s.body[p, r] += s.body[k, r]
-            for r in range(6):
-                s.wrench[p, r] += s.wrench[k, r]
+            for r in range(_BODY, _SCRATCH_SIZE):
+                s[p, r] += s[k, r]
 
 
 @njit
-def _link(links: Links, k: int, angle: float, speed: float, hanging: float, s: Scratch) -> None:
+def _put_link(links: np.ndarray, k: int, angle: float, speed: float, hanging: float, s: np.ndarray) -> None:
     """Place, motion, inertia and wrench of one link, from those of the link on which it turns."""
-    p = links.parent[k]
+    p = int(links[k, PARENT])
     turn: Matrix = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     place = w = v = a_w = (0.0, 0.0, 0.0)
-    a_v = (-links.gravity[0], -links.gravity[1], -links.gravity[2])  # as if the base were accelerated upwards
+    a_v = scaled(-1.0, vector_at(links, k, GRAVITY))  # as if the base were accelerated upwards
     if p != ROOT:
-        t = s.turn
-        turn = (t[p, 0], t[p, 1], t[p, 2], t[p, 3], t[p, 4], t[p, 5], t[p, 6], t[p, 7], t[p, 8])
-        place, w, v = vector_at(s.place, p), vector_at(s.rate, p), second_at(s.rate, p)
-        a_w, a_v = vector_at(s.change, p), second_at(s.change, p)
-    place = plus(place, turned(turn, vector_at(links.offset, k)))
-    axis = vector_at(links.axis, k)
-    turn = product(product(turn, matrix_at(links.turn, k)), rotation(axis, angle))
+        turn = matrix_at(s, p, _TURN)
+        place, w, v = vector_at(s, p, _PLACE), vector_at(s, p, _W), vector_at(s, p, _V)
+        a_w, a_v = vector_at(s, p, _CHANGE_W), vector_at(s, p, _CHANGE_V)
+    place = plus(place, turned(turn, vector_at(links, k, OFFSET)))
+    axis = vector_at(links, k, AXIS)
+    turn = product(product(turn, matrix_at(links, k, TURN)), rotation(axis, angle))
     z = turned(turn, axis)
     lever = cross(place, z)
     # S' = v x S: the motion of the links before carries the axis along
@@ -131,24 +148,34 @@ def _link(links: Links, k: int, angle: float, speed: float, hanging: float, s: S
     a_v = plus(a_v, scaled(speed, plus(cross(w, lever), cross(v, z))))
     w = plus(w, scaled(speed, z))
     v = plus(v, scaled(speed, lever))
-    body = _about_origin(links.mass[k], vector_at(links.moment, k), matrix_at(links.inertia, k), turn, place)
+    inertia = matrix_at(links, k, INERTIA)
+    body = _about_origin(links[k, MASS], vector_at(links, k, MOMENT), inertia, turn, place)
     if hanging > 0.0:
-        body = _with_point(body, hanging, plus(place, turned(turn, vector_at(links.tool, k))))
+        body = _with_point(body, hanging, plus(place, turned(turn, vector_at(links, k, TOOL))))
     turning, moving = _momentum(body, w, v)
     rising, pushing = _momentum(body, a_w, a_v)
     for r in range(9):
-        s.turn[k, r] = turn[r]
+        s[k, _TURN + r] = turn[r]
     for r in range(10):
-        s.body[k, r] = body[r]
-    put_at(s.place, k, 0, place)
-    put_at(s.rate, k, 0, w)
-    put_at(s.rate, k, 3, v)
-    put_at(s.change, k, 0, a_w)
-    put_at(s.change, k, 3, a_v)
-    put_at(s.screw, k, 0, z)
-    put_at(s.screw, k, 3, lever)
-    put_at(s.wrench, k, 0, plus(rising, plus(cross(w, turning), cross(v, moving))))
-    put_at(s.wrench, k, 3, plus(pushing, cross(w, moving)))
+        s[k, _BODY + r] = body[r]
+    put_at(s, k, _PLACE, place)
+    put_at(s, k, _W, w)
+    put_at(s, k, _V, v)
+    put_at(s, k, _CHANGE_W, a_w)
+    put_at(s, k, _CHANGE_V, a_v)
+    put_at(s, k, _SCREW_W, z)
+    put_at(s, k, _SCREW_V, lever)
+    put_at(s, k, _TORQUE, plus(rising, plus(cross(w, turning), cross(v, moving))))
+    put_at(s, k, _FORCE, plus(pushing, cross(w, moving)))
+
+
+@njit
+def _body_at(s: np.ndarray, k: int) -> Body:
+    f = _BODY
+    return (
+        s[k, f], s[k, f + 1], s[k, f + 2], s[k, f + 3], s[k, f + 4],
+        s[k, f + 5], s[k, f + 6], s[k, f + 7], s[k, f + 8], s[k, f + 9],
+    )  # fmt: skip
 
 
 @njit
@@ -201,12 +228,12 @@ def _momentum(body: Body, w: Vector, v: Vector) -> tuple[Vector, Vector]:
 
 
 def moments_along(
-    links: Links, q: np.ndarray, w: np.ndarray, a: np.ndarray, payload: np.ndarray | None = None
+    links: np.ndarray, q: np.ndarray, w: np.ndarray, a: np.ndarray, payload: np.ndarray | None = None
 ) -> np.ndarray:
     """Moments that a motion needs, M(q) q'' + c(q, q') [N m]. # (k, n).
 
     Args:
-        links: what turns.
+        links: what turns, rows of `link`. # (n, 36)
         q: joint angles [rad]. # (k, n)
         w: joint speeds [rad/s]. # (k, n)
         a: joint accelerations [rad/s^2]. # (k, n)
@@ -221,12 +248,12 @@ def moments_along(
 
 @njit(cache=True)
 def _moments_along(
-    links: Links,
+    links: np.ndarray,
     q: np.ndarray,
     w: np.ndarray,
     a: np.ndarray,
     payload: np.ndarray,
-    s: Scratch,
+    s: np.ndarray,
     needed: np.ndarray,
 ) -> None:
     n = q.shape[1]

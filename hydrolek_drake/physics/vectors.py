@@ -46,18 +46,19 @@ def product(p: Matrix, q: Matrix) -> Matrix:
 
 
 @njit
-def matrix_at(rows: np.ndarray, k: int) -> Matrix:
-    """Matrix in a row of matrices. # rows (n, 3, 3)."""
+def matrix_at(rows: np.ndarray, k: int, first: int) -> Matrix:
+    """Nine numbers of a row, from one of its places on."""
+    f = first
     return (
-        rows[k, 0, 0],
-        rows[k, 0, 1],
-        rows[k, 0, 2],
-        rows[k, 1, 0],
-        rows[k, 1, 1],
-        rows[k, 1, 2],
-        rows[k, 2, 0],
-        rows[k, 2, 1],
-        rows[k, 2, 2],
+        rows[k, f],
+        rows[k, f + 1],
+        rows[k, f + 2],
+        rows[k, f + 3],
+        rows[k, f + 4],
+        rows[k, f + 5],
+        rows[k, f + 6],
+        rows[k, f + 7],
+        rows[k, f + 8],
     )
 
 
@@ -96,15 +97,9 @@ def scaled(factor: float, p: Vector) -> Vector:
 
 
 @njit
-def vector_at(rows: np.ndarray, k: int) -> Vector:
-    """The first three numbers of a row."""
-    return rows[k, 0], rows[k, 1], rows[k, 2]
-
-
-@njit
-def second_at(rows: np.ndarray, k: int) -> Vector:
-    """The three numbers after the first three of a row."""
-    return rows[k, 3], rows[k, 4], rows[k, 5]
+def vector_at(rows: np.ndarray, k: int, first: int) -> Vector:
+    """Three numbers of a row, from one of its places on."""
+    return rows[k, first], rows[k, first + 1], rows[k, first + 2]
 
 
 @njit

@@ -10,23 +10,12 @@ from numba import njit
 from hydrolek_drake.compiled import read_only
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.law import LAW, law_of
-from hydrolek_drake.physics.serial_arm import Links, moments_along, scratch
+from hydrolek_drake.physics.serial_arm import LINK_SIZE, moments_along, scratch
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.rollout import rest_state
 from hydrolek_drake.rollout.together_kernel import TOLD, integrate_together, room
 
-_NO_LINKS = Links(
-    np.zeros(0, dtype=np.int64),
-    np.zeros((0, 3, 3)),
-    np.zeros((0, 3)),
-    np.zeros((0, 3)),
-    np.zeros(0),
-    np.zeros((0, 3)),
-    np.zeros((0, 3, 3)),
-    np.zeros(0),
-    np.zeros((0, 3)),
-    np.zeros(3),
-)
+_NO_LINKS = np.zeros((0, LINK_SIZE))
 
 
 @dataclass(frozen=True)
@@ -110,7 +99,7 @@ class JointsTogether:
             np.concatenate(rows) if any(map(len, rows)) else None,
             np.concatenate([[0], np.cumsum([len(law) for law in rows])]),
             self._links,
-            scratch(len(self._links.mass)),
+            scratch(len(self._links)),
             room(len(own)),
             told,
         )
@@ -119,7 +108,7 @@ class JointsTogether:
 
     def _carried(self, carriers: np.ndarray, positions: np.ndarray) -> list[float | None]:
         """Gravity's moment on each joint at rest [N m]; None where it carries no other joint."""
-        if not len(self._links.mass):
+        if not len(self._links):
             return [None] * len(carriers)
         still = np.zeros((1, len(carriers)))
         hanging = payloads(carriers, still[:, 0])
@@ -132,7 +121,7 @@ def moving_with(rig: Rig, joints: Sequence[str]) -> tuple[str, ...]:
     return tuple(j for j in rig.joints if j in joints or (_of_arm(rig, j) and j.split("_")[0] in sides))
 
 
-def arm_links(rig: Rig, joints: Sequence[str]) -> Links:
+def arm_links(rig: Rig, joints: Sequence[str]) -> np.ndarray:
     """Links that turn about some joints, in their order, with the rest where the rig holds it; none if no arm has them.
 
     Args:
@@ -191,7 +180,7 @@ def _of_arm(rig: Rig, joint: str) -> bool:
 
 
 @cache
-def _links_of(joints: tuple[str, ...], held: tuple[tuple[str, float], ...]) -> Links:
+def _links_of(joints: tuple[str, ...], held: tuple[tuple[str, float], ...]) -> np.ndarray:
     # Drake takes a second to load, and joints mostly move alone
     from hydrolek_drake.kinematics.rigid_links import rigid_links
 

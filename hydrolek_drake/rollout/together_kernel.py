@@ -17,7 +17,7 @@ from hydrolek_drake.physics import command, hooks, load, sensor, supply
 from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.angle import Angle, angle_near
 from hydrolek_drake.physics.probes import SUPPLY, Probe, added, no_probe
-from hydrolek_drake.physics.serial_arm import Links, Scratch, accelerations, motion_equation
+from hydrolek_drake.physics.serial_arm import accelerations, motion_equation
 from hydrolek_drake.physics.solenoid import GAMMA
 from hydrolek_drake.rollout.kernel import (
     SIGNALS,
@@ -143,8 +143,8 @@ def _all_rates(
     time: float,
     laws: np.ndarray | None,
     first: np.ndarray,
-    links: Links,
-    scratch: Scratch,
+    links: np.ndarray,
+    scratch: np.ndarray,
     r: Room,
     later: bool,
     carriers: np.ndarray,
@@ -175,7 +175,7 @@ def _all_rates(
         r.payload[i] = hooks.payload(time, carriers[i])
     for i in range(n):
         into[i, 4] = supply.flow_rate_of_change(states[i, 4], total, joints[i])
-    if len(links.mass) == 0:
+    if len(links) == 0:
         return
     matrix = r.factor if later else r.mass
     motion_equation(links, states[:, 2], states[:, 3], r.payload, scratch, matrix, r.bias)
@@ -228,8 +228,8 @@ def _step(
     spool_steps: int,
     laws: np.ndarray | None,
     first: np.ndarray,
-    links: Links,
-    scratch: Scratch,
+    links: np.ndarray,
+    scratch: np.ndarray,
     r: Room,
     carriers: np.ndarray,
     joints: np.ndarray,
@@ -252,7 +252,7 @@ def _step(
         drives[i, 0], drives[i, 1], drives[i, 2] = d.behind, d.currents.a, d.currents.b
         drives[i, 3], drives[i, 4] = d.x, d.xd
         r.inertia[i] = inertia_at(time, r.rod[i], joint)
-    linked = len(links.mass) > 0
+    linked = len(links) > 0
     _all_rates(states, r.spool, time, laws, first, links, scratch, r, False, carriers, joints)
     if linked:
         _arm_begins(r, h)
@@ -280,8 +280,8 @@ def integrate_together(
     spool_steps: int,
     laws: np.ndarray | None,
     first: np.ndarray,
-    links: Links,
-    scratch: Scratch,
+    links: np.ndarray,
+    scratch: np.ndarray,
     r: Room,
     out: np.ndarray,
 ) -> int:

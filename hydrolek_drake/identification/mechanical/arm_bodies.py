@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.physics.serial_arm import Links
+from hydrolek_drake.physics.serial_arm import link
 
 JOINTS = 6
 
@@ -33,8 +33,8 @@ class ArmBodies:
     jaw_moment: np.ndarray
     jaw_inertia: np.ndarray
 
-    def with_masses(self, masses: np.ndarray, gravity: float) -> Links:
-        """Links whose shapes stay while their masses scale; the jaw is added.
+    def with_masses(self, masses: np.ndarray, gravity: float) -> np.ndarray:
+        """Rows of `serial_arm.link`: shapes stay while masses scale; the jaw is added. # (6, 36).
 
         Args:
             masses: of links 1 to 6 [kg]. # (6,)
@@ -42,21 +42,15 @@ class ArmBodies:
         """
         moments = masses[:, None] * self.moments_per_kg
         inertias = masses[:, None, None] * self.inertias_per_kg
-        total = masses.astype(float)
+        total, down = masses.astype(float), np.array([0.0, -gravity, 0.0])
         total[-1] += self.jaw_mass
         moments[-1] += self.jaw_moment
         inertias[-1] += self.jaw_inertia
-        return Links(
-            parent=np.arange(JOINTS) - 1,
-            turn=np.tile(np.eye(3), (JOINTS, 1, 1)),
-            offset=self.offsets,
-            axis=self.axes,
-            mass=total,
-            moment=moments,
-            inertia=inertias,
-            carries=np.zeros(JOINTS),
-            tool=np.zeros((JOINTS, 3)),
-            gravity=np.array([0.0, -gravity, 0.0]),
+        return np.array(
+            [
+                link(k - 1, np.eye(3), self.offsets[k], self.axes[k], total[k], moments[k], inertias[k], down)
+                for k in range(JOINTS)
+            ]
         )
 
 

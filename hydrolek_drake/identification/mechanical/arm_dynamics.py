@@ -4,13 +4,13 @@ import numpy as np
 from numba import njit
 
 from hydrolek_drake.compiled import use_cache_for_this_source
-from hydrolek_drake.physics.serial_arm import Links, Scratch, accelerations, motion_equation, scratch
+from hydrolek_drake.physics.serial_arm import accelerations, motion_equation, scratch
 
 use_cache_for_this_source()
 
 
 def simulate_joints(
-    command: np.ndarray, step: float, gain: float, damping: float, stiffness: float, links: Links
+    command: np.ndarray, step: float, gain: float, damping: float, stiffness: float, links: np.ndarray
 ) -> np.ndarray:
     """Angles of all joints, M q'' + c + D q' + S q = K u, from rest at zero.
 
@@ -23,7 +23,7 @@ def simulate_joints(
         gain: K [N m per unit of u].
         damping: D of each joint [N m s/rad].
         stiffness: S of each joint [N m/rad].
-        links: what turns. # n of them
+        links: what turns, rows of `serial_arm.link`. # (n, 36)
 
     Returns:
         Angle before each step [rad]; NaN after a divergence. # (steps, n)
@@ -41,8 +41,8 @@ def _simulate(
     gain: float,
     damping: float,
     stiffness: float,
-    links: Links,
-    s: Scratch,
+    links: np.ndarray,
+    s: np.ndarray,
     out: np.ndarray,
 ) -> None:
     steps, n = command.shape

@@ -18,7 +18,7 @@ import yaml
 
 from hydrolek_drake.identification.mechanical.arm_bodies import JOINTS, arm_bodies
 from hydrolek_drake.identification.mechanical.arm_dynamics import simulate_joints
-from hydrolek_drake.physics.serial_arm import Links, moments_along
+from hydrolek_drake.physics.serial_arm import moments_along
 from hydrolek_drake.units import si_factor
 
 
@@ -82,7 +82,7 @@ def holding_voltage(chromosome: np.ndarray) -> np.ndarray:
     return moments / (float(chromosome[0]) * si_factor(mechanical_parameters().units[0], "N m/V"))
 
 
-def _links(chromosome: np.ndarray) -> Links:
+def _links(chromosome: np.ndarray) -> np.ndarray:
     gravity = float(mechanical_data()["gravity"]["value"])
     return arm_bodies().with_masses(np.asarray(chromosome[3:], dtype=float), gravity)
 
