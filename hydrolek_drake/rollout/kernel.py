@@ -7,16 +7,16 @@ the delayed command changes, so that a fit sees the transport delay as a smooth 
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numba import njit
 
-from hydrolek_drake.physics import amplifier, command, hooks, load, sensor, solenoid, supply, valve
+from hydrolek_drake.physics import command, hooks, load, sensor
 from hydrolek_drake.physics.amplifier import Currents
-from hydrolek_drake.physics.law import up_to_the_spool
 from hydrolek_drake.physics.probes import Probe, probe_at
 from hydrolek_drake.physics.solenoid import GAMMA
+from hydrolek_drake.rollout.drive import Drive, acts_early, driven_on
 from hydrolek_drake.rollout.rates import Slopes, State, Turned, felt_at, rates, turned
 
 SIGNALS = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool", "supply_pressure", "force")
@@ -67,7 +67,7 @@ def second_stage(s: State, k: State, m: State, slope: Slopes, h: float) -> State
     )
 
 
-@njit
+@njit(inline="always")  # as `driven_on`
 def _step(
     s: State,
     x: float,
@@ -87,70 +87,6 @@ def _step(
     middle = first_stage(s, k, slope, h)
     m, _, _, _, _ = rates(middle, x_next, voltage, time + h, inertia, probe_next, law, near, joint)
     return second_stage(s, k, m, slope, h)
-
-
-class Drive(NamedTuple):
-    """What moves between a joint's command and its ports."""
-
-    behind: float  # voltage behind the ramp [V]
-    currents: Currents  # of the coils
-    x: float  # spool position [m]
-    xd: float  # its velocity
-
-
-@njit
-def driven_on(
-    d: Drive,
-    s: State,
-    volts: float,
-    voltage: float,
-    time: float,
-    h: float,
-    spool_steps: int,
-    early: bool,
-    probe: Probe,
-    probe_next: Probe,
-    law: np.ndarray | None,
-    joint: Any,
-) -> tuple[Drive, float]:
-    """Advance ramp, coils and spool by `h` seconds; also the voltage that drives meanwhile.
-
-    Args:
-        d: where they are.
-        s: the rest of the state.
-        volts: of the command that acts.
-        voltage: of the drive, without what a law adds to the command.
-        time: since switching on [s].
-        h: [s].
-        spool_steps: steps of the spool within `h`.
-        early: whether a law acts before the spool or on it.
-        probe: inputs from outside now.
-        probe_next: after the step.
-        law: how inputs from outside follow from the state, or None.
-        joint: parameter record.
-    """
-    gain = 0.0
-    now = probe
-    if early:
-        now = felt_at(probe, law, time, s, d.x, joint)
-        gain = now.amplifier - probe.amplifier
-        voltage = command.drive_voltage(volts + now.command, joint)
-    behind, drive = command.ramped(d.behind, voltage, h, now.ramp, joint)
-    currents, driving = amplifier.following(d.currents, drive, time + 0.5 * h, h, now.coil_time, joint)
-    gain += 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
-    closing_a, closing_b = valve.flow_forces(
-        supply.supply_pressure(s.flow, joint) + now.supply, s.p_a, s.p_b, now.flow_force, joint
-    )
-    x, xd = solenoid.advance(
-        d.x, d.xd, gain * driving.a, gain * driving.b, h, spool_steps, joint, closing_a, closing_b
-    )
-    return Drive(behind, currents, x, xd), drive
-
-
-@njit
-def acts_early(law: np.ndarray | None, joint: Any) -> bool:
-    """Whether a law acts before the spool or on it."""
-    return up_to_the_spool(law) or (law is not None and joint.valve.flow_force > 0.0)
 
 
 @njit

@@ -12,8 +12,9 @@ from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.law import LAW, law_of
 from hydrolek_drake.physics.serial_arm import LINK_SIZE, moments_along, scratch
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rollout.joint_rows import DRIVE, PLAY, RATES, SPOOL, STATE, room
 from hydrolek_drake.rollout.rollout import rest_state
-from hydrolek_drake.rollout.together_kernel import TOLD, integrate_together, room
+from hydrolek_drake.rollout.together_kernel import TOLD, integrate_together
 
 _NO_LINKS = np.zeros((0, LINK_SIZE))
 
@@ -81,26 +82,29 @@ class JointsTogether:
             rest_state(own[i : i + 1], float(positions[i]), carried=carried)
             for i, carried in enumerate(self._carried(carriers, positions))
         ]
-        laws = [law_of(own[i : i + 1]) for i in range(len(own))]
-        rows = [np.zeros(0, LAW) if law is None else law for law in laws]
+        found = [law_of(own[i : i + 1]) for i in range(len(own))]
+        laws = [np.zeros(0, LAW) if law is None else law for law in found]
         told = np.full((times.size, len(own), len(TOLD)), np.nan)
         changes = np.concatenate([[True], np.any(np.diff(command_values, axis=0) != 0.0, axis=1)])
+        rows, vectors, matrices = room(len(own))
+        rows[:, STATE:RATES] = [state[2:11] for state in begun]
+        rows[:, DRIVE:SPOOL] = [[*state[13:16], *state[:2]] for state in begun]
+        rows[:, PLAY] = [state[11] for state in begun]
         done = integrate_together(
             own,
             carriers,
-            np.array([state[2:11] for state in begun]),
-            np.array([[*state[13:16], *state[:2]] for state in begun]),
-            np.array([state[11] for state in begun]),
+            rows,
+            vectors,
+            matrices,
             read_only(command_times[changes]),
             read_only(command_values[changes]),
             read_only(times),
             longest_step or self._longest_step,
             self._spool_steps,
-            np.concatenate(rows) if any(map(len, rows)) else None,
-            np.concatenate([[0], np.cumsum([len(law) for law in rows])]),
+            np.concatenate(laws) if any(map(len, laws)) else None,
+            np.concatenate([[0], np.cumsum([len(law) for law in laws])]),
             self._links,
             scratch(len(self._links)),
-            room(len(own)),
             told,
         )
         diverged = None if done == times.size else f"left all bounds at {times[done]:.3f} s"
