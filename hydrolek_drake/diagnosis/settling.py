@@ -12,13 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.effort import LOOK
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.together import OneRecording, felt_together, recordings_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import fit_from
 from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.secant_descent import descend
 
 WORTH = 1.0
 """A step that takes less than so many squares moves no parameter by more than its own standard deviation."""
@@ -86,14 +85,7 @@ def fitted_together(bench: Workbench, hypothesis: Hypothesis, worth: float) -> H
     bench.alive()
     problem = bench.problem(hypothesis.effects, bench.fine, kind=ProblemTogether)
     moving = bench.movable(hypothesis.effects, problem.parameters)
-    fit = fit_from(
-        problem,
-        hypothesis.fit.unit,
-        most_steps=LOOK,
-        tolerance=worth / problem.counted,
-        stop=bench.interrupted,
-        moving=moving,
-    )
+    fit = descend(problem, hypothesis.fit.unit, worth=worth, stop=bench.interrupted, moving=moving)
     bench.evaluations += fit.evaluations
     unit, left = fit.unit, fit.residuals
     fit = replace(fit, slopes=lambda: problem.jacobian_without_jumps(unit, left, moving))

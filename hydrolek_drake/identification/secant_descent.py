@@ -1,0 +1,132 @@
+"""Bounded least squares where a Jacobian takes as long as dozens of steps.
+
+Between Jacobians the slopes are corrected so that they agree with how the residuals really changed on all ways that
+were tried since (a multisecant Broyden method; Broyden, Mathematics of Computation 19 (1965) 577; Fang and Saad,
+Numerical Linear Algebra with Applications 16 (2009) 197); steps are damped as in Marquardt (SIAM J. 11 (1963) 431). A
+new Jacobian is asked for where steps no longer bring what they promise, or promise nothing any more.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.problem import Problem
+
+FALLING = 0.1
+"""A step has brought what it promised if the squares fall by this share of it at least."""
+
+PATIENCE = 3
+"""So many steps since the last Jacobian may bring less before the next one."""
+
+MOST_JACOBIANS = 8
+
+DAMPED, LESS, MORE = 1e-3, 0.2, 8.0
+"""Marquardt's damping at first, after a step that helped, and after one that did not (times what it was)."""
+
+ALIKE = 1e-3
+"""Ways that are linear combinations of others to this share tell nothing new."""
+
+
+def descend(
+    problem: Problem,
+    start: np.ndarray,
+    *,
+    worth: float,
+    stop: Callable[[], bool],
+    moving: np.ndarray,
+) -> Fit:
+    """Bounded least squares from one start.
+
+    Args:
+        problem: residuals and Jacobian.
+        start: place in the unit cube. # (n,)
+        worth: it ends where a step by a new Jacobian promises less than so many squares.
+        stop: asked before each rollout; True ends the search with `KeyboardInterrupt`.
+        moving: which parameters are searched, the others stay where they start. # (n,)
+    """
+    places = np.flatnonzero(moving)
+    prior = problem.prior_jacobian()
+    before = problem.evaluations
+
+    def at(unit: np.ndarray) -> Fit:
+        if stop():
+            raise KeyboardInterrupt
+        left = problem.residuals(unit)
+        off = problem.prior_residuals(unit)
+        spent = problem.evaluations - before
+        return Fit(unit, left, off, np.zeros((0, 0)), prior, problem.counted, spent, problem.unsure)
+
+    best = at(np.clip(start, 0.0, 1.0))
+    for _ in range(MOST_JACOBIANS):
+        slopes = problem.jacobian(best.unit, best.residuals, moving)[:, places]
+        ways: list[np.ndarray] = []
+        changes: list[np.ndarray] = []
+        damping, failed, helped = DAMPED, 0, False
+        while failed < PATIENCE:
+            corrected_slopes = corrected(slopes, ways, changes)
+            way = damped_step(best, corrected_slopes, places, damping)
+            promised = promised_fall(best, corrected_slopes, places, way)
+            if promised < worth:
+                break
+            there = best.unit.copy()
+            there[places] = np.clip(there[places] + way, 0.0, 1.0)
+            tried = at(there)
+            ways.append((tried.unit - best.unit)[places])
+            changes.append(tried.residuals - best.residuals)
+            fall = best.objective - tried.objective
+            failed += not fall > FALLING * promised
+            if fall > 0.0:
+                best, helped = tried, True
+                damping *= LESS
+            else:
+                damping *= MORE
+        if not helped:
+            break
+    return best
+
+
+def corrected(jacobian: np.ndarray, ways: list[np.ndarray], changes: list[np.ndarray]) -> np.ndarray:
+    """The Jacobian nearest to this one that agrees with how the residuals changed on some ways. # (values, n).
+
+    Args:
+        jacobian: of the residuals, as far as it is known. # (values, n)
+        ways: from one place to another one. # each (n,)
+        changes: of the residuals on these ways. # each (values,)
+    """
+    if not ways:
+        return jacobian
+    along, change = np.stack(ways, axis=1), np.stack(changes, axis=1)
+    return jacobian + (change - jacobian @ along) @ np.linalg.pinv(along, rcond=ALIKE)
+
+
+def damped_step(best: Fit, jacobian: np.ndarray, places: np.ndarray, damping: float) -> np.ndarray:
+    """Marquardt's step within the ranges, with the prior of the parameters. # (searched,).
+
+    Args:
+        best: where it begins.
+        jacobian: of the residuals with the searched parameters. # (values, searched)
+        places: of the searched parameters among all. # (searched,)
+        damping: share of the squared columns that is added to the normal equations' diagonal.
+    """
+    scale = np.linalg.norm(jacobian, axis=0)
+    rows = np.vstack([jacobian, best.prior_jacobian[:, places], np.sqrt(damping) * np.diag(scale)])
+    wanted = -np.concatenate([best.residuals, best.off_prior, np.zeros(places.size)])
+    room = np.finfo(float).eps  # a parameter at an end of its range would leave no room between the bounds
+    low, high = -best.unit[places] - room, 1.0 - best.unit[places] + room
+    return np.asarray(lsq_linear(rows, wanted, bounds=(low, high)).x)
+
+
+def promised_fall(best: Fit, jacobian: np.ndarray, places: np.ndarray, way: np.ndarray) -> float:
+    """By how much a step lets the squares fall, those of the prior among them, if the slopes hold.
+
+    Args:
+        best: where it begins.
+        jacobian: of the residuals with the searched parameters. # (values, searched)
+        places: of the searched parameters among all. # (searched,)
+        way: the step. # (searched,)
+    """
+    residuals = best.residuals + jacobian @ way
+    off_prior = best.off_prior + best.prior_jacobian[:, places] @ way
+    return best.objective - float(residuals @ residuals + off_prior @ off_prior)
