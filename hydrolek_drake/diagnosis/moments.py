@@ -14,8 +14,9 @@ from scipy.stats import chi2
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import GLANCE, LOOK
 from hydrolek_drake.diagnosis.intervals import CONFIDENCE, Interval
+from hydrolek_drake.diagnosis.pulled_fits import fit_pulled
 from hydrolek_drake.diagnosis.score import Across
-from hydrolek_drake.diagnosis.unsticking import different
+from hydrolek_drake.diagnosis.unsticking import begun_anew, different
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench, moments_of
 from hydrolek_drake.identification.parameter_set import Free
 
@@ -37,7 +38,9 @@ def begun(
 ) -> dict[str, float]:
     """Full path -> value: the best of short fits from the first start with every start's moment of the last effect.
 
-    The whole recording is fitted, for what begins late shows in no part of it.
+    The whole recording is fitted, for what begins late shows in no part of it. A nominal model that makes up for a load
+    from the beginning on is bent so far that other moments promise more than the right one; pulled rollouts of the
+    rig's own numbers forget what was before, and one more fit begins at the moment that explains these best.
 
     Args:
         bench: data and fits.
@@ -53,6 +56,9 @@ def begun(
         bench.fit(effects, {**starts[0], **moment}, step, GLANCE, tolerance=1e-3, alone=True)
         for moment in moments
     ]
+    known = {path: value for path, value in starts[0].items() if path not in paths}
+    pulled = fit_pulled(bench, effects, begun_anew(bench, effects, known), step, bench.training)
+    fits.append(bench.refit(pulled, step, GLANCE, tolerance=1e-3, alone=True))
     return min(fits, key=lambda h: h.fit.objective).values
 
 

@@ -76,3 +76,21 @@ def test_short_fits_from_moments_far_apart_come_near(bench, recorded) -> None:
     assert kept is near  # an effect without a moment begins where it was told to
     assert {free.path for free in payload.moments} == {f"{payload.path}.time_s"}
     assert len(others) == len(candidates) - 1
+
+
+def test_a_moment_that_promises_little_beside_a_bent_model_is_found(bench, recorded) -> None:
+    machine = bench.with_values({f"effects.load.payload.{name}": value for name, value in PICKED_UP.items()})
+    experiments = recorded(machine, bench, largest_V=5.0)
+    candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
+    payload = next(c for c in candidates if c.id == "load.payload")
+    moment = payload.moments[0].path
+    with ThreadPoolExecutor(2) as pool:
+        workbench = Workbench(bench, free_parameters(bench), experiments, pool)
+        step = 2.0 * workbench.fine
+        bent = workbench.fit((), {}, step, LOOK).values
+        wrong = [
+            {**bent, **start} for start in payload.starts if abs(start[moment] - PICKED_UP["time_s"]) > 3.0
+        ]
+        near = begun(workbench, (payload,), wrong, step)
+    apart = max(np.diff(sorted({start[moment] for start in payload.starts})))
+    assert near[moment] == pytest.approx(PICKED_UP["time_s"], abs=apart)
