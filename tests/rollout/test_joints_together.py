@@ -7,7 +7,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.law_terms import Term
 from hydrolek_drake.diagnosis.laws import Reach, Span, law_record
-from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rigs.short_law import terms_of
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.rollout.rollout import rest_state
@@ -29,15 +29,17 @@ def _volts(joints: int, seed: int = 4) -> np.ndarray:
     return volts
 
 
-def _off_deg(rig, step: float | None = None) -> np.ndarray:
+def _off_deg(
+    rig: Rig, step: float | None = None, joints: tuple[str, ...] = MOVING, seconds: float = 3.0
+) -> np.ndarray:
     """Largest difference of each joint's reading between the rollout of all and the Diagram."""
-    volts, records = _volts(2), rig.records()
+    volts, records, times = _volts(len(joints)), rig.records(), TIME[TIME <= seconds]
     places = records["load"]["initial_position"]
     station = make_station(rig, command=command_source(TIME, volts), sizes=StepSizes(step=2.5e-4))
-    wanted = run(station, TIME[-1], context=initial_context(station, places)).signals["reading"]
-    done = JointsTogether(rig, MOVING).roll_out(records, TIME, volts, TIME, places, step)
+    wanted = run(station, seconds, context=initial_context(station, places)).signals["reading"]
+    done = JointsTogether(rig, joints).roll_out(records, TIME, volts, times, places, step)
     assert done.diverged is None
-    return np.degrees(np.abs(done.signals["reading"] - wanted[: TIME.size]).max(axis=0))
+    return np.degrees(np.abs(done.signals["reading"] - wanted[: times.size]).max(axis=0))
 
 
 @pytest.mark.parametrize(
@@ -61,6 +63,12 @@ def _off_deg(rig, step: float | None = None) -> np.ndarray:
 def test_joints_move_as_in_the_diagram(two_joints, values) -> None:
     step = 1e-4 if any("backlash" in path for path in values) else None  # contacts, as in docs/agreement.md
     assert _off_deg(two_joints.with_values(values), step).max() < ALLOWED_DEG
+
+
+def test_both_arms_move_as_in_the_diagram() -> None:
+    droop = "joints.right_j1.effects.supply.pressure_droop.resistance_Pa_s_per_m3"
+    whole = load_rig("hydrolek", {}).with_values({droop: 3e10})
+    assert _off_deg(whole, joints=whole.joints, seconds=1.5).max() < ALLOWED_DEG
 
 
 def test_laws_of_two_joints_act_as_in_the_diagram(two_joints) -> None:
