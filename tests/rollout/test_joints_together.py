@@ -110,6 +110,16 @@ def test_a_joint_that_moves_alone_moves_as_in_its_own_rollout(two_joints) -> Non
     assert done.signals["pressure_a"][:, 0] == pytest.approx(wanted.pressure_a, rel=1e-6)
 
 
+def test_a_joint_of_no_arm_moves_as_in_its_own_rollout() -> None:
+    bench, volts = load_rig("joint_bench", {}), _volts(1)
+    records, step = bench.records(), bench.value("integration.longest_step")
+    start = np.array([bench.value("load.initial_position")])
+    wanted = roll_out(records, TIME, volts[:, 0], TIME, longest_step=step).signals
+    done = JointsTogether(bench, bench.joints).roll_out(records, TIME, volts, TIME, start)
+    for name in ("reading", "pressure_a", "spool", "force"):
+        assert done.signals[name][:, 0] == pytest.approx(getattr(wanted, name), rel=1e-9, abs=1e-12), name
+
+
 def test_its_error_falls_with_the_square_of_the_step(two_joints) -> None:
     volts, records = _volts(2), two_joints.records()
     machine, places = JointsTogether(two_joints, MOVING), records["load"]["initial_position"]
