@@ -144,6 +144,15 @@ def test_folder_that_cannot_be_made_is_refused_before_the_run(tmp_path, capsys):
     assert capsys.readouterr().err.count("\n") == 1
 
 
+@pytest.fixture
+def interruptible():
+    """Ctrl-C interrupts, also where the tests were started in the background, which ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
 def test_interrupt_keeps_what_is_done(tmp_path, capsys, monkeypatch):
     def interrupting(*arguments, on_progress, **options):
         def progress(now: float) -> None:
