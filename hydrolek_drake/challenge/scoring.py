@@ -1,7 +1,7 @@
 """How a diagnosis did on a concealed case, and on all of them."""
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -67,25 +67,22 @@ def _shown(case: Mapping[str, Any]) -> dict[str, float]:
 
 
 def _errors(truth: Mapping[str, Mapping[str, float]], told: Sequence[Mapping[str, Any]]) -> list[float]:
-    found = {e["id"]: e["parameters"] for e in told}
-    return [
-        abs(found[effect][name]["value"] - value) / abs(value)
-        for effect, parameters in truth.items()
-        if effect in found
-        for name, value in parameters.items()
-        if value
-    ]
+    return [abs(known["value"] - value) / abs(value) for value, known in _numbers(truth, told) if value]
 
 
 def _held(truth: Mapping[str, Mapping[str, float]], told: Sequence[Mapping[str, Any]]) -> list[bool]:
     """Whether the 95 % interval of each number of the effects that are named rightly holds the true value."""
+    return [bool(known["low"] <= value <= known["high"]) for value, known in _numbers(truth, told)]
+
+
+def _numbers(
+    truth: Mapping[str, Mapping[str, float]], told: Sequence[Mapping[str, Any]]
+) -> Iterator[tuple[float, Mapping[str, float]]]:
+    """True value and what is told of it, of each number of the effects that are named rightly."""
     found = {e["id"]: e["parameters"] for e in told}
-    return [
-        bool(found[effect][name]["low"] <= value <= found[effect][name]["high"])
-        for effect, parameters in truth.items()
-        if effect in found
-        for name, value in parameters.items()
-    ]
+    for effect in truth.keys() & found.keys():
+        for name, value in truth[effect].items():
+            yield value, found[effect][name]
 
 
 def summary(results: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

@@ -109,7 +109,7 @@ def with_numbers_together(
     """
     there = fitted_together(bench, best.hypothesis, WORTH_TELLING)
     rig = bench.rig.with_values(there.values)
-    bench.training = tuple(felt_together(rig, bench.training))
-    told = felt_together(rig, held_out)
+    training, told = felt_together(rig, bench.training), felt_together(rig, held_out)
     ahead = bench.problem(there.effects, bench.fine, told, kind=ProblemTogether).residuals(there.fit.unit)
+    bench.training = tuple(training)  # an interrupt before leaves all as it was
     return replace(best, hypothesis=there, held_out=ahead), tuple(told)

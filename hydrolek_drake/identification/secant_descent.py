@@ -7,6 +7,7 @@ new Jacobian is asked for where steps no longer bring what they promise, or prom
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import lsq_linear
@@ -53,14 +54,16 @@ def descend(
     def at(unit: np.ndarray) -> Fit:
         if stop():
             raise KeyboardInterrupt
-        left = problem.residuals(unit)
-        off = problem.prior_residuals(unit)
-        spent = problem.evaluations - before
-        return Fit(unit, left, off, np.zeros((0, 0)), prior, problem.counted, spent, problem.unsure)
+        left, off = problem.residuals(unit), problem.prior_residuals(unit)
+
+        def slopes() -> np.ndarray:
+            return problem.jacobian(unit, left, moving)
+
+        return Fit(unit, left, off, slopes, prior, problem.counted, 0, problem.unsure)
 
     best = at(np.clip(start, 0.0, 1.0))
     for _ in range(MOST_JACOBIANS):
-        slopes = problem.jacobian(best.unit, best.residuals, moving)[:, places]
+        slopes = best.jacobian[:, places]
         ways: list[np.ndarray] = []
         changes: list[np.ndarray] = []
         damping, failed, helped = DAMPED, 0, False
@@ -84,7 +87,7 @@ def descend(
                 damping *= MORE
         if not helped:
             break
-    return best
+    return replace(best, evaluations=problem.evaluations - before)
 
 
 def corrected(jacobian: np.ndarray, ways: list[np.ndarray], changes: list[np.ndarray]) -> np.ndarray:

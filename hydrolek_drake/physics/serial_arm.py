@@ -29,19 +29,9 @@ Body = tuple[float, float, float, float, float, float, float, float, float, floa
 ROOT = -1
 """Parent of a link that turns on the base."""
 
-
 PARENT, TURN, OFFSET, AXIS, MASS, MOMENT, INERTIA, CARRIES, TOOL, GRAVITY = (
-    0,
-    1,
-    10,
-    13,
-    16,
-    17,
-    20,
-    29,
-    30,
-    33,
-)
+    0, 1, 10, 13, 16, 17, 20, 29, 30, 33,
+)  # fmt: skip
 """Where a link's numbers begin in its row, see `link`."""
 
 LINK_SIZE = 36

@@ -27,7 +27,9 @@ TORQUE, BIAS, PAYLOAD, ANGLE, SPEED = range(5)
 MASS, FACTOR = range(2)
 """M at the beginning of a step, and a matrix that is factored."""
 
-FLOW, W, STIFF_W, X = 4, 3, 2, 3
+FLOW, W = State._fields.index("flow"), State._fields.index("w")
+STIFF_W = Slopes._fields.index("w")
+X = 3
 """Places of the supply's flow and of the speed in `State`, of the speed in `Slopes`, and of the spool in `Drive`."""
 
 

@@ -20,6 +20,8 @@ START_STEPS = 8
 """Steps of the search for a start: its error falls by the share that lean and bow change with position, at most a
 tenth, in each."""
 
+DIVIDED_BY_ZERO = "a parameter by which something is divided is zero"
+
 UNPRESSED = 1e-3
 """A play that the load presses together by less than this share of its gap is not taken up: friction of its pins holds
 as much, and a joint that was measured in balance is so only to within the noise, which tells no side. It starts centred
@@ -171,7 +173,7 @@ def roll_out(
         [[True], np.diff(command_values) != 0.0]
     )  # what only repeats the command says nothing
     pull_time, measured = pull or (0.0, kernel.NOT_PULLED)
-    diverged = _missing_number(joint)
+    diverged = missing_number(joint)
     if diverged is None:
         try:
             start = rest_state(joint) if state is None else start
@@ -194,7 +196,7 @@ def roll_out(
                 diverged = f"left all bounds at {times[rows]:.3f} s"
         except ZeroDivisionError:
             out[:] = np.nan
-            diverged = "a parameter by which something is divided is zero"
+            diverged = DIVIDED_BY_ZERO
     return Outcome(Signals(times, *out.T), diverged, start)
 
 
@@ -219,7 +221,7 @@ def _check_times(command_times: np.ndarray, command_values: np.ndarray, times: n
 _VARIANTS = np.array([position_of(stage, "variant") for stage in STAGES])
 
 
-def _missing_number(joint: np.ndarray) -> str | None:
+def missing_number(joint: np.ndarray) -> str | None:
     """Which parameter of the chosen variants or of an effect is NaN, or None.
 
     NaN would not always show: a comparison with it is false, so that a valve with NaN overlap stays shut.

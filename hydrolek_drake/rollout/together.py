@@ -13,7 +13,7 @@ from hydrolek_drake.physics.law import LAW, law_of
 from hydrolek_drake.physics.serial_arm import LINK_SIZE, moments_along, scratch
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.joint_rows import DRIVE, PLAY, RATES, SPOOL, STATE, room
-from hydrolek_drake.rollout.rollout import rest_state
+from hydrolek_drake.rollout.rollout import DIVIDED_BY_ZERO, missing_number, rest_state
 from hydrolek_drake.rollout.together_kernel import TOLD, integrate_together
 
 _NO_LINKS = np.zeros((0, LINK_SIZE))
@@ -78,19 +78,44 @@ class JointsTogether:
         """
         own = np.ascontiguousarray(records[self._places])
         carriers = carriers_of(self._rig, self.joints, records)
-        begun = [
-            rest_state(own[i : i + 1], float(positions[i]), carried=carried)
-            for i, carried in enumerate(self._carried(carriers, positions))
-        ]
+        told = np.full((times.size, len(own), len(TOLD)), np.nan)
+        missing = (missing_number(own[i : i + 1]) for i in range(len(own)))
+        diverged = next((said for said in missing if said is not None), None)
+        if diverged is None:
+            try:
+                begun = [
+                    rest_state(own[i : i + 1], float(positions[i]), carried=carried)
+                    for i, carried in enumerate(self._carried(carriers, positions))
+                ]
+                done = self._integrated(
+                    own, carriers, begun, command_times, command_values, times, longest_step, told
+                )
+                diverged = None if done == times.size else f"left all bounds at {times[done]:.3f} s"
+            except ZeroDivisionError:
+                told[:] = np.nan
+                diverged = DIVIDED_BY_ZERO
+        return Together(times, self.joints, dict(zip(TOLD, np.moveaxis(told, 2, 0), strict=True)), diverged)
+
+    def _integrated(
+        self,
+        own: np.ndarray,
+        carriers: np.ndarray,
+        begun: Sequence[np.ndarray],
+        command_times: np.ndarray,
+        command_values: np.ndarray,
+        times: np.ndarray,
+        longest_step: float | None,
+        told: np.ndarray,
+    ) -> int:
+        """Fill `told`; how many of its rows were written before a divergence. Arguments as of `roll_out`."""
         found = [law_of(own[i : i + 1]) for i in range(len(own))]
         laws = [np.zeros(0, LAW) if law is None else law for law in found]
-        told = np.full((times.size, len(own), len(TOLD)), np.nan)
         changes = np.concatenate([[True], np.any(np.diff(command_values, axis=0) != 0.0, axis=1)])
         rows, vectors, matrices = room(len(own))
         rows[:, STATE:RATES] = [state[2:11] for state in begun]
         rows[:, DRIVE:SPOOL] = [[*state[13:16], *state[:2]] for state in begun]
         rows[:, PLAY] = [state[11] for state in begun]
-        done = integrate_together(
+        return integrate_together(
             own,
             carriers,
             rows,
@@ -107,8 +132,6 @@ class JointsTogether:
             scratch(len(self._links)),
             told,
         )
-        diverged = None if done == times.size else f"left all bounds at {times[done]:.3f} s"
-        return Together(times, self.joints, dict(zip(TOLD, np.moveaxis(told, 2, 0), strict=True)), diverged)
 
     def _carried(self, carriers: np.ndarray, positions: np.ndarray) -> list[float | None]:
         """Gravity's moment on each joint at rest [N m]; None where it carries no other joint."""

@@ -34,9 +34,11 @@ def test_it_ends_at_the_least_squares_with_few_jacobians(bench, planted) -> None
     least = fit_from(Problem(parameters, planted), start, tolerance=1e-10)
     problem = Counting(parameters, planted)
     found = descend(problem, start, worth=0.01, stop=lambda: False, moving=ALL)
+    assert found.evaluations == problem.evaluations
     assert found.objective == pytest.approx(least.objective, abs=0.1)
     assert found.objective < problem.residuals(start) @ problem.residuals(start) / 10.0
     assert problem.jacobians <= 3
+    assert problem.jacobian(found.unit) == pytest.approx(found.jacobian)
 
 
 def test_held_parameters_stay_and_the_others_keep_to_their_ranges(bench, planted) -> None:

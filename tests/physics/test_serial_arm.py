@@ -4,9 +4,16 @@ import numpy as np
 import pytest
 from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import MultibodyForces, SpatialInertia, UnitInertia, default_model_instance
+from pydrake.systems.framework import DiagramBuilder
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.kinematics.arms import arm_joint, arm_joint_names, load_of_joint, make_arms_plant
+from hydrolek_drake.kinematics.arms import (
+    add_arms,
+    arm_joint,
+    arm_joint_names,
+    load_of_joint,
+    make_arms_plant,
+)
 from hydrolek_drake.kinematics.rigid_links import rigid_links
 from hydrolek_drake.physics.serial_arm import accelerations, moments_along
 
@@ -42,15 +49,13 @@ def test_moments_are_those_of_the_multibody_plant(joints) -> None:
 def test_a_payload_weighs_as_a_body_at_the_tool() -> None:
     rng = np.random.default_rng(8)
     mass = 17.0
-    plant = MultibodyPlant(time_step=0.0)
-    from hydrolek_drake.kinematics import arms
 
     def hang(made: MultibodyPlant) -> None:
         point = SpatialInertia(mass, np.zeros(3), UnitInertia(0.0, 0.0, 0.0))
         body = made.AddRigidBody("payload", default_model_instance(), point)
         made.WeldFrames(made.GetFrameByName("left_tool"), body.body_frame())
 
-    arms._parse(plant, arms._urdf_with_welds({}), hang)
+    plant = add_arms(DiagramBuilder(), time_step=0.0, before_finalize=hang).plant
     q, w, a = rng.uniform(-1.5, 1.5, (3, len(BOTH)))
     hanging = np.array([mass if joint.startswith("left") else 0.0 for joint in BOTH])
     told = moments_along(rigid_links(BOTH, {}), q[None], w[None], a[None], hanging[None])[0]

@@ -139,6 +139,18 @@ def test_joints_of_an_arm_give_way_and_those_of_the_other_do_not() -> None:
     assert moving_with(bench, bench.joints) == bench.joints
 
 
+@pytest.mark.parametrize(
+    ("value", "said"), [(0.0, "divided is zero"), (np.nan, "cylinder.area_a is not a number")]
+)
+def test_a_number_that_cannot_be_is_an_outcome_with_a_reason(two_joints, value, said) -> None:
+    records = two_joints.records()
+    records[1]["cylinder"]["area_a"] = value
+    places = records["load"]["initial_position"]
+    done = JointsTogether(two_joints, MOVING).roll_out(records, TIME, _volts(2), TIME, places)
+    assert done.diverged is not None and said in done.diverged
+    assert np.isnan(done.signals["reading"]).all()
+
+
 def test_a_divergence_is_told_with_its_time(two_joints) -> None:
     records = two_joints.with_values({"fluid.bulk_modulus": 1e16}).records()
     places = records["load"]["initial_position"]
