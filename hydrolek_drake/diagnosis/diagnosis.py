@@ -15,11 +15,11 @@ from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.inquiry import INTERRUPTED, Inquiry
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
 from hydrolek_drake.diagnosis.judged import Judged
+from hydrolek_drake.diagnosis.last_numbers import with_last_numbers
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
 from hydrolek_drake.diagnosis.moments import intervals_of_moments
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
-from hydrolek_drake.diagnosis.settling import with_numbers_together
 from hydrolek_drake.diagnosis.splitting import prepared
 from hydrolek_drake.diagnosis.visible import Visible, visible_sizes
 from hydrolek_drake.diagnosis.workbench import Workbench
@@ -159,12 +159,13 @@ def _diagnosed(
     places: tuple[Location, ...] = ()
     proposal: Proposal | None = None
     visible: tuple[Visible, ...] = ()
+    intervals: dict[str, Interval] = {}
     try:
-        if bench.together and best.effects and law is None:
-            say("fitting the numbers with all joints at once")
-            together, held_out = with_numbers_together(bench, conclusion.best, held_out)
-            judged = tuple(together if j is conclusion.best else j for j in judged)
-            conclusion, best = replace(conclusion, best=together), together.hypothesis
+        if best.effects and law is None:
+            say("fitting the numbers to the last square")
+            last, intervals, held_out = with_last_numbers(bench, conclusion.best, held_out)
+            judged = tuple(last if j is conclusion.best else j for j in judged)
+            conclusion, best = replace(conclusion, best=last), last.hypothesis
         places = locate(bench, best, found.baseline, bench.training)
         if law is not None:
             places = (locate_law(bench, best, found.baseline, law), *places)
@@ -173,7 +174,9 @@ def _diagnosed(
     except KeyboardInterrupt:  # the verdict stands without what is left
         bench.resume()
         remarks = (*remarks, INTERRUPTED)
-    told = best if bench.together else bench.without_jumps(best)
+    if not intervals:
+        told = best if bench.together else bench.without_jumps(best)
+        intervals = intervals_of(bench.parameters(best.effects), told.fit)
     return Diagnosis(
         rig=rig,
         verdict=conclusion.verdict,
@@ -186,7 +189,7 @@ def _diagnosed(
         held_out=held_out,
         locations=places,
         intervals={
-            **intervals_of(bench.parameters(best.effects), told.fit),
+            **intervals,
             **(law.intervals if law is not None else {}),
             **intervals_of_moments(bench, best),
         },

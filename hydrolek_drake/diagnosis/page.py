@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Sequence
 import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
-from hydrolek_drake.diagnosis.evidence import FINER
+from hydrolek_drake.diagnosis.intervals import CONFIDENCE
 from hydrolek_drake.diagnosis.panels import columns
 from hydrolek_drake.diagnosis.report_json import MOST_LISTED, detectable, effects_json, fit_json, models_of
 from hydrolek_drake.diagnosis.told_numbers import quantity, with_interval
@@ -222,6 +222,16 @@ def _visible(diagnosis: Diagnosis) -> str:
     )
 
 
+def _intervals(diagnosis: Diagnosis) -> str:
+    if not diagnosis.best.hypothesis.effects or diagnosis.law is not None:
+        return "Intervals come from the curvature of the last fit. "
+    return (
+        "The numbers of the model that is named were then fitted until no step promises a tenth of a square, and the "
+        "interval of each of its effects' reaches to where the likelihood, all others fitted anew, has fallen by what "
+        f"chance lets it fall in {100 * CONFIDENCE:g} % of repetitions. "
+    )
+
+
 def _method(diagnosis: Diagnosis) -> str:
     assert diagnosis.bench is not None and diagnosis.search is not None
     return (
@@ -230,7 +240,8 @@ def _method(diagnosis: Diagnosis) -> str:
         "Every effect that can act on this machine was then held against what was left, alone and, where one was "
         "not enough, together with others; each model was fitted to the training data only. Models are compared "
         "by the likelihood of the held-out data less a cost for every effect and parameter. "
+        f"{_intervals(diagnosis)}"
         f"{len(diagnosis.search.hypotheses)} models were fitted to the end, {diagnosis.bench.evaluations} "
-        f"simulations of all recordings, last step {1e3 * FINER * diagnosis.bench.fine:.3g} ms, "
+        f"simulations of all recordings, last step {1e3 * diagnosis.best.hypothesis.step:.3g} ms, "
         f"{diagnosis.seconds:.0f} s.</p>"
     )

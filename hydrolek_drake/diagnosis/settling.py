@@ -6,24 +6,17 @@ up for each other. Fits that take turns with a rollout of all joints then end wh
 supply 9 % off. Near the noise all joints are rolled out for every residual and every column.
 """
 
-from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.together import OneRecording, felt_together, recordings_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.secant_descent import descend
+from hydrolek_drake.identification.secant_descent import SecantDescent
 
 WORTH = 1.0
 """A step that takes less than so many squares moves no parameter by more than its own standard deviation."""
-
-WORTH_TELLING = 0.1
-"""The same where the numbers are to be told: a third of a standard deviation."""
 
 
 class ProblemTogether(Problem):
@@ -69,47 +62,13 @@ def settled_together(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:
     Returns:
         The place where it ends, with its fit as the joints' own rollouts have it there.
     """
-    there = fitted_together(bench, hypothesis, WORTH)
-    bench.training = tuple(felt_together(bench.rig.with_values(there.values), bench.training))
-    return bench.refit(there, bench.fine, 1)  # which only tells what is left there
-
-
-def fitted_together(bench: Workbench, hypothesis: Hypothesis, worth: float) -> Hypothesis:
-    """A fit gone on with by rollouts of all joints at once, which also tell its Jacobian.
-
-    Args:
-        bench: fits, and the training data.
-        hypothesis: fitted to these.
-        worth: squares that a step must take to be followed by another one.
-    """
     bench.alive()
     problem = bench.problem(hypothesis.effects, bench.fine, kind=ProblemTogether)
     moving = bench.movable(hypothesis.effects, problem.parameters)
-    fit = descend(problem, hypothesis.fit.unit, worth=worth, stop=bench.interrupted, moving=moving)
+    descent = SecantDescent(problem, worth=WORTH, stop=bench.interrupted, moving=moving)
+    fit = descent.from_start(hypothesis.fit.unit)
     bench.evaluations += fit.evaluations
-    unit, left = fit.unit, fit.residuals
-    fit = replace(fit, slopes=lambda: problem.jacobian_without_jumps(unit, left, moving))
-    return Hypothesis(hypothesis.effects, problem.parameters.values(unit), fit, bench.fine)
-
-
-def with_numbers_together(
-    bench: Workbench, best: Judged, held_out: Sequence[Experiment]
-) -> tuple[Judged, tuple[Experiment, ...]]:
-    """The model that is named, with its numbers and their intervals by rollouts of all joints at once.
-
-    Last fits to joints' own rollouts leave where the joints settled together along what these tell least.
-
-    Args:
-        bench: fits, and the training data, which are told anew.
-        best: the model, as it was judged.
-        held_out: what decided.
-
-    Returns:
-        The model, with what it leaves of the held-out data, and these told anew.
-    """
-    there = fitted_together(bench, best.hypothesis, WORTH_TELLING)
-    rig = bench.rig.with_values(there.values)
-    training, told = felt_together(rig, bench.training), felt_together(rig, held_out)
-    ahead = bench.problem(there.effects, bench.fine, told, kind=ProblemTogether).residuals(there.fit.unit)
-    bench.training = tuple(training)  # an interrupt before leaves all as it was
-    return replace(best, hypothesis=there, held_out=ahead), tuple(told)
+    values = problem.parameters.values(fit.unit)
+    bench.training = tuple(felt_together(bench.rig.with_values(values), bench.training))
+    there = Hypothesis(hypothesis.effects, values, fit, bench.fine)
+    return bench.refit(there, bench.fine, 1)  # which only tells what is left there

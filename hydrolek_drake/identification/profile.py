@@ -17,6 +17,9 @@ from hydrolek_drake.identification.least_squares import LeastSquares, fit_from
 
 CONFIDENCE = 0.95
 
+FIRST = 0.5
+"""First step in standard errors."""
+
 MOST_POINTS = 15
 """On either side."""
 
@@ -40,6 +43,7 @@ class Profile:
         high: the other end.
         improved: by how much the least on the curve lies below the fit that it began with: above zero, the fit had
             missed the optimum.
+        lowest: place of all parameters where the least was. # (n,)
         evaluations: rollouts of all experiments that it took.
         interrupted: whether Ctrl-C ended it early.
     """
@@ -51,6 +55,7 @@ class Profile:
     low: float | None
     high: float | None
     improved: float
+    lowest: np.ndarray
     evaluations: int
     interrupted: bool = False
 
@@ -62,6 +67,8 @@ def profile(
     deviation: float,
     *,
     confidence: float = CONFIDENCE,
+    first: float = FIRST,
+    others: Callable[[np.ndarray], tuple[np.ndarray, float]] | None = None,
     progress: Callable[[float, float], None] = lambda place, growth: None,
 ) -> Profile:
     """Profile of one parameter about a fit.
@@ -70,22 +77,32 @@ def profile(
         problem: residuals in units of their noise.
         unit: where the fit ended. # (n,)
         index: which parameter.
-        deviation: its standard error there, as a part of its range; the first step is half of it.
+        deviation: its standard error there, as a part of its range.
         confidence: of the interval, such as 0.95.
+        first: step on either side, in standard errors.
+        others: fits all other parameters from a place whose `index` is held: where they end, and what is left
+            there; None for a fit to the end.
         progress: told each place and the growth there.
     """
     before = problem.evaluations
-    at_fit = problem.residuals(unit)
-    least = float(at_fit @ at_fit)
-    scale = max(least / max(problem.counted, 1), 1.0)
+    at_fit, off_prior = problem.residuals(unit), problem.prior_residuals(unit)
+    chi_squared = float(at_fit @ at_fit)
+    least = chi_squared + float(off_prior @ off_prior)
+    scale = max(chi_squared / max(problem.counted, 1), 1.0)
     quantile = float(chi2.ppf(confidence, 1))
     found: dict[float, float] = {float(unit[index]): 0.0}
+    lowest_growth, lowest_place = 0.0, unit
     interrupted = False
+    step = first * deviation * np.sqrt(scale) if np.isfinite(deviation) else 1.0
+    others = others or _to_the_end(problem, index)
     try:
         for side in (-1.0, 1.0):
-            for place, value in _walk(problem, unit, index, side, deviation, scale, least, quantile):
+            for there, value in _walk(unit, index, side * step, others, scale, least, quantile):
+                place = float(there[index])
                 found[place] = value
                 progress(place, value)
+                if value < lowest_growth:
+                    lowest_growth, lowest_place = value, there
     except KeyboardInterrupt:
         interrupted = True
     places = np.array(sorted(found))
@@ -101,40 +118,47 @@ def profile(
         _crossing(places[lowest::-1], growth[lowest::-1], quantile),
         _crossing(places[lowest:], growth[lowest:], quantile),
         improved,
+        lowest_place,
         problem.evaluations - before,
         interrupted,
     )
 
 
+def _to_the_end(problem: LeastSquares, index: int) -> Callable[[np.ndarray], tuple[np.ndarray, float]]:
+    """Fits all parameters but one from where they are."""
+
+    def fitted(start: np.ndarray) -> tuple[np.ndarray, float]:
+        moving = np.arange(start.size) != index
+        if moving.any():
+            fit = fit_from(problem, start, moving=moving)
+            return fit.unit, fit.objective
+        residuals, off = problem.residuals(start), problem.prior_residuals(start)
+        return start, float(residuals @ residuals + off @ off)
+
+    return fitted
+
+
 def _walk(
-    problem: LeastSquares,
     unit: np.ndarray,
     index: int,
-    side: float,
-    deviation: float,
+    step: float,
+    others: Callable[[np.ndarray], tuple[np.ndarray, float]],
     scale: float,
     least: float,
     quantile: float,
-) -> Iterator[tuple[float, float]]:
-    """Places and growth outwards to one side, until beyond the threshold or at the end of the range."""
-    end = 0.0 if side < 0.0 else 1.0
-    place, reached = float(unit[index]), 0.0
+) -> Iterator[tuple[np.ndarray, float]]:
+    """Places and growth outwards by steps that begin with this one, until beyond the threshold or the range's end."""
+    end = 0.0 if step < 0.0 else 1.0
+    reached = 0.0
     start = unit.copy()
-    moving = np.arange(unit.size) != index
-    step = 0.5 * deviation * np.sqrt(scale) if np.isfinite(deviation) else abs(end - place)
     for _ in range(MOST_POINTS):
-        if place == end:
+        if start[index] == end:
             return
-        place = min(max(place + side * step, 0.0), 1.0)
-        start[index] = place
-        if moving.any():
-            fit = fit_from(problem, start, moving=moving)
-            start, value = fit.unit.copy(), fit.objective
-        else:
-            residuals = problem.residuals(start)
-            value = float(residuals @ residuals)
+        start[index] = min(max(start[index] + step, 0.0), 1.0)
+        there, value = others(start)
+        start = there.copy()
         before, reached = reached, (value - least) / scale
-        yield place, reached
+        yield there, reached
         if reached > quantile:
             return
         gained = max(reached - before, 0.0)

@@ -30,64 +30,88 @@ ALIKE = 1e-3
 """Ways that are linear combinations of others to this share tell nothing new."""
 
 
-def descend(
-    problem: Problem,
-    start: np.ndarray,
-    *,
-    worth: float,
-    stop: Callable[[], bool],
-    moving: np.ndarray,
-) -> Fit:
-    """Bounded least squares from one start.
+class SecantDescent:
+    """Bounded least squares of one problem."""
 
-    Args:
-        problem: residuals and Jacobian.
-        start: place in the unit cube. # (n,)
-        worth: it ends where a step by a new Jacobian promises less than so many squares.
-        stop: asked before each rollout; True ends the search with `KeyboardInterrupt`.
-        moving: which parameters are searched, the others stay where they start. # (n,)
-    """
-    places = np.flatnonzero(moving)
-    prior = problem.prior_jacobian()
-    before = problem.evaluations
+    def __init__(
+        self,
+        problem: Problem,
+        *,
+        worth: float,
+        stop: Callable[[], bool],
+        moving: np.ndarray,
+        slopes: Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray] | None = None,
+    ) -> None:
+        """Prepare.
 
-    def at(unit: np.ndarray) -> Fit:
-        if stop():
+        Args:
+            problem: residuals and Jacobian.
+            worth: it ends where a step promises less than so many squares.
+            stop: asked before each rollout; True ends the search with `KeyboardInterrupt`.
+            moving: which parameters are searched, the others stay where they start. # (n,)
+            slopes: Jacobian at a place with these residuals, of the parameters that move; None for the problem's.
+        """
+        self.problem = problem
+        self.moving = moving
+        self._worth = worth
+        self._stop = stop
+        self._slopes = slopes or problem.jacobian
+        self._prior = problem.prior_jacobian()
+
+    def at(self, unit: np.ndarray) -> Fit:
+        """A place as one where a search ended. # unit: (n,)."""
+        if self._stop():
             raise KeyboardInterrupt
+        problem = self.problem
         left, off = problem.residuals(unit), problem.prior_residuals(unit)
 
         def slopes() -> np.ndarray:
-            return problem.jacobian(unit, left, moving)
+            return self._slopes(unit, left, self.moving)
 
-        return Fit(unit, left, off, slopes, prior, problem.counted, 0, problem.unsure)
+        return Fit(unit, left, off, slopes, self._prior, problem.counted, 0, problem.unsure)
 
-    best = at(np.clip(start, 0.0, 1.0))
-    for _ in range(MOST_JACOBIANS):
-        slopes = best.jacobian[:, places]
+    def from_start(self, start: np.ndarray) -> Fit:
+        """Where it ends from a place in the unit cube, with new Jacobians as long as they help. # start: (n,)."""
+        before = self.problem.evaluations
+        best = self.at(np.clip(start, 0.0, 1.0))
+        for _ in range(MOST_JACOBIANS):
+            begun, best = best, self.led_by(best.jacobian, best, self.moving)
+            if best is begun:
+                break
+        return replace(best, evaluations=self.problem.evaluations - before)
+
+    def led_by(self, jacobian: np.ndarray, best: Fit, moving: np.ndarray) -> Fit:
+        """Where steps led by one Jacobian end, corrected by secants; where they begin if nothing is lower.
+
+        Args:
+            jacobian: of some place near. # (values, n)
+            best: where they begin.
+            moving: which parameters are searched here. # (n,)
+        """
+        places = np.flatnonzero(moving)
+        slopes = jacobian[:, places]
         ways: list[np.ndarray] = []
         changes: list[np.ndarray] = []
-        damping, failed, helped = DAMPED, 0, False
+        damping, failed = DAMPED, 0
         while failed < PATIENCE:
             corrected_slopes = corrected(slopes, ways, changes)
             way = damped_step(best, corrected_slopes, places, damping)
             promised = promised_fall(best, corrected_slopes, places, way)
-            if promised < worth:
+            if promised < self._worth:
                 break
             there = best.unit.copy()
             there[places] = np.clip(there[places] + way, 0.0, 1.0)
-            tried = at(there)
+            tried = self.at(there)
             ways.append((tried.unit - best.unit)[places])
             changes.append(tried.residuals - best.residuals)
             fall = best.objective - tried.objective
             failed += not fall > FALLING * promised
             if fall > 0.0:
-                best, helped = tried, True
+                best = tried
                 damping *= LESS
             else:
                 damping *= MORE
-        if not helped:
-            break
-    return replace(best, evaluations=problem.evaluations - before)
+        return best
 
 
 def corrected(jacobian: np.ndarray, ways: list[np.ndarray], changes: list[np.ndarray]) -> np.ndarray:

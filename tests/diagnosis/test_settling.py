@@ -10,9 +10,9 @@ import pytest
 
 from hydrolek_drake.diagnosis import weighing
 from hydrolek_drake.diagnosis.candidates import candidates_of
-from hydrolek_drake.diagnosis.intervals import intervals_of
 from hydrolek_drake.diagnosis.judged import Judged
-from hydrolek_drake.diagnosis.settling import ProblemTogether, settled_together, with_numbers_together
+from hydrolek_drake.diagnosis.last_numbers import with_last_numbers
+from hydrolek_drake.diagnosis.settling import ProblemTogether, settled_together
 from hydrolek_drake.diagnosis.together import OneRecording, felt_together, recordings_of
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -88,11 +88,12 @@ def test_a_droop_that_the_joints_share_is_fitted_to_its_size(begun, machine) -> 
     assert found.fit.over_noise == pytest.approx(np.sqrt(left @ left / problem.counted), abs=0.02)
 
     ahead = _recorded(bench.rig, machine, 2)
-    told, held_out = with_numbers_together(bench, Judged(found, np.zeros(1), 1), ahead)
+    told, intervals, held_out = with_last_numbers(bench, Judged(found, np.zeros(1), 1), ahead)
     counted = sum(experiment.counted for experiment in held_out)
     chance = 4.0 / np.sqrt(2.0 * counted)
     assert np.sqrt(told.held_out @ told.held_out / counted) == pytest.approx(1.0, abs=chance)
-    for path, known in intervals_of(bench.parameters(found.effects), told.hypothesis.fit).items():
+    assert intervals.keys() == set(bench.parameters(found.effects).paths)
+    for path, known in intervals.items():
         width = 0.5 * (known.high - known.low)
         assert abs(known.value - machine.value(path)) < 2.0 * width, path
         assert width < 0.05 * machine.value(path), path

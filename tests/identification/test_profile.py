@@ -84,10 +84,37 @@ def test_a_parameter_that_another_makes_up_for_is_not_bounded():
     assert found.places[0] == 0.0 and found.places[-1] == 1.0
 
 
+def test_what_is_known_beforehand_counts_as_a_measured_value_does():
+    problem, best, deviation = _linear()
+    known = Linear(problem.matrix, problem.measured)
+    weight = 1.0 / deviation[0]  # known beforehand as well as by measurement
+    known.prior_residuals = lambda unit: np.array([weight * (unit[0] - best[0])])
+    known.prior_jacobian = lambda: np.array([[weight, 0.0, 0.0]])
+    narrow, wide = (profile(p, best, 0, deviation[0]) for p in (known, problem))
+    assert narrow.high - narrow.low == pytest.approx((wide.high - wide.low) / np.sqrt(2.0), rel=1e-3)
+
+
+def test_others_that_are_led_along_the_tangents_of_a_linear_model_leave_the_same_curve():
+    problem, best, deviation = _linear(3.0)
+    covariance = np.linalg.inv(problem.matrix.T @ problem.matrix)
+
+    def others(start):
+        there = best + (start[0] - best[0]) * covariance[:, 0] / covariance[0, 0]
+        left = problem.residuals(there)
+        return there, float(left @ left)
+
+    by_fits = profile(problem, best, 0, deviation[0])
+    led = profile(problem, best, 0, deviation[0], first=2.0, others=others)
+    assert (led.low, led.high) == pytest.approx((by_fits.low, by_fits.high), abs=1e-4 * deviation[0])
+    assert len(led.places) == 3 < len(by_fits.places)  # one beyond the threshold on either side
+    assert led.lowest == pytest.approx(best)
+
+
 def test_a_start_beside_the_optimum_is_said():
     problem, best, deviation = _linear()
     found = profile(problem, best + np.array([3.0, 0.0, 0.0]) * deviation, 0, deviation[0])
     assert found.improved == pytest.approx(9.0, rel=0.1)
+    assert found.lowest == pytest.approx(best, abs=deviation.max())
 
 
 def test_profile_on_the_bench_by_command_agrees_with_its_standard_error(tmp_path, capsys):

@@ -6,7 +6,7 @@ import pytest
 from hydrolek_drake.identification.least_squares import fit_from
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.secant_descent import corrected, descend
+from hydrolek_drake.identification.secant_descent import SecantDescent, corrected
 
 PATHS = ["supply.pressure", "valve.max_area_a", "load.gravity_cos", "fluid.bulk_modulus"]
 ALL = np.ones(4, dtype=bool)
@@ -33,7 +33,8 @@ def test_it_ends_at_the_least_squares_with_few_jacobians(bench, planted) -> None
     start = parameters.unit()
     least = fit_from(Problem(parameters, planted), start, tolerance=1e-10)
     problem = Counting(parameters, planted)
-    found = descend(problem, start, worth=0.01, stop=lambda: False, moving=ALL)
+    descent = SecantDescent(problem, worth=0.01, stop=lambda: False, moving=ALL)
+    found = descent.from_start(start)
     assert found.evaluations == problem.evaluations
     assert found.objective == pytest.approx(least.objective, abs=0.1)
     assert found.objective < problem.residuals(start) @ problem.residuals(start) / 10.0
@@ -53,7 +54,8 @@ def test_held_parameters_stay_and_the_others_keep_to_their_ranges(bench, planted
             return super().residuals(unit)
 
     start[0] = 0.01  # at the end of its range, far from the supply's true pressure
-    found = descend(Watched(parameters, planted), start, worth=1.0, stop=lambda: False, moving=moving)
+    watched = Watched(parameters, planted)
+    found = SecantDescent(watched, worth=1.0, stop=lambda: False, moving=moving).from_start(start)
     assert found.unit[~moving] == pytest.approx(start[~moving], abs=0.0)
     assert np.min(seen) >= 0.0 and np.max(seen) <= 1.0 + 1e-5  # by a difference at most
 
@@ -61,7 +63,8 @@ def test_held_parameters_stay_and_the_others_keep_to_their_ranges(bench, planted
 def test_it_ends_where_it_is_told_to_stop(bench, planted) -> None:
     parameters = ParameterSet(bench, free_parameters(bench, PATHS))
     with pytest.raises(KeyboardInterrupt):
-        descend(Problem(parameters, planted), parameters.unit(), worth=1.0, stop=lambda: True, moving=ALL)
+        descent = SecantDescent(Problem(parameters, planted), worth=1.0, stop=lambda: True, moving=ALL)
+        descent.from_start(parameters.unit())
 
 
 def test_a_corrected_jacobian_agrees_with_every_way_and_is_left_alone_across_them() -> None:
