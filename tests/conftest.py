@@ -1,9 +1,15 @@
-"""Order of the tests, which of them run, and a rig of which several folders have need."""
+"""Order of the tests, which of them run, and what several folders have need of: two joints that move together."""
 
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
 import pytest
 
 from hydrolek_drake.linear_algebra import in_one_thread
+from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig, load_rig
+from hydrolek_drake.rollout.together import JointsTogether
 
 in_one_thread()  # tests run side by side
 
@@ -18,6 +24,40 @@ def two_joints(tmp_path_factory: pytest.TempPathFactory) -> Rig:
         f"schema: 1\nname: two_joints\nbased_on: hydrolek\nkeep: [{', '.join(MOVING)}]\ntitle: two joints\n"
     )
     return load_rig(path, {})
+
+
+@pytest.fixture(scope="session")
+def recorded_together() -> Callable[..., tuple[Recording, np.ndarray]]:
+    """(machine, seed, seconds, largest volts, noise, its seed, name) -> recording of both joints, and what they read.
+
+    Each joint has its own random steps of half a second. What is read is without noise [rad]. # (n, 2)
+    """
+
+    def make(
+        machine: Rig,
+        seed: int = 4,
+        seconds: float = 8.0,
+        largest_V: float = 3.0,
+        noise_deg: float = 0.05,
+        noise_seed: int = 0,
+        name: str = "made",
+    ) -> tuple[Recording, np.ndarray]:
+        time = np.arange(0.0, seconds + 0.005, 0.01)
+        levels = np.random.default_rng(seed).uniform(-largest_V, largest_V, (round(2 * seconds) + 1, 2))
+        volts = np.repeat(levels, 50, axis=0)[: time.size]
+        volts[:50] = 0.0
+        records = machine.records()
+        starts = records["load"]["initial_position"][[machine.joints.index(joint) for joint in MOVING]]
+        done = JointsTogether(machine, MOVING).roll_out(records, time, volts, time, starts, 2.5e-4)
+        reading = done.signals["reading"]
+        noise = np.random.default_rng((seed, noise_seed)).standard_normal(reading.shape)
+        noisy = reading + np.radians(noise_deg) * noise
+        signals = {f"{joint}.command": volts[:, i] for i, joint in enumerate(MOVING)}
+        signals |= {f"{joint}.angle": noisy[:, i] for i, joint in enumerate(MOVING)}
+        signals["supply.pressure"] = done.signals["supply_pressure"][:, 0]
+        return Recording(name, time, signals, Path(f"{name}.csv")), reading
+
+    return make
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

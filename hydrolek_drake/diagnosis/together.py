@@ -14,7 +14,6 @@ import numpy as np
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.neighbours import probes_of
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.kernel import SIGNALS
 from hydrolek_drake.rollout.rollout import Signals, rest_state_at_reading
 from hydrolek_drake.rollout.together import JointsTogether, Together, moving_with
 
@@ -106,9 +105,7 @@ class OneRecording:
 
     def signals_of(self, experiment: Experiment, done: Together) -> Signals:
         """What one of the joints did, at its own samples, which are among the times that were asked for."""
-        column, rows = done.joints.index(experiment.joint), np.searchsorted(done.time, experiment.time)
-        own = {name: values[rows, column] for name, values in done.signals.items() if name in SIGNALS}
-        return Signals(experiment.time, **own)
+        return done.signals_of(experiment.joint, np.searchsorted(done.time, experiment.time))
 
     @property
     def times(self) -> np.ndarray:

@@ -79,15 +79,11 @@ def pairs_of_joint(rig: Rig, joint: str, recording: Recording, signals: Signals)
 
 
 def supply_pair(rig: Rig, recording: Recording, by_joint: dict[str, Signals]) -> Pair | None:
-    """The supply pressure, if it was recorded and a joint draws from it.
-
-    Each joint's rollout knows only its own demand, so the falls below the rig's pressure are added up.
-    """
+    """The supply pressure, if it was recorded and a joint draws from it; the joints that do have one in common."""
     drawing = [joint for joint in by_joint if rig.variant(joint, "cylinder") != "electric_motor"]
     if SUPPLY_KEY not in recording.signals or not drawing:
         return None
-    full = rig.value("supply.pressure")
-    model = full + sum((by_joint[joint].supply_pressure - full for joint in drawing), np.zeros(1))
+    model = by_joint[drawing[0]].supply_pressure
     return Pair(
         SUPPLY_KEY, "Pa", drawing[0] if len(drawing) == 1 else None, recording.signal(SUPPLY_KEY), model
     )

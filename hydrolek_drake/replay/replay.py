@@ -1,6 +1,7 @@
 """A rig's model driven by a recorded command."""
 
 import time as clock
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.replay.display import shown
+from hydrolek_drake.replay.driving import Driven, Moved, moved
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import (
     Pair,
@@ -17,7 +19,6 @@ from hydrolek_drake.replay.readings import (
     supply_pair,
 )
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.rollout import Outcome, rest_state_at_reading, roll_out
 
 START_SAMPLES = 5
 """Samples of the recorded position whose median is the start; odd, so that the median is a sample."""
@@ -34,7 +35,7 @@ class Replay:
         rig: with the values that were used.
         recording: cut to the window that was replayed.
         commands: joint -> recorded command [V]. # (n,) each
-        outcomes: joint -> its rollout, at the times of the recording.
+        outcomes: joint -> what its model did, at the times of the recording.
         pairs: what can be compared, positions first.
         notes: one sentence each about how far the replay can be trusted.
         seconds: how long the rollouts took.
@@ -43,7 +44,7 @@ class Replay:
     rig: Rig
     recording: Recording
     commands: dict[str, np.ndarray]
-    outcomes: dict[str, Outcome]
+    outcomes: dict[str, Moved]
     pairs: tuple[Pair, ...]
     notes: tuple[str, ...]
     seconds: float
@@ -52,8 +53,9 @@ class Replay:
 def replay(rig: Rig, recording: Recording, between: tuple[float, float] | None = None) -> Replay:
     """Drive every joint of the rig that has a command in the recording.
 
-    Each joint runs in a rollout of its own, from rest in balance, with its recorded command held between
-    samples. The clock of effects starts at the first sample that is replayed.
+    Joints that share the pump or an arm run together, every other one on its own, from rest in balance, with recorded
+    commands held between samples. An arm's joint without a command gives way on its oil, from where it was recorded.
+    The clock of effects starts at the first sample that is replayed.
 
     Args:
         rig: the machine.
@@ -72,35 +74,24 @@ def replay(rig: Rig, recording: Recording, between: tuple[float, float] | None =
     driven = [joint for joint in rig.joints if f"{joint}.command" in recording.signals]
     if not driven:
         require(recording, [f"{rig.joints[0]}.command"])
-    notes = [
-        f"{joint} has no command in the recording and was left out"
-        for joint in rig.joints
-        if joint not in driven
-    ]
+    missing = [joint for joint in rig.joints if joint not in driven]
+    notes = [f"without a command in the recording, left out: {', '.join(missing)}"] if missing else []
     begun = clock.perf_counter()
-    records = rig.records()
     commands: dict[str, np.ndarray] = {}
-    outcomes: dict[str, Outcome] = {}
-    pairs: list[Pair] = []
+    under: list[Driven] = []
     for joint in driven:
         key = f"{joint}.command"
         require(window, [], complete=[key], units={key: "V"})
-        record = records[rig.joints.index(joint)][None]
         measured = measured_position(rig, joint, window)
         start, said = _start(rig, joint, window.time, measured, cut)
         notes += said
-        outcome = roll_out(
-            record,
-            *_command_until(recording, key, window.time[0], window.time[-1]),
-            window.time,
-            state=None if start is None else rest_state_at_reading(record, start),
-            longest_step=rig.value("integration.longest_step"),
-            spool_steps=int(rig.value("integration.spool_steps")),
-        )
+        under.append(Driven(joint, *_command_until(recording, key, window.time[0], window.time[-1]), start))
+        commands[joint] = window.signal(key)
+    outcomes = moved(rig, under, window.time, _elsewhere(rig, window, driven))
+    pairs: list[Pair] = []
+    for joint, outcome in outcomes.items():
         if outcome.diverged:
             notes.append(f"the model of {joint} {outcome.diverged}; it is compared up to there")
-        commands[joint] = window.signal(key)
-        outcomes[joint] = outcome
         pairs += pairs_of_joint(rig, joint, window, outcome.signals)
     supply = supply_pair(rig, window, {joint: outcome.signals for joint, outcome in outcomes.items()})
     return Replay(
@@ -112,6 +103,18 @@ def replay(rig: Rig, recording: Recording, between: tuple[float, float] | None =
         notes=tuple(notes),
         seconds=clock.perf_counter() - begun,
     )
+
+
+def _elsewhere(rig: Rig, window: Recording, driven: Sequence[str]) -> dict[str, float]:
+    """Joints without a command -> recorded position [rad or m] at the beginning, of those that have one."""
+    found = {}
+    for joint in rig.joints:
+        if joint not in driven and position_key(rig, joint) in window.signals:
+            measured = measured_position(rig, joint, window)
+            finite = np.flatnonzero(np.isfinite(measured))[:START_SAMPLES]
+            if finite.size:
+                found[joint] = float(np.median(measured[finite]))
+    return found
 
 
 def _command_until(recording: Recording, key: str, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:

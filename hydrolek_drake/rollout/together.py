@@ -13,7 +13,8 @@ from hydrolek_drake.physics.law import LAW, law_of
 from hydrolek_drake.physics.serial_arm import LINK_SIZE, moments_along, scratch
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.joint_rows import DRIVE, PLAY, RATES, SPOOL, STATE, room
-from hydrolek_drake.rollout.rollout import DIVIDED_BY_ZERO, missing_number, rest_state
+from hydrolek_drake.rollout.kernel import SIGNALS
+from hydrolek_drake.rollout.rollout import DIVIDED_BY_ZERO, Signals, missing_number, rest_state
 from hydrolek_drake.rollout.together_kernel import TOLD, integrate_together
 
 _NO_LINKS = np.zeros((0, LINK_SIZE))
@@ -34,6 +35,16 @@ class Together:
     joints: tuple[str, ...]
     signals: dict[str, np.ndarray]
     diverged: str | None
+
+    def signals_of(self, joint: str, rows: np.ndarray | slice = slice(None)) -> Signals:
+        """What one of the joints did, as its own rollout tells it.
+
+        Args:
+            joint: its name.
+            rows: times that are wanted; all of them if not given.
+        """
+        column = self.joints.index(joint)
+        return Signals(self.time[rows], **{name: self.signals[name][rows, column] for name in SIGNALS})
 
 
 class JointsTogether:

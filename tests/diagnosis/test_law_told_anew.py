@@ -2,7 +2,6 @@
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,41 +17,28 @@ from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.parameter_set import free_parameters
 from hydrolek_drake.identification.recorded import experiments_of
-from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs.short_law import terms_of
-from hydrolek_drake.rollout.together import JointsTogether
 
 SHAKEN, _ = MOVING = ("right_j2", "right_j3")
-TIME = np.arange(0.0, 6.0 + 0.005, 0.01)
-NOISE_DEG = 0.02
+SHORT = {"seconds": 6.0, "noise_deg": 0.02}
 SHAKING_Nm, SHAKING_Hz = 400.0, 1.3
 REACH = Reach(1.0, 1.0, 0.0, 1.0, "rad")
 SPAN = Span(REACH, None, 1.0, 1.0, 1.0)
 NEARLY_NOISE, FAR_FROM_NOISE = 1.1, 1.3
 
 
-def _recorded_twice(machine, model):
-    """Both joints under the same voltages; so short a recording would tell little of what others do."""
-    rng = np.random.default_rng(4)
-    volts = np.repeat(rng.uniform(-3.0, 3.0, (13, 2)), 50, axis=0)[: TIME.size]
-    volts[:50] = 0.0
-    records = machine.records()
-    starts = records["load"]["initial_position"]
-    done = JointsTogether(machine, MOVING).roll_out(records, TIME, volts, TIME, starts, 2.5e-4)
-    reading = done.signals["reading"]
-    recordings = []
-    for name, noise in zip(("train", "holdout"), rng.spawn(2), strict=True):
-        noisy = reading + np.radians(NOISE_DEG) * noise.standard_normal(reading.shape)
-        signals = {f"{j}.command": volts[:, i] for i, j in enumerate(MOVING)}
-        signals |= {f"{j}.angle": noisy[:, i] for i, j in enumerate(MOVING)}
-        recordings.append(Recording(name, TIME, signals, Path(f"{name}.csv")))
-    return [felt_together(model, experiments_of(model, recording)) for recording in recordings]
-
-
-def test_a_shaken_joint_and_the_one_beside_it_are_explained_by_the_machine_with_the_law(two_joints) -> None:
+def test_a_shaken_joint_and_the_one_beside_it_are_explained_by_the_machine_with_the_law(
+    two_joints, recorded_together
+) -> None:
     rows = law_record("load", SPAN, None, SHAKING_Nm, 0.0, SHAKING_Hz)
     machine = replace(two_joints, laws={SHAKEN: terms_of(rows, ("N m", "rad"), "planted", "planted")})
-    training, held_out = _recorded_twice(machine, two_joints)
+    # the same voltages twice: so short a recording would tell little of what others do
+    training, held_out = (
+        felt_together(
+            two_joints, experiments_of(two_joints, recorded_together(machine, **SHORT, noise_seed=seed)[0])
+        )
+        for seed in (1, 2)
+    )
     shakes = Law(Input("load", "load", "moment", "N m", 1000.0), (), SHAKING_Hz, 0.0, (0.3, 0.1))
     with ThreadPoolExecutor(2) as pool:
         bench = Workbench(two_joints, free_parameters(two_joints), training, pool)

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,17 +14,13 @@ from hydrolek_drake.diagnosis.last_numbers import with_last_numbers
 from hydrolek_drake.diagnosis.settling import ProblemTogether, settled_together
 from hydrolek_drake.diagnosis.together import OneRecording, felt_together, recordings_of
 from hydrolek_drake.diagnosis.workbench import Workbench
-from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 from hydrolek_drake.identification.recorded import experiments_of
-from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig, load_rig
-from hydrolek_drake.rollout.together import JointsTogether
 
 MOVING = ("right_j2", "right_j3")
-TIME = np.arange(0.0, 10.0 + 0.005, 0.01)
-NOISE_DEG = 0.05
+LONG = {"seconds": 10.0, "largest_V": 4.0}
 DROOP = "joints.right_j2.effects.supply.pressure_droop.resistance_Pa_s_per_m3"
 TRUTH = {
     DROOP: 3e10,
@@ -36,21 +31,6 @@ TRUTH = {
 }
 
 
-def _recorded(rig: Rig, machine: Rig, seed: int, moving: tuple[str, ...] = MOVING) -> list[Experiment]:
-    """A noisy recording of joints of the machine, as experiments of the rig."""
-    rng = np.random.default_rng(seed)
-    volts = np.repeat(rng.uniform(-4.0, 4.0, (21, 2)), 50, axis=0)[: TIME.size]
-    volts[:50] = 0.0
-    records = machine.records()
-    places = [machine.joints.index(joint) for joint in moving]
-    starts = records["load"]["initial_position"][places]
-    done = JointsTogether(machine, moving).roll_out(records, TIME, volts, TIME, starts, 2.5e-4)
-    noise = np.radians(NOISE_DEG) * rng.standard_normal((TIME.size, 2))
-    signals = {f"{j}.command": volts[:, i] for i, j in enumerate(moving)}
-    signals |= {f"{j}.angle": done.signals["reading"][:, i] + noise[:, i] for i, j in enumerate(moving)}
-    return experiments_of(rig, Recording(f"made {seed}", TIME, signals, Path(f"made_{seed}.csv")))
-
-
 @pytest.fixture(scope="module")
 def machine(two_joints) -> Rig:
     """A machine whose pump gives way, with numbers of its own."""
@@ -59,9 +39,9 @@ def machine(two_joints) -> Rig:
 
 
 @pytest.fixture(scope="module")
-def begun(two_joints, machine) -> Iterator[tuple[Workbench, object]]:
+def begun(two_joints, machine, recorded_together) -> Iterator[tuple[Workbench, object]]:
     """The droop fitted with what measured angles tell of the other joint."""
-    training = _recorded(two_joints, machine, 1)
+    training = experiments_of(two_joints, recorded_together(machine, 1, **LONG)[0])
     nominal = free_parameters(two_joints, [path for path in TRUTH if path != DROOP])
     with ThreadPoolExecutor(1) as pool:
         bench = Workbench(two_joints, nominal, training, pool)
@@ -75,7 +55,7 @@ def _true_place(bench: Workbench, machine: Rig, effects) -> np.ndarray:
     return parameters.unit({path: machine.value(path) for path in parameters.paths})
 
 
-def test_a_droop_that_the_joints_share_is_fitted_to_its_size(begun, machine) -> None:
+def test_a_droop_that_the_joints_share_is_fitted_to_its_size(begun, machine, recorded_together) -> None:
     bench, by_angles = begun
     recorded = bench.training
     assert by_angles.fit.over_noise > 1.2  # smoothed angles do not tell how the joints shake each other
@@ -87,7 +67,7 @@ def test_a_droop_that_the_joints_share_is_fitted_to_its_size(begun, machine) -> 
     assert found.values[DROOP] == pytest.approx(TRUTH[DROOP], rel=0.02)
     assert found.fit.over_noise == pytest.approx(np.sqrt(left @ left / problem.counted), abs=0.02)
 
-    ahead = _recorded(bench.rig, machine, 2)
+    ahead = experiments_of(bench.rig, recorded_together(machine, 2, **LONG)[0])
     told, intervals, held_out = with_last_numbers(bench, Judged(found, np.zeros(1), 1), ahead)
     counted = sum(experiment.counted for experiment in held_out)
     chance = 4.0 / np.sqrt(2.0 * counted)
@@ -116,9 +96,9 @@ def test_a_jacobian_of_one_joint_at_a_time_lacks_what_it_does_to_the_others(begu
     bench.training = recorded
 
 
-def test_joints_that_do_not_move_are_held() -> None:
+def test_joints_that_do_not_move_are_held(recorded_together) -> None:
     whole = load_rig("hydrolek", {})
-    group = recordings_of(_recorded(whole, whole, 3))[0]
+    group = recordings_of(experiments_of(whole, recorded_together(whole, 3, **LONG)[0]))[0]
     recording = OneRecording(whole, group)
     short = recording.times[:300]
     every = recording.roll_out(whole.records(), short)

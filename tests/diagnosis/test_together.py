@@ -1,7 +1,6 @@
 """What joints that move together do to each other, told by a rollout of all: their own rollouts then move so too."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,36 +8,18 @@ import pytest
 from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.recorded import experiments_of
-from hydrolek_drake.recordings import Recording
-from hydrolek_drake.rollout.together import JointsTogether
 
 MOVING = ("right_j2", "right_j3")
-TIME = np.arange(0.0, 8.0 + 0.005, 0.01)
-NOISE_DEG = 0.05
 ALLOWED_DEG = 0.02
 """What the rollout's own step may cost (hydrolek.yaml)."""
 DROOP = "joints.right_j2.effects.supply.pressure_droop.resistance_Pa_s_per_m3"
 
 
-def _recorded(machine, name: str = "made") -> tuple[list[Experiment], np.ndarray]:
-    """Experiments of a noisy recording of both joints, and what they really read."""
-    rng = np.random.default_rng(4)
-    volts = np.repeat(rng.uniform(-3.0, 3.0, (17, 2)), 50, axis=0)[: TIME.size]
-    volts[:50] = 0.0
-    records = machine.records()
-    starts = records["load"]["initial_position"]
-    done = JointsTogether(machine, MOVING).roll_out(records, TIME, volts, TIME, starts, 2.5e-4)
-    reading = done.signals["reading"]
-    noisy = reading + np.radians(NOISE_DEG) * rng.standard_normal(reading.shape)
-    signals = {f"{j}.command": volts[:, i] for i, j in enumerate(MOVING)}
-    signals |= {f"{j}.angle": noisy[:, i] for i, j in enumerate(MOVING)}
-    return experiments_of(machine, Recording(name, TIME, signals, Path(f"{name}.csv"))), reading
-
-
 @pytest.fixture(scope="module")
-def healthy(two_joints) -> tuple[list[Experiment], np.ndarray]:
-    """A recording of the rig's own machine."""
-    return _recorded(two_joints)
+def healthy(two_joints, recorded_together) -> tuple[list[Experiment], np.ndarray]:
+    """Experiments of the rig's own machine, and what it really read."""
+    recording, reading = recorded_together(two_joints)
+    return experiments_of(two_joints, recording), reading
 
 
 def _off_deg(experiments: list[Experiment], machine, reading: np.ndarray) -> list[float]:
@@ -49,9 +30,10 @@ def _off_deg(experiments: list[Experiment], machine, reading: np.ndarray) -> lis
 
 
 @pytest.mark.parametrize("resistance", [0.0, 3e10])
-def test_joints_alone_move_as_beside_each_other(two_joints, healthy, resistance):
+def test_joints_alone_move_as_beside_each_other(two_joints, recorded_together, resistance):
     machine = two_joints.with_values({DROOP: resistance})
-    experiments, reading = _recorded(machine) if resistance else healthy
+    recording, reading = recorded_together(machine)
+    experiments = experiments_of(machine, recording)
     by_angles = _off_deg(experiments, machine, reading)
     together = felt_together(machine, experiments)
     by_all_at_once = _off_deg(together, machine, reading)
