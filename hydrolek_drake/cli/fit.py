@@ -54,11 +54,11 @@ def fit(
     from rich.table import Table
 
     from hydrolek_drake.cli.output import console
-    from hydrolek_drake.identification.fit import fit_rig
+    from hydrolek_drake.identification.fit import fit_rig, searched
     from hydrolek_drake.identification.fit.profiles import check_profiled, profiles_of, write_profiles
     from hydrolek_drake.identification.fit.report import sentences, write_fit
     from hydrolek_drake.identification.least_squares import LOSSES
-    from hydrolek_drake.identification.parameter_set import free_parameters, parameters_off
+    from hydrolek_drake.identification.parameter_set import parameters_off
     from hydrolek_drake.recordings import read_recording
     from hydrolek_drake.rigs import load_rig
 
@@ -72,10 +72,8 @@ def fit(
             raise InputError(f"recording {path} is given twice")
     output, progress = console(), Console(stderr=True)
     loaded = load_rig(rig, parse_settings(set_))
-    profiled = check_profiled(
-        loaded, profile or [], [free.path for free in free_parameters(loaded, parameter)]
-    )
     read = [read_recording(path, loaded.columns) for path in recordings]
+    profiled = check_profiled(loaded, profile or [], [f.path for f in searched(loaded, read, parameter)])
     held = [read_recording(path, loaded.columns) for path in holdout or []]
     with progress.status("fitting") as status:
         fitted = fit_rig(

@@ -25,7 +25,7 @@ from hydrolek_drake.diagnosis.visible import Visible, visible_sizes
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.natural_scales import natural_scales
-from hydrolek_drake.identification.parameter_set import Free, free_parameters
+from hydrolek_drake.identification.parameter_set import Free, free_of_joints
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
 
@@ -223,7 +223,4 @@ def _refused(rig: Rig, reasons: Sequence[str], seconds: float) -> Diagnosis:
 
 def _nominal(rig: Rig, training: Sequence[Experiment]) -> tuple[Free, ...]:
     """The rig's free parameters, of the joints that were driven; effects that are off are searched, not nominal."""
-    driven = {experiment.joint for experiment in training}
-    return tuple(
-        p for p in free_parameters(rig) if not p.path.startswith("joints.") or p.path.split(".")[1] in driven
-    )
+    return free_of_joints(rig, {experiment.joint for experiment in training})

@@ -15,12 +15,12 @@ import numpy as np
 from hydrolek_drake.diagnosis.evidence import FINER
 from hydrolek_drake.diagnosis.intervals import CONFIDENCE, Interval, covariance_of, intervals_of
 from hydrolek_drake.diagnosis.judged import Judged
-from hydrolek_drake.diagnosis.settling import ProblemTogether
 from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.identification.profile import Profile, profile
 from hydrolek_drake.identification.secant_descent import SecantDescent
 

@@ -13,9 +13,10 @@ from hydrolek_drake.diagnosis.enlarged import enlarged_rig
 from hydrolek_drake.diagnosis.law_at_a_joint import bench_at
 from hydrolek_drake.diagnosis.law_fit import fitted
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
-from hydrolek_drake.diagnosis.together import felt_together, recordings_of
+from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.recorded_together import recordings_of
 
 ROUNDS = 3
 """So often at most rollout and fit take turns."""

@@ -6,47 +6,13 @@ up for each other. Fits that take turns with a rollout of all joints then end wh
 supply 9 % off. Near the noise all joints are rolled out for every residual and every column.
 """
 
-from typing import Any
-
-import numpy as np
-
-from hydrolek_drake.diagnosis.together import OneRecording, felt_together, recordings_of
+from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.identification.secant_descent import SecantDescent
 
 WORTH = 1.0
 """A step that takes less than so many squares moves no parameter by more than its own standard deviation."""
-
-
-class ProblemTogether(Problem):
-    """Weighted residuals of joints that move together, of which all are rolled out at once."""
-
-    def __init__(self, *given: Any, **named: Any) -> None:
-        """Prepare; what is given is that of `Problem`."""
-        super().__init__(*given, **named)
-        rig = self.parameters.rig
-        self._recordings = [OneRecording(rig, group) for group in recordings_of(self.experiments)]
-        self._all_move = True
-
-    def residuals(self, unit: np.ndarray) -> np.ndarray:
-        """Measured minus model over noise, of all experiments. # (values,).
-
-        Joints that could move and do not at the first place are held from then on.
-
-        Args:
-            unit: place in the unit cube.
-        """
-        self.evaluations += 1
-        records = self.parameters.records(unit)
-        if self._all_move:
-            self._recordings = [recording.without_still(records) for recording in self._recordings]
-            self._all_move = False
-        parts = []
-        for recording in self._recordings:
-            done = recording.roll_out(records, recording.times, self.longest_step)
-            parts += [e.residuals(recording.signals_of(e, done)) for e in recording.group]
-        return self.bounded(parts)
 
 
 def settled_together(bench: Workbench, hypothesis: Hypothesis) -> Hypothesis:

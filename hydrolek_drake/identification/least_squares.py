@@ -19,6 +19,9 @@ ROUGH = 1e-3
 LOSSES = ("linear", "soft_l1", "huber", "cauchy")
 
 
+GOOD_ENOUGH = 1.02
+"""Times the noise below which further starts could gain hardly anything."""
+
 PULLED_STEPS, PULLED_TOLERANCE = 8, ROUGH
 """Trust-region steps of a fit with pulled rollouts and its tolerance: it need only lead near."""
 
@@ -184,7 +187,7 @@ def multi_start(
     *,
     loss: str = "linear",
     most_steps: int = 50,
-    good_enough: float = 1.02,
+    good_enough: float = GOOD_ENOUGH,
     progress: Callable[[int, Fit], None] | None = None,
 ) -> Fit:
     """The best of the fits from several starts; ends early once a fit is at the noise.
@@ -194,7 +197,7 @@ def multi_start(
         starts: places in the unit cube, tried in this order; all but the first count as far off. # (n,) each
         loss: one of `LOSSES`.
         most_steps: for each start.
-        good_enough: over the noise; further starts cannot gain more than this.
+        good_enough: times the noise at which it ends.
         progress: called with number and result after each start.
     """
     best: Fit | None = None

@@ -1,7 +1,7 @@
 """Which parameters of a rig are searched, and how they are mapped to the unit cube."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -157,6 +157,20 @@ def free_parameters(rig: Rig, paths: Sequence[str] | None = None) -> tuple[Free,
         assert entry.range is not None
         free.append(Free(path, *entry.range, log=entry.scale == "log"))
     return tuple(free)
+
+
+def free_of_joints(rig: Rig, joints: Collection[str]) -> tuple[Free, ...]:
+    """The rig's free parameters of some joints, and those that all joints share: a recording tells nothing of others.
+
+    Args:
+        rig: the machine.
+        joints: that were driven.
+    """
+    return tuple(
+        free
+        for free in free_parameters(rig)
+        if not free.path.startswith("joints.") or free.path.split(".")[1] in joints
+    )
 
 
 def parameters_off(rig: Rig) -> list[str]:

@@ -3,6 +3,7 @@
 import copy
 from collections.abc import Sequence
 from concurrent.futures import Executor
+from typing import Self
 
 import numpy as np
 
@@ -85,11 +86,16 @@ class Problem:
         self.counted = sum(experiment.counted for experiment in self.experiments)
         self.unsure = sum(experiment.unsure for experiment in self.experiments)
 
-    def pulled(self, pull_time: float) -> "Problem":
+    def pulled(self, pull_time: float) -> Self:
         """The same with rollouts that are pulled to what was measured, with a time constant [s]."""
+        other = self._anew()
+        other.pull_time, other._longer_does = pull_time, True
+        return other
+
+    def _anew(self) -> Self:
+        """The same without what is known of places, to be given other rollouts."""
         other = copy.copy(self)
-        other.pull_time, other.evaluations = pull_time, 0
-        other._anchor, other._longer_does = None, True
+        other._anchor, other.evaluations = None, 0
         return other
 
     def residuals(self, unit: np.ndarray) -> np.ndarray:
@@ -199,8 +205,8 @@ class Problem:
         """
         if not self._longer_does:
             return None
-        longer = copy.copy(self)
-        longer.longest_step, longer._anchor, longer.evaluations = LONGER * self._longest_step, None, 0
+        longer = self._anew()
+        longer.longest_step = LONGER * self._longest_step
         there = longer.residuals(unit)
         slopes = None
         if np.linalg.norm(there - at) < ALIKE * np.linalg.norm(at):

@@ -11,7 +11,7 @@ from hydrolek_drake.identification.neighbours import effects_of_others
 from hydrolek_drake.identification.start import resting_position
 from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.replay.noise import noise_level
-from hydrolek_drake.replay.readings import measured_position, position_key
+from hydrolek_drake.replay.readings import driven_joints, measured_position, position_key
 from hydrolek_drake.rigs import Rig
 
 CONSTANT = 1e-12
@@ -36,7 +36,7 @@ def experiments_of(
     Raises:
         InputError: no command, no position, a command that never changes, or a signal without noise level.
     """
-    driven = [joint for joint in rig.joints if f"{joint}.command" in recording.signals]
+    driven = driven_joints(rig, recording)
     if not driven:
         require(recording, [f"{rig.joints[0]}.command"])
     experiments = [_experiment(rig, joint, recording, signals).thinned() for joint in driven]

@@ -38,6 +38,11 @@ class Pair:
         return self.measured - self.model
 
 
+def driven_joints(rig: Rig, recording: Recording) -> list[str]:
+    """Joints of the rig that have a command in a recording."""
+    return [joint for joint in rig.joints if f"{joint}.command" in recording.signals]
+
+
 def position_key(rig: Rig, joint: str) -> str:
     """Key of the joint's position: `<joint>.angle` if it turns, `<joint>.position` if it slides."""
     return f"{joint}.{'position' if rig.variant(joint, 'load') == 'sliding' else 'angle'}"

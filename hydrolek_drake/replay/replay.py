@@ -13,6 +13,7 @@ from hydrolek_drake.replay.driving import Driven, Moved, moved
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import (
     Pair,
+    driven_joints,
     measured_position,
     pairs_of_joint,
     position_key,
@@ -71,7 +72,7 @@ def replay(rig: Rig, recording: Recording, between: tuple[float, float] | None =
         raise InputError(f"--between {between[0]:g} {between[1]:g}: the start must lie before the end")
     window = recording if between is None else recording.between(*between)
     cut = bool(window.time[0] > recording.time[0])
-    driven = [joint for joint in rig.joints if f"{joint}.command" in recording.signals]
+    driven = driven_joints(rig, recording)
     if not driven:
         require(recording, [f"{rig.joints[0]}.command"])
     missing = [joint for joint in rig.joints if joint not in driven]

@@ -11,12 +11,14 @@ from hydrolek_drake.diagnosis import weighing
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.last_numbers import with_last_numbers
-from hydrolek_drake.diagnosis.settling import ProblemTogether, settled_together
-from hydrolek_drake.diagnosis.together import OneRecording, felt_together, recordings_of
+from hydrolek_drake.diagnosis.settling import settled_together
+from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
+from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.identification.recorded_together import OneRecording, recordings_of
 from hydrolek_drake.rigs import Rig, load_rig
 
 MOVING = ("right_j2", "right_j3")

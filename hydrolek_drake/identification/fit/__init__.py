@@ -1,5 +1,5 @@
 """A rig's parameters from recordings, by any of the searches."""
 
-from hydrolek_drake.identification.fit.fitting import RigFit, fit_rig
+from hydrolek_drake.identification.fit.fitting import RigFit, fit_rig, searched
 
-__all__ = ["RigFit", "fit_rig"]
+__all__ = ["RigFit", "fit_rig", "searched"]

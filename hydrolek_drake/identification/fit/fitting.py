@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.identification.fit.by_least_squares import by_least_squares
 from hydrolek_drake.identification.fit.rig_objective import RigObjective
 from hydrolek_drake.identification.genetic.settings import GeneticSettings
 from hydrolek_drake.identification.identifiability import Identifiability, identifiability
-from hydrolek_drake.identification.least_squares import Fit, multi_start
-from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
+from hydrolek_drake.identification.parameter_set import Free, ParameterSet, free_of_joints, free_parameters
 from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.problem_together import problem_of
 from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.identification.search.cluster import ClusterWorkers
 from hydrolek_drake.identification.search.evaluation import Mapping
@@ -24,6 +25,7 @@ from hydrolek_drake.identification.search.journal import Journal
 from hydrolek_drake.identification.search.search import METHODS, SearchResult, search
 from hydrolek_drake.identification.search.workers import ProcessWorkers
 from hydrolek_drake.recordings import Recording
+from hydrolek_drake.replay.readings import driven_joints
 from hydrolek_drake.rigs import Rig
 
 CONFIDENCE = 1.96
@@ -31,9 +33,6 @@ CONFIDENCE = 1.96
 
 SIGNALS = ("position", "pressure_a", "pressure_b")
 """What is followed where it was recorded."""
-
-STARTS = 20
-"""Starts of the least squares: the rig's own values and random ones."""
 
 
 @dataclass(frozen=True)
@@ -81,6 +80,22 @@ class RigFit:
         return rows
 
 
+def searched(rig: Rig, recordings: Sequence[Recording], paths: Sequence[str] | None) -> tuple[Free, ...]:
+    """Parameters that are fitted: those named, or all with a range but for those of joints that were not driven.
+
+    Args:
+        rig: the machine.
+        recordings: that are to be fitted.
+        paths: full or short paths; None if none are named.
+
+    Raises:
+        InputError: no such parameter, or one without a range.
+    """
+    if paths is not None:
+        return free_parameters(rig, paths)
+    return free_of_joints(rig, {joint for recording in recordings for joint in driven_joints(rig, recording)})
+
+
 def fit_rig(
     rig: Rig,
     recordings: Sequence[Recording],
@@ -107,7 +122,7 @@ def fit_rig(
         rig: start values, ranges and scales (linear or logarithmic).
         recordings: fitted together, each signal in units of its noise.
         method: one of `METHODS`.
-        paths: which parameters; None for all with a range.
+        paths: which parameters; None for all with a range that the recordings can tell, see `searched`.
         holdout: recordings that are only compared with.
         signals: which of position, pressure_a, pressure_b are followed.
         budget: simulations that a search may make.
@@ -128,10 +143,10 @@ def fit_rig(
     """
     if method not in METHODS:
         raise InputError(f"--method {method}: unknown; choose {', '.join(METHODS)}")
-    parameters = ParameterSet(rig, free_parameters(rig, paths))
+    parameters = ParameterSet(rig, searched(rig, recordings, paths))
     training = [one for recording in recordings for one in experiments_of(rig, recording, signals)]
     held = [one for recording in holdout for one in experiments_of(rig, recording, signals)]
-    problem = Problem(parameters, training)
+    problem = problem_of(parameters, training)
     if method == "least-squares" and (cluster is not None or overdue is not None):
         option = "--cluster" if cluster is not None else "--overdue"
         raise InputError(
@@ -141,10 +156,10 @@ def fit_rig(
     rng = np.random.default_rng(seed)
     if method == "least-squares":
         with ThreadPoolExecutor(workers) as threads:
-            shared = Problem(parameters, training, pool=threads) if workers > 1 else problem
-            fit, interrupted = _least_squares(shared, rng, loss, progress)
+            pool = threads if workers > 1 else None
+            fit, evaluations, interrupted = by_least_squares(parameters, training, pool, rng, loss, progress)
             jacobian = fit.jacobian
-        unit, evaluations, found = fit.unit, shared.evaluations, None
+        unit, found = fit.unit, None
     else:
         objective = RigObjective(problem, p, segments if method == "nsga2" else None)
         journal = None
@@ -172,7 +187,7 @@ def fit_rig(
         unit, evaluations, interrupted = found.point, found.evaluations, found.interrupted
         jacobian = problem.jacobian(unit)
     residuals = problem.residuals(unit)
-    judge = Problem(parameters, held) if held else None
+    judge = problem_of(parameters, held) if held else None
     return RigFit(
         method=method,
         rig=parameters.with_rig_values(unit),
@@ -185,26 +200,6 @@ def fit_rig(
         search=found,
         interrupted=interrupted,
     )
-
-
-def _least_squares(
-    problem: Problem, rng: np.random.Generator, loss: str, progress: Callable[[int, float], None] | None
-) -> tuple[Fit, bool]:
-    """The best of the starts that were finished, and whether Ctrl-C ended them early."""
-    starts = [problem.parameters.unit(), *rng.uniform(size=(STARTS - 1, len(problem.parameters)))]
-    finished: list[Fit] = []
-
-    def told(number: int, best: Fit) -> None:
-        finished[:] = [best]
-        if progress is not None:
-            progress(problem.evaluations, best.over_noise)
-
-    try:
-        return multi_start(problem, starts, loss=loss, progress=told), False
-    except KeyboardInterrupt:
-        if not finished:
-            raise
-        return finished[0], True
 
 
 def _over_noise(residuals: np.ndarray, problem: Problem) -> float:

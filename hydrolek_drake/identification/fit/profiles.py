@@ -12,7 +12,7 @@ import numpy as np
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.fit.fitting import SIGNALS, RigFit
 from hydrolek_drake.identification.parameter_set import Free
-from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.problem_together import problem_of
 from hydrolek_drake.identification.profile import CONFIDENCE, Profile, profile
 from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
@@ -89,7 +89,7 @@ def profiles_of(
         progress: told what is done.
     """
     rig = fitted.parameters.rig
-    problem = Problem(
+    problem = problem_of(
         fitted.parameters,
         [one for recording in recordings for one in experiments_of(rig, recording, SIGNALS)],
     )
