@@ -24,6 +24,7 @@ class Search:
         weighed_at: what the model left, over the noise, by which the data are weighed.
         law: beside the nominal model, which explains everything and ends the search: at once if it is of the machine,
             once two effects have been tried if it is the recordings' own; None for none.
+        repeated: whether effects were tried once more beside a model that they had led elsewhere.
     """
 
     hypotheses: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
@@ -35,6 +36,7 @@ class Search:
     smooth: bool = False
     weighed_at: float = 0.0
     law: FoundLaw | None = None
+    repeated: bool = False
 
     def keep(self, hypothesis: Hypothesis) -> None:
         """Remember it if it is the best fit of these effects."""

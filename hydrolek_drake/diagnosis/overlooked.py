@@ -57,16 +57,13 @@ def overlooked(
     ended: list[Hypothesis] = []
     if judged.over_noise > ABOVE_NOISE:
         ended = _let_go(bench, parent, candidates)
+    promising = [s for s in scores_of(bench, parent, candidates, bench.fine) if s.gain > needed]
+    begun = bench.side_by_side(
+        lambda s: bench.fit((*parent.effects, s.candidate), {**parent.values, **s.start}, bench.fine, GLANCE),
+        [s for s in promising if not redundant(parent.effects, s.candidate)][:FOLLOWED],
+    )
     if judged.over_noise > MORE_AHEAD:
-        begun = _begun(bench, parent, candidates)[:FOLLOWED]
-    else:
-        promising = [s for s in scores_of(bench, parent, candidates, bench.fine) if s.gain > needed]
-        begun = bench.side_by_side(
-            lambda s: bench.fit(
-                (*parent.effects, s.candidate), {**parent.values, **s.start}, bench.fine, GLANCE
-            ),
-            [s for s in promising if not redundant(parent.effects, s.candidate)][:FOLLOWED],
-        )
+        begun += _begun(bench, parent, candidates)[:FOLLOWED]
     ended += bench.side_by_side(lambda h: bench.refit(h, bench.fine, LOOK), begun)
 
     def ahead(hypothesis: Hypothesis) -> float:

@@ -129,10 +129,19 @@ def _go_on(
     while beam:
         while found.rounds < MOST_GROWN and _worth_going_on(found, material):
             candidates, beam = _grown(bench, found, beam, candidates, say)
+            if not found.repeated and _moved_since(found) and _worth_going_on(found, material):
+                found.repeated, found.rounds = True, found.rounds - 1
+                continue
             found.law = None if other is None else _explained_otherwise(other, found, material)
             if found.law is not None:
                 return
         beam = exchanged(bench, found, candidates)
+
+
+def _moved_since(found: Search) -> bool:
+    """Whether the best model was led lower after effects had been tried beside it, which may promise more there."""
+    before = found.extended.get(found.best.ids)
+    return before is not None and before - found.best.fit.objective >= gain_needed(found.best.fit)
 
 
 def _explained_otherwise(other: Other, found: Search, material: float) -> FoundLaw | None:
@@ -179,6 +188,8 @@ def _grown(
     if found.best is not pruned:  # in its place an effect may have become needless
         prune(bench, found, candidates)
     found.left = scores_of(bench, found.best, candidates, bench.fine)
+    if not found.best.effects:  # effects may have led the nominal model to where others promise more
+        found.scores = found.left
     if found.best.fit.over_noise < NEAR:
         return candidates, [found.best]
     grown = [found.hypotheses[h.ids] for h in more.hypotheses if h.ids in found.hypotheses]
@@ -233,8 +244,7 @@ def _worth_going_on(found: Search, material: float) -> bool:
     from the rig's own numbers an effect may still do better (`growing`).
     """
     best = found.best
-    before = found.extended.get(best.ids)
-    if before is not None and before - best.fit.objective < gain_needed(best.fit):
+    if best.ids in found.extended and not _moved_since(found):
         return False  # one effect more did not pay
     if not found.left or len(best.effects) == MOST_EFFECTS:
         return False

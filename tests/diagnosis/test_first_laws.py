@@ -186,3 +186,49 @@ def test_two_effects_are_tried_before_what_is_the_recordings_own(
     search._go_on(SimpleNamespace(alike=1.0), [], found, [found.best], lambda text: None, Other())
     assert questions == asked
     assert (None if found.law is None else found.law.what) == told
+
+
+@pytest.mark.parametrize(("falls_to", "asked"), [(1.2, ["grown", "grown", "law"]), (2.0, ["grown", "law"])])
+def test_effects_are_tried_where_they_led_the_nominal_model_before_a_law_is(
+    monkeypatch, falls_to, asked
+) -> None:
+    """Once: what led it there may have had the wrong size, and the right one promises nothing where it was stuck."""
+    found, done = Search(), []
+    found.keep(_with_effects(0, 2.0))
+
+    def grown(bench, found, beam, candidates, say):
+        done.append("grown")
+        found.rounds += 1
+        found.extended.update({h.ids: h.fit.objective for h in beam})
+        found.keep(_with_effects(0, falls_to - 0.05 * len(done)))
+        return candidates, [found.best]
+
+    def explained(other, found, material):
+        done.append("law")
+        return SimpleNamespace(fit=_with_effects(0, 1.03).fit)
+
+    monkeypatch.setattr(search, "_grown", grown)
+    monkeypatch.setattr(search, "_explained_otherwise", explained)
+    monkeypatch.setattr(search, "_worth_going_on", lambda found, material: True)
+    monkeypatch.setattr(search, "gain_needed", lambda fit: 300.0)  # a model at 2.0 leaves 4000 squares
+    search._go_on(SimpleNamespace(alike=1.0), [], found, [found.best], lambda text: None, object())
+    assert done == asked
+    assert found.rounds == 1
+
+
+@pytest.mark.parametrize(("effects", "beside"), [(0, 1.2), (1, 2.0)])
+def test_scores_of_effects_are_those_beside_the_nominal_model_where_it_was_led(
+    monkeypatch, effects, beside
+) -> None:
+    found = Search(scores=[2.0])
+    found.keep(_with_effects(0, 2.0))
+    more = SimpleNamespace(hypotheses=[_with_effects(effects, 1.2)], given_up={})
+    monkeypatch.setattr(search, "grow", lambda *given: more)
+    monkeypatch.setattr(search, "searched_further", lambda bench, found, candidates, say: candidates)
+    for name in ("prune", "weigh_anew", "widen", "lead_on", "widen_where_promised"):
+        monkeypatch.setattr(search, name, lambda *given: None)
+    monkeypatch.setattr(search, "scores_of", lambda bench, best, *given: [best.fit.over_noise])
+    bench = SimpleNamespace(fine=1e-3, together=False)
+    search._grown(bench, found, [found.baseline], [], lambda text: None)
+    assert found.left == [1.2]
+    assert found.scores == [beside]
