@@ -230,5 +230,5 @@ def test_scores_of_effects_are_those_beside_the_nominal_model_where_it_was_led(
     monkeypatch.setattr(search, "scores_of", lambda bench, best, *given: [best.fit.over_noise])
     bench = SimpleNamespace(fine=1e-3, together=False)
     search._grown(bench, found, [found.baseline], [], lambda text: None)
-    assert found.left == [1.2]
-    assert found.scores == [beside]
+    assert found.left == pytest.approx([1.2])
+    assert found.scores == pytest.approx([beside])
