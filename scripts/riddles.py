@@ -23,7 +23,7 @@ from hydrolek_drake.diagnosis.diagnosis import diagnose
 from hydrolek_drake.diagnosis.report_json import as_json
 from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.files import write_whole
-from hydrolek_drake.identification.parameter_set import free_parameters
+from hydrolek_drake.identification.parameter_set import free_of_joints
 from hydrolek_drake.recordings import read_recording, write_signals
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.station.simulation import command_source, run
@@ -52,9 +52,7 @@ def machine_of(rig: Rig, riddle: dict[str, Any], generator: np.random.Generator)
     """The joints with their own numbers and the concealed effect, which acts on the first of them."""
     moving = joints_of(riddle)
     own = {}
-    for free in free_parameters(rig):
-        if free.path.startswith("joints.") and free.path.split(".")[1] not in moving:
-            continue
+    for free in free_of_joints(rig, moving):
         value = rig.value(free.path) * generator.uniform(1.0 - SPREAD, 1.0 + SPREAD)
         own[free.path] = min(max(value, free.lower), free.upper)
     record = rig.records()[rig.joints.index(moving[0])]
