@@ -49,8 +49,8 @@ class LastNumbers:
         """
         self._bench = bench
         self._begun = hypothesis
-        step = bench.fine if bench.together else min(hypothesis.step, FINER * bench.fine)
-        self.problem = self._problem(bench.training, step)
+        self._step = bench.fine if bench.together else min(hypothesis.step, FINER * bench.fine)
+        self.problem = self._problem(bench.training)
         self._moving = bench.movable(hypothesis.effects, self.problem.parameters)
         self._descent = SecantDescent(
             self.problem,
@@ -60,9 +60,9 @@ class LastNumbers:
             slopes=self.problem.jacobian_without_jumps,
         )
 
-    def _problem(self, experiments: Sequence[Experiment], step: float) -> Problem:
+    def _problem(self, experiments: Sequence[Experiment]) -> Problem:
         kind = ProblemTogether if self._bench.together else Problem
-        return self._bench.problem(self._begun.effects, step, experiments, kind=kind)
+        return self._bench.problem(self._begun.effects, self._step, experiments, kind=kind)
 
     def found(self) -> tuple[Hypothesis, dict[str, Interval]]:
         """The fit, and the intervals of all its numbers, full path -> interval."""
@@ -87,8 +87,7 @@ class LastNumbers:
             known = intervals[free.path]
             intervals[free.path] = Interval(known.value, min(known.low, low), max(known.high, high))
         values = parameters.values(fit.unit)
-        step = self.problem.longest_step or bench.fine
-        return Hypothesis(self._begun.effects, values, fit, step), intervals
+        return Hypothesis(self._begun.effects, values, fit, self._step), intervals
 
     def _profiles(self, fit: Fit) -> list[Profile]:
         """Of each number of the effects that least squares moves and that the data tell."""
@@ -119,7 +118,7 @@ class LastNumbers:
 
     def ahead(self, fitted: Hypothesis, held_out: Sequence[Experiment]) -> np.ndarray:
         """Residuals on the held-out data, in units of the noise. # (values,)."""
-        return self._problem(held_out, fitted.step).residuals(fitted.fit.unit)
+        return self._problem(held_out).residuals(fitted.fit.unit)
 
 
 def with_last_numbers(

@@ -3,7 +3,7 @@
 import copy
 from collections.abc import Sequence
 from concurrent.futures import Executor
-from typing import Self
+from typing import TypeVar
 
 import numpy as np
 
@@ -42,6 +42,10 @@ Journal on Numerical Analysis 19, 1982)."""
 
 DIVERGED = 1e7
 """Residual, in units of noise, where a diverged simulation has no value: worse than any that ends."""
+
+
+Own = TypeVar("Own", bound="Problem")
+"""A problem, or one of joints that move together; what is made from it is of the same kind."""
 
 
 class Problem:
@@ -86,13 +90,13 @@ class Problem:
         self.counted = sum(experiment.counted for experiment in self.experiments)
         self.unsure = sum(experiment.unsure for experiment in self.experiments)
 
-    def pulled(self, pull_time: float) -> Self:
+    def pulled(self: Own, pull_time: float) -> Own:
         """The same with rollouts that are pulled to what was measured, with a time constant [s]."""
         other = self._anew()
         other.pull_time, other._longer_does = pull_time, True
         return other
 
-    def _anew(self) -> Self:
+    def _anew(self: Own) -> Own:
         """The same without what is known of places, to be given other rollouts."""
         other = copy.copy(self)
         other._anchor, other.evaluations = None, 0

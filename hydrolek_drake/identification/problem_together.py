@@ -1,7 +1,7 @@
 """The residuals of joints that move together as a function of the searched parameters: all are rolled out at once."""
 
 from collections.abc import Sequence
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
@@ -63,7 +63,7 @@ class ProblemTogether(Problem):
         done = recording.roll_out(records, recording.times, self.longest_step)
         return np.concatenate([e.residuals(recording.signals_of(e, done)) for e in recording.group])
 
-    def _anew(self) -> Self:
+    def _anew(self) -> "ProblemTogether":
         other = super()._anew()
         other._at_anchor = []
         return other

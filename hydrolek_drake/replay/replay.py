@@ -106,15 +106,20 @@ def replay(rig: Rig, recording: Recording, between: tuple[float, float] | None =
     )
 
 
+def _first_samples(measured: np.ndarray) -> np.ndarray:
+    """Indices of the first `START_SAMPLES` that have a value, fewer if there are no more."""
+    return np.flatnonzero(np.isfinite(measured))[:START_SAMPLES]
+
+
 def _elsewhere(rig: Rig, window: Recording, driven: Sequence[str]) -> dict[str, float]:
     """Joints without a command -> recorded position [rad or m] at the beginning, of those that have one."""
     found = {}
     for joint in rig.joints:
         if joint not in driven and position_key(rig, joint) in window.signals:
             measured = measured_position(rig, joint, window)
-            finite = np.flatnonzero(np.isfinite(measured))[:START_SAMPLES]
-            if finite.size:
-                found[joint] = float(np.median(measured[finite]))
+            first = _first_samples(measured)
+            if first.size:
+                found[joint] = float(np.median(measured[first]))
     return found
 
 
@@ -131,7 +136,7 @@ def _start(
     rig: Rig, joint: str, time: np.ndarray, measured: np.ndarray, cut: bool
 ) -> tuple[float | None, list[str]]:
     """Where the rollout starts (None: where the rig says), and what has to be said about it."""
-    finite = np.flatnonzero(np.isfinite(measured))[:START_SAMPLES]
+    finite = _first_samples(measured)
     if not finite.size:
         raise InputError(f"{position_key(rig, joint)} has no value in the part that is to be replayed")
     recorded = float(np.median(measured[finite]))
