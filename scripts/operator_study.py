@@ -28,9 +28,9 @@ from hydrolek_drake.kinematics.jacobian import tool_jacobian
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.hand import within_limits
-from hydrolek_drake.teleop.hydraulic_arms import JOINTS, HydraulicArms, joint_settings
+from hydrolek_drake.teleop.controllers.hydraulic_arms import JOINTS, HydraulicArms, joint_settings
 from hydrolek_drake.teleop.joystick_operator import Goal, JoystickOperator
-from hydrolek_drake.teleop.messages import decode, encode
+from hydrolek_drake.teleop.link.messages import decode, encode
 from hydrolek_drake.teleop.operator_model import clicking, make_operator, operator_entries
 from hydrolek_drake.teleop.plan import STEPS, plan_task
 from hydrolek_drake.teleop.sequencer import Mode, TaskSequencer

@@ -20,7 +20,7 @@ from hydrolek_drake.station.simulation import initial_context
 from hydrolek_drake.station.station import Station, make_station
 from hydrolek_drake.station.step_sizes import StepSizes
 from hydrolek_drake.teleop.configuration import teleop_entries
-from hydrolek_drake.teleop.signals import Signals
+from hydrolek_drake.teleop.link.signals import Signals
 from hydrolek_drake.workcell.grip_contact import GripContact
 from hydrolek_drake.workcell.pipe import Pipe
 from hydrolek_drake.workcell.table import Table
