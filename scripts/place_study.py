@@ -59,7 +59,7 @@ def carry_out(plan, arms: HydraulicArms, table) -> dict:
             ends[step] = own.get_time()
             step = system.step_name(own)
             withdrawn = 4 if step == OPENING else 0
-        set_point = None if withdrawn > 0 else decode(encode(system.position_desired_output.Eval(own)))
+        set_point = None if withdrawn > 0 else decode(encode(system.position_desired_output.Eval(own))).angles
         withdrawn -= 1
         measured = arms.advance(set_point)
         if step in ("lift", "carry", "lower"):
