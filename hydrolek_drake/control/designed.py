@@ -24,6 +24,7 @@ from hydrolek_drake.control.pip import PipLaw
 from hydrolek_drake.control.sdp_model import SdpModel, thesis_data
 from hydrolek_drake.control.thesis_gains import sample_s, voltage_limit_V
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.yaml_files import read_yaml
 
 
 @dataclass(frozen=True)
@@ -108,9 +109,9 @@ def design_controller(
 def is_model_file(path: Path) -> bool:
     """Whether a YAML file holds an SDP model, and not a rig: it has `alpha`, or `model` with it."""
     try:
-        tree = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError):
-        return False
+        tree = read_yaml(path, "file")
+    except InputError:
+        return False  # whoever reads it as a rig says what is wrong
     return isinstance(tree, dict) and ("alpha" in tree or "model" in tree)
 
 
@@ -122,12 +123,7 @@ def read_model(path: Path) -> SdpModel:
     Raises:
         InputError: not readable, or a value missing or wrong.
     """
-    try:
-        tree = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"model {path} cannot be read: {error}") from None
-    except yaml.YAMLError as error:
-        raise InputError(f"model {path} is not valid YAML: {' '.join(str(error).split())}") from None
+    tree = read_yaml(path, "model")
     if not isinstance(tree, dict):
         raise InputError(f"model {path} must be a mapping with alpha, delay_samples and range_deg")
     inner = tree.get("model", tree)
