@@ -7,22 +7,31 @@ the physics, an effect or the rollout, a fresh folder is used.
 
 import hashlib
 import os
+import sys
 import tempfile
+from importlib.metadata import version
 from pathlib import Path
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 _COMPILED_PARTS = ("physics", "effects", "rollout", "systems", "kinematics", "vision")
+_CHOSEN, _OURS = (
+    "NUMBA_CACHE_DIR",
+    "HYDROLEK_CACHE_DIR",
+)  # the user's, or ours; also told to processes that are begun
 
 
 def use_cache_for_this_source() -> None:
-    """Point numba's cache at a folder that belongs to exactly this source (unless the user chose one)."""
-    if os.environ.get("NUMBA_CACHE_DIR"):
+    """Point numba's cache at a folder that belongs to exactly this source (unless the user chose one).
+
+    Numba itself is not loaded for that, since commands that compile nothing do without it.
+    """
+    chosen = os.environ.get(_CHOSEN)
+    if chosen and chosen != os.environ.get(_OURS):
         return
     package = Path(__file__).parent
-    digest = hashlib.sha256(numba.__version__.encode())
+    digest = hashlib.sha256(version("numba").encode())
     for part in _COMPILED_PARTS:
         for file in sorted((package / part).glob("*.py")):
             digest.update(file.name.encode())
@@ -33,7 +42,9 @@ def use_cache_for_this_source() -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:  # a read-only home: compile anew in each run rather than fail
         folder = Path(tempfile.mkdtemp(prefix="hydrolek_drake_"))
-    numba.config.CACHE_DIR = str(folder)
+    os.environ[_CHOSEN] = os.environ[_OURS] = str(folder)
+    if "numba" in sys.modules:
+        sys.modules["numba"].config.CACHE_DIR = str(folder)
 
 
 def read_only(values: ArrayLike) -> NDArray[np.float64]:

@@ -27,10 +27,10 @@ from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.kinematics.jacobian import tool_jacobian
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.teleop.configuration import teleop_entries
+from hydrolek_drake.teleop.controllers.hydraulic_arms import JOINTS, HydraulicArms, joint_settings
 from hydrolek_drake.teleop.hand import within_limits
-from hydrolek_drake.teleop.hydraulic_arms import JOINTS, HydraulicArms, joint_settings
 from hydrolek_drake.teleop.joystick_operator import Goal, JoystickOperator
-from hydrolek_drake.teleop.messages import decode, encode
+from hydrolek_drake.teleop.link.messages import decode, encode
 from hydrolek_drake.teleop.operator_model import clicking, make_operator, operator_entries
 from hydrolek_drake.teleop.plan import STEPS, plan_task
 from hydrolek_drake.teleop.sequencer import Mode, TaskSequencer
@@ -229,7 +229,7 @@ def automatically(plan, pipe, arms) -> dict:
         system.position_measured_input.FixValue(own, measured)
         system.order_input.FixValue(own, [0.0])
         sequencer.AdvanceTo(system.one_update_on(own))
-        measured = arms.advance(decode(encode(system.position_desired_output.Eval(own))))
+        measured = arms.advance(decode(encode(system.position_desired_output.Eval(own))).angles)
     done = system.step_name(own) == STEPS[3]
     return {"seconds": own.get_time(), "finished": done} | outcome(arms, pipe, closing, pushed)
 

@@ -17,8 +17,8 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.teleop.clicks import Clicks, Task
-from hydrolek_drake.teleop.hydraulic_arms import HydraulicArms, joint_settings
-from hydrolek_drake.teleop.messages import decode, encode
+from hydrolek_drake.teleop.controllers.hydraulic_arms import HydraulicArms, joint_settings
+from hydrolek_drake.teleop.link.messages import decode, encode
 from hydrolek_drake.teleop.place_plan import plan_place_by_either
 from hydrolek_drake.teleop.plan import OPENING
 from hydrolek_drake.teleop.sequencer import Mode, TaskSequencer
@@ -59,7 +59,7 @@ def carry_out(plan, arms: HydraulicArms, table) -> dict:
             ends[step] = own.get_time()
             step = system.step_name(own)
             withdrawn = 4 if step == OPENING else 0
-        set_point = None if withdrawn > 0 else decode(encode(system.position_desired_output.Eval(own)))
+        set_point = None if withdrawn > 0 else decode(encode(system.position_desired_output.Eval(own))).angles
         withdrawn -= 1
         measured = arms.advance(set_point)
         if step in ("lift", "carry", "lower"):

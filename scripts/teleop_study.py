@@ -20,11 +20,11 @@ from hydrolek_drake.kinematics.forward import tool_pose
 from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.teleop.configuration import teleop_entries
-from hydrolek_drake.teleop.hydraulic_arms import HydraulicArms, joint_settings
-from hydrolek_drake.teleop.messages import decode, encode
+from hydrolek_drake.teleop.controllers.hydraulic_arms import HydraulicArms, joint_settings
+from hydrolek_drake.teleop.controllers.simulated_arms import SimulatedArms
+from hydrolek_drake.teleop.link.messages import decode, encode
 from hydrolek_drake.teleop.plan import STEPS, plan_task
 from hydrolek_drake.teleop.sequencer import Mode, TaskSequencer
-from hydrolek_drake.teleop.simulated_arms import SimulatedArms
 from hydrolek_drake.vision.camera import camera_pose, to_frame
 from hydrolek_drake.vision.configuration import kinect_entries
 from hydrolek_drake.vision.edges import default_settings
@@ -93,7 +93,7 @@ def carry_out(plan, side: str, arms) -> dict:
         system.position_measured_input.FixValue(own, measured)
         system.order_input.FixValue(own, [0.0])
         sequencer.AdvanceTo(system.one_update_on(own))
-        measured = arms.advance(decode(encode(system.position_desired_output.Eval(own))))
+        measured = arms.advance(decode(encode(system.position_desired_output.Eval(own))).angles)
         worst = max(
             worst, float(np.abs(measured - desired)[:5].max()), float(np.abs(measured - desired)[7:12].max())
         )

@@ -57,6 +57,9 @@ COMMANDS: dict[str, CommandEntry] = {
         "hydrolek_drake.cli.vision", "vision", "edges, selected object and targets of one camera frame"
     ),
     "teleop": CommandEntry("hydrolek_drake.cli.teleop", "teleop", "the operator's console in the browser"),
+    "serve": CommandEntry(
+        "hydrolek_drake.cli.serve", "serve", "the controllers' end of the console's link, for another machine"
+    ),
     "show": CommandEntry("hydrolek_drake.cli.show", "show", "show a saved run of the arms in the browser"),
     "control": CommandEntry(
         "hydrolek_drake.cli.control", "control", "compare controllers (bench), or design one (design)"

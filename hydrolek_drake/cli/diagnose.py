@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from hydrolek_drake.cli.settings import SetOption, parse_settings
+from hydrolek_drake.cli.inputs import refuse_twice, rig_and_recordings
+from hydrolek_drake.cli.settings import SetOption
 from hydrolek_drake.errors import InputError
 
 
@@ -44,27 +45,22 @@ def diagnose(
     from concurrent.futures import ThreadPoolExecutor
 
     from hydrolek_drake.cli.output import console, progress
-    from hydrolek_drake.diagnosis.diagnosis import diagnose as run_diagnosis
-    from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
-    from hydrolek_drake.diagnosis.report import write_report
-    from hydrolek_drake.diagnosis.table import summary
-    from hydrolek_drake.recordings import read_recording
-    from hydrolek_drake.rigs import load_rig
-    from hydrolek_drake.runs.report import prepare_folder
-    from hydrolek_drake.runs.time_limit import ended_after
 
     if workers is not None and workers < 1:
         raise InputError(f"--workers {workers}: at least 1 is needed")
     if at_most is not None and not 0.0 < at_most < math.inf:
         raise InputError(f"--at-most {at_most:g}: minutes must be more than 0")
-    given = [*recordings, *(holdout or [])]
-    for path in given:
-        if given.count(path) > 1:
-            raise InputError(f"recording {path} is given twice; held-out data must be other data")
+    refuse_twice([*recordings, *(holdout or [])], "; held-out data must be other data")
     output = console()
-    loaded = load_rig(rig, parse_settings(set_))
-    train = [read_recording(path, loaded.columns) for path in recordings]
-    held = [read_recording(path, loaded.columns) for path in holdout or []]
+    loaded, (train, held) = rig_and_recordings(rig, set_, recordings, holdout)
+
+    from hydrolek_drake.diagnosis.diagnosis import diagnose as run_diagnosis
+    from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
+    from hydrolek_drake.diagnosis.report import write_report
+    from hydrolek_drake.diagnosis.table import summary
+    from hydrolek_drake.runs.report import prepare_folder
+    from hydrolek_drake.runs.time_limit import ended_after
+
     if out is not None:
         prepare_folder(out)
     count = workers or os.cpu_count() or 1

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from hydrolek_drake.cli.settings import SetOption, parse_settings
-from hydrolek_drake.errors import InputError
+from hydrolek_drake.cli.inputs import chosen, refuse_twice, rig_and_recordings
+from hydrolek_drake.cli.settings import SetOption
 
 
 def fit(
@@ -54,27 +54,21 @@ def fit(
     from rich.table import Table
 
     from hydrolek_drake.cli.output import console
+    from hydrolek_drake.identification.choices import LOSSES, METHODS
+
+    chosen("method", method, METHODS)
+    chosen("norm", norm, ("1", "2", "inf"))
+    chosen("loss", loss, LOSSES)
+    refuse_twice([*recordings, *(holdout or [])])
+    loaded, (read, held) = rig_and_recordings(rig, set_, recordings, holdout)
+
     from hydrolek_drake.identification.fit import fit_rig, searched
     from hydrolek_drake.identification.fit.profiles import check_profiled, profiles_of, write_profiles
     from hydrolek_drake.identification.fit.report import sentences, write_fit
-    from hydrolek_drake.identification.least_squares import LOSSES
     from hydrolek_drake.identification.parameter_set import parameters_off
-    from hydrolek_drake.recordings import read_recording
-    from hydrolek_drake.rigs import load_rig
 
-    if norm not in ("1", "2", "inf"):
-        raise InputError(f"--norm {norm}: choose 1, 2 or inf")
-    if loss not in LOSSES:
-        raise InputError(f"--loss {loss}: choose {', '.join(LOSSES)}")
-    given = [*recordings, *(holdout or [])]
-    for path in given:
-        if given.count(path) > 1:
-            raise InputError(f"recording {path} is given twice")
     output, progress = console(), Console(stderr=True)
-    loaded = load_rig(rig, parse_settings(set_))
-    read = [read_recording(path, loaded.columns) for path in recordings]
     profiled = check_profiled(loaded, profile or [], [f.path for f in searched(loaded, read, parameter)])
-    held = [read_recording(path, loaded.columns) for path in holdout or []]
     with progress.status("fitting") as status:
         fitted = fit_rig(
             loaded,

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from hydrolek_drake.cli.settings import SetOption, parse_settings
-from hydrolek_drake.errors import InputError
+from hydrolek_drake.cli.inputs import refuse_twice, rig_and_recordings
+from hydrolek_drake.cli.settings import SetOption
 
 
 def force(
@@ -28,17 +28,14 @@ def force(
     from rich.table import Table
 
     from hydrolek_drake.cli.output import console
+
+    refuse_twice(recordings)
+    loaded, (read,) = rig_and_recordings(rig, set_, recordings)
+
     from hydrolek_drake.identification.inverse_dynamics.regression import inverse_dynamics, motor_joint
     from hydrolek_drake.identification.inverse_dynamics.report import write_regression
-    from hydrolek_drake.recordings import read_recording
-    from hydrolek_drake.rigs import load_rig
 
-    for path in recordings:
-        if recordings.count(path) > 1:
-            raise InputError(f"recording {path} is given twice")
-    loaded = load_rig(rig, parse_settings(set_))
     motor_joint(loaded)
-    read = [read_recording(path, loaded.columns) for path in recordings]
     found = inverse_dynamics(loaded, read, cutoff_Hz=cutoff, decimation=decimation)
     output = console()
     table = Table("parameter", "value", "95 % interval", "in the rig", "unit")

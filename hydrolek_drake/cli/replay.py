@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from hydrolek_drake.cli.settings import SetOption, parse_settings
-from hydrolek_drake.errors import InputError
+from hydrolek_drake.cli.inputs import refuse_twice, rig_and_recordings
+from hydrolek_drake.cli.settings import SetOption
 
 
 def replay(
@@ -31,18 +31,18 @@ def replay(
     from rich.console import Console
 
     from hydrolek_drake.cli.output import console
-    from hydrolek_drake.recordings import read_recording
+
+    output, progress = console(), Console(stderr=True)
+    folders = _folders(recordings, out)
+    loaded, (read,) = rig_and_recordings(rig, set_, recordings)
+
     from hydrolek_drake.replay import compare
     from hydrolek_drake.replay import replay as run_replay
     from hydrolek_drake.replay.table import signal_table
-    from hydrolek_drake.rigs import load_rig
 
-    output, progress = console(), Console(stderr=True)
-    loaded = load_rig(rig, parse_settings(set_))
-    folders = _folders(recordings, out)
-    for path in recordings:
+    for path, recording in zip(recordings, read, strict=True):
         with progress.status(f"replaying {path} (the first time, the physics is compiled: some 10 s)"):
-            replayed = run_replay(loaded, read_recording(path, loaded.columns), between)
+            replayed = run_replay(loaded, recording, between)
             comparisons = compare(replayed)
         if len(recordings) > 1:
             output.print(f"{path}", style="bold", markup=False)
@@ -66,9 +66,7 @@ def replay(
 
 def _folders(recordings: list[Path], out: Path | None) -> dict[Path, Path]:
     """Where each recording's report goes: `out` itself for one, else folders named after the recordings."""
-    for path in recordings:
-        if recordings.count(path) > 1:
-            raise InputError(f"recording {path} is given twice")
+    refuse_twice(recordings)
     if out is None:
         return {}
     if len(recordings) == 1:

@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from hydrolek_drake.cli.settings import SetOption, parse_settings
+from hydrolek_drake.cli.inputs import rig_and_recordings
+from hydrolek_drake.cli.settings import SetOption
 
 
 def sensitivity(
@@ -41,17 +42,17 @@ def sensitivity(
     from rich.table import Table
 
     from hydrolek_drake.cli.output import console
-    from hydrolek_drake.identification.sensitivity.report import short, write_study
-    from hydrolek_drake.identification.sensitivity.sobol import check_points
-    from hydrolek_drake.identification.sensitivity.study import study_sensitivity
-    from hydrolek_drake.recordings import read_recording
-    from hydrolek_drake.rigs import load_rig
+    from hydrolek_drake.identification.sensitivity.points import check_points
 
     if sobol is not None:
         check_points(sobol)
     output, progress = console(), Console(stderr=True)
-    loaded = load_rig(rig, parse_settings(set_))
-    read = None if recording is None else read_recording(recording, loaded.columns)
+    loaded, (reads,) = rig_and_recordings(rig, set_, [] if recording is None else [recording])
+    read = reads[0] if reads else None
+
+    from hydrolek_drake.identification.sensitivity.report import short, write_study
+    from hydrolek_drake.identification.sensitivity.study import study_sensitivity
+
     present = [name for name in loaded.joints if read is None or f"{name}.command" in read.signals]
     for name in joint or present or list(loaded.joints):
         with progress.status(name) as status:

@@ -45,15 +45,17 @@ def simulate(
     from rich.console import Console
 
     from hydrolek_drake.cli.output import console
-    from hydrolek_drake.runs.report import prepare_folder, write_run
-    from hydrolek_drake.runs.summary import sentence, summarize
-    from hydrolek_drake.runs.table import joint_table
     from hydrolek_drake.station.scenario import load_scenario, scenario_files
 
     if scenario is None:
         raise InputError(f"simulate: name a scenario: {', '.join(scenario_files())}; or give a file")
     output, progress = console(), Console(stderr=True)
     loaded = load_scenario(scenario, parse_settings(set_))
+
+    from hydrolek_drake.runs.report import prepare_folder, write_run
+    from hydrolek_drake.runs.summary import sentence, summarize
+    from hydrolek_drake.runs.table import joint_table
+
     if out is not None:
         prepare_folder(out)
     view = _view(output, meshcat) if meshcat or out is not None else None

@@ -21,9 +21,27 @@ def teleop(
     port: Annotated[int, typer.Option(min=0, max=65535, help="of the page; 0 for any free one")] = 8080,
     camera: Annotated[str, typer.Option(help="sim, live, or a folder of frames")] = "sim",
     host: Annotated[str, typer.Option(help="address to serve the page at")] = "127.0.0.1",
+    allow_host: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="further name under which the page is reached; repeatable"),
+    ] = None,
+    token: Annotated[
+        str | None,
+        typer.Option(
+            envvar="HYDROLEK_TOKEN",
+            help="what control of the page needs; a new one each time if not given (better by the variable)",
+        ),
+    ] = None,
     controllers: Annotated[
         str | None,
         typer.Option(metavar="HOST:PORT", help="controllers' end of the link; simulated if not given"),
+    ] = None,
+    link_token: Annotated[
+        str | None,
+        typer.Option(
+            envvar="HYDROLEK_LINK_TOKEN",
+            help="of the controllers' end, if it asks for one (see `hydrolek serve`)",
+        ),
     ] = None,
     plant: Annotated[
         str, typer.Option(help="full: both arms with their hydraulics; simple: a stand-in without any")
@@ -32,7 +50,14 @@ def teleop(
         str, typer.Option(help="of the full plant, a name of `hydrolek control bench`")
     ] = "feedforward",
     settings: SetOption = None,
-    view: Annotated[bool, typer.Option(help="Drake's 3-D view of the full plant beside the pictures")] = True,
+    view: Annotated[
+        bool | None,
+        typer.Option(
+            "--view/--no-view",
+            help="Drake's 3-D view of the full plant beside the pictures; it knows no token, so that it is shown by "
+            "itself only to this machine",
+        ),
+    ] = None,
     pipe_point: Annotated[
         _Vector | None, typer.Option(metavar="X Y Z", help="simulated pipe, world, m")
     ] = None,
@@ -54,9 +79,10 @@ def teleop(
     import logging
 
     from hydrolek_drake.cli.output import console as output
-    from hydrolek_drake.teleop.console import Console
+    from hydrolek_drake.teleop.access import SHORTEST_TOKEN, is_loopback, page_address
+    from hydrolek_drake.teleop.console.server import Console
+    from hydrolek_drake.teleop.controllers.plant_process import PlantProcess
     from hydrolek_drake.teleop.machine import Machine
-    from hydrolek_drake.teleop.plant_process import PlantProcess
     from hydrolek_drake.teleop.trial import TrialLog
     from hydrolek_drake.workcell.pipe import make_pipe
     from hydrolek_drake.workcell.scene import home_posture
@@ -66,6 +92,12 @@ def teleop(
     if plant not in ("full", "simple"):
         raise InputError(f"teleop: --plant {plant} is unknown; choose full or simple")
     address, trials = _address(controllers), TrialLog(out)
+    if token is not None and len(token) < SHORTEST_TOKEN:
+        raise InputError(
+            f"teleop: --token has {len(token)} characters; take at least {SHORTEST_TOKEN}, or leave it out"
+        )
+    if link_token is not None and address is None:
+        raise InputError("teleop: --link-token belongs to --controllers HOST:PORT; leave it out")
     if settings and (plant == "simple" or address is not None):
         raise InputError("teleop: --set is the full plant's; leave it out")
     _check_camera(camera, pipe_point, pipe_axis, loose)
@@ -83,12 +115,13 @@ def teleop(
                 seed=seed,
                 pipe=pipe,
                 table=table,
-                meshcat=view,
+                meshcat=is_loopback(host) if view is None else view,
                 host=host,
             )
     machine = Machine(
         home_posture(),
         controllers=address,
+        token=link_token,
         plant=process,
         pipe=None if table is None else pipe,
         table=table,
@@ -104,15 +137,24 @@ def teleop(
             session,
             port=port,
             host=host,
+            allowed_hosts=tuple(allow_host or ()),
+            token=token,
             view_port=None if process is None else process.view_port,
             trials=trials,
         )
         try:
             output().print(
-                f"open http://{host}:{console.port} in a browser; Ctrl-C ends it",
+                f"open {page_address(host, console.port, console.token)} in a browser; Ctrl-C ends it",
                 markup=False,
                 soft_wrap=True,
             )
+            if not is_loopback(host):
+                output().print(
+                    "from other machines: by this machine's address, or a name given by --allow-host; docs/teleop.md "
+                    "says what is protected, and how to add TLS",
+                    markup=False,
+                    soft_wrap=True,
+                )
             await console.run()
         finally:
             console.close()
@@ -170,6 +212,7 @@ def _address(text: str | None) -> tuple[str, int] | None:
     if text is None:
         return None
     host, colon, port = text.rpartition(":")
-    if not (colon and host and port.isdigit()):
+    host = host.removeprefix("[").removesuffix("]")
+    if not (colon and host and port.isdecimal() and len(port) < 6 and 0 < int(port) < 65536):
         raise InputError(f"teleop: --controllers {text} is no HOST:PORT, such as 192.168.0.5:6340")
     return host, int(port)

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrolek_drake.cli.settings import SetOption, parse_settings
+from hydrolek_drake.cli.inputs import refuse_twice, rig_and_recordings
+from hydrolek_drake.cli.settings import SetOption
 from hydrolek_drake.errors import InputError
 
 if TYPE_CHECKING:
@@ -46,27 +47,21 @@ def two_step(
     from rich.table import Table
 
     from hydrolek_drake.cli.output import console
+
+    refuse_twice([*(recordings or []), *(holdout or [])])
+    if holdout and not recordings:
+        raise InputError("identify two-step: --holdout needs recordings to fit; give RECORDING before it")
+    loaded, (fitted, held) = rig_and_recordings(rig, set_, recordings, holdout)
+
     from hydrolek_drake.identification.two_step.estimate import identify_two_step
     from hydrolek_drake.identification.two_step.report import relative_errors, sentences, write_report
     from hydrolek_drake.identification.two_step.settings import only_joint
-    from hydrolek_drake.recordings import read_recording
-    from hydrolek_drake.rigs import load_rig
 
-    given = [*(recordings or []), *(holdout or [])]
-    for path in given:
-        if given.count(path) > 1:
-            raise InputError(f"recording {path} is given twice")
-    if holdout and not recordings:
-        raise InputError("identify two-step: --holdout needs recordings to fit; give RECORDING before it")
-    loaded = load_rig(rig, parse_settings(set_))
     only_joint(loaded)
     output, progress = console(), Console(stderr=True)
     machine = None
     with progress.status("reading") as status:
-        if recordings:
-            fitted = [read_recording(path, loaded.columns) for path in recordings]
-            held = [read_recording(path, loaded.columns) for path in holdout or []]
-        else:
+        if not recordings:
             status.update("simulating a machine under set-point sequences")
             machine, fitted, held = _simulated(loaded, seed, out)
         found = identify_two_step(

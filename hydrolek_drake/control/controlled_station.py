@@ -12,6 +12,7 @@ from pydrake.trajectories import PiecewisePolynomial
 
 from hydrolek_drake.control.controller import Controller
 from hydrolek_drake.control.law import Array, ControlLaw
+from hydrolek_drake.control.operator_path import through_operator_computer
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.station.simulation import initial_context
@@ -55,6 +56,8 @@ def run_controlled(
 ) -> MachineSignals:
     """Control joints of a machine; joints without a law have their valves closed.
 
+    Voltages pass the operator computer and the field point where the rig has them, see `operator_path`.
+
     Args:
         rig: the machine.
         laws: by joint.
@@ -84,7 +87,9 @@ def run_controlled(
     sizes = replace(
         sizes or StepSizes(integrator="symplectic_euler", mount_forces=False), log_period=sample_s
     )
-    station = make_station(rig, sizes=sizes, noise=noise)
+    rig, signal_per_volt = through_operator_computer(rig)
+    operator = signal_per_volt is not None
+    station = make_station(rig, sizes=sizes, noise=noise, operator=operator)
     positions = np.array(station.joints["load"]["initial_position"], dtype=float)
     for joint, angle_deg in (initial_deg or {}).items():
         positions[rig.joints.index(joint)] = np.radians(angle_deg)
@@ -96,7 +101,8 @@ def run_controlled(
     builder = DiagramBuilder()
     builder.AddSystem(station.diagram)
     controller = builder.AddSystem(Controller([laws[joint] for joint in joints], sample_s))
-    spread = builder.AddNamedSystem("to_all_joints", MatrixGain(scatter))
+    signals = scatter if signal_per_volt is None else signal_per_volt[:, np.newaxis] * scatter
+    spread = builder.AddNamedSystem("signal_of_voltage" if operator else "to_all_joints", MatrixGain(signals))
     gather = builder.AddNamedSystem("of_controlled_joints", MatrixGain(scatter.T.copy()))
     duration = len(wanted) * sample_s
     breaks = np.append(np.arange(len(wanted)) * sample_s - _EARLY, duration + 1.0)
@@ -111,7 +117,8 @@ def run_controlled(
     builder.Connect(station.diagram.GetOutputPort("position_measured"), gather.get_input_port())
     builder.Connect(gather.get_output_port(), controller.measured)
     builder.Connect(controller.command, spread.get_input_port())
-    builder.Connect(spread.get_output_port(), station.diagram.GetInputPort("command"))
+    entry = "signal_commanded" if operator else "command"
+    builder.Connect(spread.get_output_port(), station.diagram.GetInputPort(entry))
     builder.Connect(supply.get_output_port(), station.diagram.GetInputPort("pressure_available"))
     logs = {
         name: LogVectorOutput(port, builder, publish_period=sample_s)

@@ -16,8 +16,6 @@ EDGE = 1e-6
 ROUGH = 1e-3
 """A fit with this tolerance, or a larger one, only leads to others."""
 
-LOSSES = ("linear", "soft_l1", "huber", "cauchy")
-
 
 GOOD_ENOUGH = 1.02
 """Times the noise below which further starts could gain hardly anything."""

@@ -1,5 +1,6 @@
 """The moving side of the console: sequencer, link and arms, each stepped in real time by a thread."""
 
+import logging
 import threading
 import time
 from typing import Any
@@ -9,19 +10,22 @@ from numpy.typing import NDArray
 from pydrake.systems.analysis import Simulator
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.teleop.arms_end import ArmsEnd
 from hydrolek_drake.teleop.configuration import teleop_entries
+from hydrolek_drake.teleop.controllers.arms_end import ArmsEnd
+from hydrolek_drake.teleop.controllers.plant_process import PlantProcess
 from hydrolek_drake.teleop.hand import JOYSTICK, SLIDERS, Hand
-from hydrolek_drake.teleop.link import SetpointClient, silence
+from hydrolek_drake.teleop.link.client import SetpointClient
+from hydrolek_drake.teleop.link.server import silence
+from hydrolek_drake.teleop.link.signals import Signals
 from hydrolek_drake.teleop.machine_state import MachineState
 from hydrolek_drake.teleop.plan import OPENING, TaskPlan
-from hydrolek_drake.teleop.plant_process import PlantProcess
 from hydrolek_drake.teleop.sequencer import Mode, Order, TaskSequencer
-from hydrolek_drake.teleop.signals import Signals
 from hydrolek_drake.workcell.pipe import Pipe
 from hydrolek_drake.workcell.table import Table
 
 Array = NDArray[np.float64]
+
+_LOG = logging.getLogger(__name__)
 
 _WITHDRAWN = 4
 """Periods without a set point before a task, and before the jaw opens: more than one, since one may come between two
@@ -45,6 +49,7 @@ class Machine:
     Args:
         posture: Joints at first, in rad, shape (14,).
         controllers: Host and port of the controllers' end.
+        token: What it asks for, if it does.
         plant: The hydraulic plant instead; it ends with the machine. With neither, the simple simulated arms.
         realtime_rate: Simulated seconds a second; tests run faster.
         pipe: The simulated pipe, where it is loose.
@@ -56,6 +61,7 @@ class Machine:
         posture: Array,
         *,
         controllers: tuple[str, int] | None = None,
+        token: str | None = None,
         plant: PlantProcess | None = None,
         realtime_rate: float = 1.0,
         pipe: Pipe | None = None,
@@ -65,18 +71,20 @@ class Machine:
         self._signals: Signals | None = None
         self._plant_time, self._sent_at = -1.0, -np.inf
         if plant is not None:
-            controllers = ("127.0.0.1", plant.port)
-        self._arms = ArmsEnd(posture, port=0, pipe=pipe, table=table) if controllers is None else None
-        host, port = controllers or ("127.0.0.1", self._arms.server.port if self._arms else 0)
-        self._controllers, self._rate = (host, port), realtime_rate
-        self._client: SetpointClient | None = SetpointClient(port, host, realtime_rate=realtime_rate)
+            controllers, token = ("127.0.0.1", plant.port), plant.token
+        self._arms = ArmsEnd(posture, pipe=pipe, table=table) if controllers is None else None
+        if self._arms is not None:
+            controllers, token = ("127.0.0.1", self._arms.server.port), self._arms.token
+        assert controllers is not None  # given, or the plant's, or the simple arms'
+        self._controllers, self._token, self._rate = controllers, token, realtime_rate
+        self._client: SetpointClient | None = self._connected()
         self._again_at = 0.0
         self._sequencer = TaskSequencer()
         self._simulator = Simulator(self._sequencer)
         self._period = teleop_entries("task")["period"] / realtime_rate
         self._step_period = teleop_entries("task")["period"]
         self._lock = threading.Lock()
-        self._measured = self._client.stop() if controllers else np.array(posture, dtype=float)
+        self._measured = self._client.control()
         self._order, self._lost = Order.NONE, ""
         self._hand, self._withdrawn = Hand(), 0
         self._last_step = ""
@@ -191,10 +199,18 @@ class Machine:
     def _run(self) -> None:
         following = time.monotonic()
         while self._running:
-            with self._lock:
-                self._tick(self._order, waiting=self._behind())
-            if self._client is None:
-                self._seek_link()
+            try:
+                with self._lock:
+                    self._tick(self._order, waiting=self._behind())
+                if self._client is None:
+                    self._seek_link()
+            except Exception as error:  # nothing ends this thread: without it nobody could stop a task
+                _LOG.exception("teleop: a period of the task failed; the valves are closed")
+                with self._lock:
+                    self._lose(
+                        f"a period of the task failed ({type(error).__name__}: {error}); the valves are closed"
+                    )
+                self._again_at = time.monotonic() + teleop_entries("link")["again"]
             following += self._period
             time.sleep(max(0.0, following - time.monotonic()))
             following = max(following, time.monotonic() - 1.0)  # after a pause, do not run to catch up
@@ -251,14 +267,18 @@ class Machine:
         for order in (Order.NONE, Order.STOP):  # the sequencer heeds a change
             self._advance(context, order)
 
+    def _connected(self) -> SetpointClient:
+        host, port = self._controllers
+        return SetpointClient(port, host, realtime_rate=self._rate, token=self._token)
+
     def _seek_link(self) -> None:
         """Try to have the link back, with closed valves."""
         if time.monotonic() < self._again_at:
             return
         client = None
         try:
-            client = SetpointClient(self._controllers[1], self._controllers[0], realtime_rate=self._rate)
-            measured = client.stop()
+            client = self._connected()
+            measured = client.control()
         except InputError:
             if client is not None:
                 client.close()

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hydrolek_drake.teleop.link.signals import Signals
 from hydrolek_drake.teleop.sequencer import Mode
-from hydrolek_drake.teleop.signals import Signals
 from hydrolek_drake.workcell.pipe import Pipe
 
 Array = NDArray[np.float64]

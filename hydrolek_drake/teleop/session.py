@@ -11,6 +11,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.camera_thread import CameraThread
 from hydrolek_drake.teleop.clicks import Clicks, Task
 from hydrolek_drake.teleop.hand import travel, within_limits
+from hydrolek_drake.teleop.link.signals import shown
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.machine_state import MachineState
 from hydrolek_drake.teleop.pictures import Pictures
@@ -18,7 +19,6 @@ from hydrolek_drake.teleop.place_plan import plan_place_by_either
 from hydrolek_drake.teleop.plan import STEPS, TaskPlan, plan_task
 from hydrolek_drake.teleop.release import plan_letting_go
 from hydrolek_drake.teleop.sequencer import Mode, Order
-from hydrolek_drake.teleop.signals import shown
 from hydrolek_drake.teleop.stages import STAGE_FOR, STEPS_OF, Stage
 from hydrolek_drake.teleop.undertaking import Undertaking
 from hydrolek_drake.vision.edges import EdgeSettings, default_settings
@@ -200,9 +200,16 @@ class OperatorSession:
             self._begin(lambda: plan_letting_go(*held, self._posture(), self._generator), Stage.LIVE)
             self._draw()
 
+    def halt(self) -> None:
+        """Stop the arms and keep a task that is planned from starting; waits for no picture, click or plan."""
+        self._undertaking.withdraw()
+        self._machine.order(Order.STOP)
+
     def order(self, order: Order) -> None:
         """Stop, resume or abort; a stop while a task is planned keeps it from starting."""
-        with self._lock:
+        if order is Order.STOP:
+            self.halt()
+        with self._lock:  # a task that was just starting has started now: it is stopped below
             if self._stage is Stage.PLANNING and order is not Order.RESUME:
                 self._undertaking.withdraw()
                 self._stage = Stage.LIVE if self._clicks is None else Stage.CONFIRM
@@ -232,9 +239,10 @@ class OperatorSession:
     def lose_operator(self) -> None:
         """The browser in control is gone: nothing is held any more, and a task stops; who takes over may resume."""
         self._machine.let_go()
-        with self._lock:
-            under_way = self._stage in (Stage.PLANNING, Stage.MOVING)
-        if under_way:
+        if self._stage in (
+            Stage.PLANNING,
+            Stage.MOVING,
+        ):  # read without the lock, which a click may hold for long
             self.order(Order.STOP)
 
     def state(self) -> dict[str, Any]:

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.kinematics.frames import in_frame
-from hydrolek_drake.teleop.console import Console
+from hydrolek_drake.teleop.access import page_address
+from hydrolek_drake.teleop.console.server import Console
 from hydrolek_drake.teleop.plan import plan_task
 from hydrolek_drake.teleop.session import OperatorSession
 from hydrolek_drake.vision.camera import camera_pose
@@ -95,7 +96,7 @@ class ServedConsole:
             self.machine = make_machine()
             session = OperatorSession(source, self.machine, seed=1, stand=as_machine_stands)
             console = Console(session, port=0, **named)
-            self.address = f"http://127.0.0.1:{console.port}/"
+            self.address = page_address("127.0.0.1", console.port, console.token)
         except BaseException as error:
             self._failure = error
             return

@@ -15,8 +15,8 @@ from four_clicks import click_the_pipe, says
 from hydrolek_drake.kinematics.forward import tool_pose
 from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.teleop.configuration import teleop_entries
+from hydrolek_drake.teleop.controllers.plant_process import PlantProcess
 from hydrolek_drake.teleop.machine import Machine
-from hydrolek_drake.teleop.plant_process import PlantProcess
 from hydrolek_drake.teleop.sequencer import Mode
 from hydrolek_drake.teleop.trial import TrialLog
 from hydrolek_drake.vision.configuration import kinect_entries

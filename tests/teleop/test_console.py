@@ -9,7 +9,7 @@ import pytest
 from tornado.websocket import websocket_connect
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.teleop.console import Console
+from hydrolek_drake.teleop.console.server import Console
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.session import OperatorSession
 from hydrolek_drake.teleop.trial import SCALES, TrialLog
@@ -57,7 +57,8 @@ async def _ask(socket, message, seen=None):
         found = json.loads(answer)
         if "error" in found:
             return found["error"]
-        if seen is not None and "state" in found:
+        await socket.write_message('{"do": "here"}')
+        if seen is not None:
             seen.add(found["state"]["step"])
 
 
@@ -65,6 +66,7 @@ async def _state(socket):
     while True:
         found = json.loads(await socket.read_message())
         if "state" in found:
+            await socket.write_message('{"do": "here"}')  # as the page does
             return found
 
 
@@ -80,8 +82,10 @@ async def _stands_still(socket):
     np.testing.assert_allclose(np.radians(state["angles_deg"]), home_posture(), atol=1e-3)
 
 
-def _open(console):
-    return websocket_connect(f"ws://127.0.0.1:{console.port}/socket")
+async def _open(console):
+    socket = await websocket_connect(f"ws://127.0.0.1:{console.port}/socket")
+    assert await _ask(socket, {"do": "token", "token": console.token}) == ""
+    return socket
 
 
 def test_the_page_and_the_whole_task():
@@ -129,17 +133,30 @@ def test_of_two_browsers_the_second_watches_and_may_stop():
         ("[" * 3000, "must be JSON"),
         ("[1, 2]", "an object"),
         ({"do": "explode"}, "does not know 'explode'"),
+        ({"do": {}}, "does not know '{}'"),
+        ({"do": ["a"]}, "does not know"),
+        ({"do": None}, "does not know 'None'"),
+        ({}, "an object with 'do'"),
+        ('{"do": "click", "u": ' + "9" * 350 + ', "v": 1}', "finite number"),
+        ('{"do": "click", "u": 1, "v": ' + "9" * 4000 + "}", "finite number"),
+        ({"do": "click", "u": 1}, "'v' is missing"),
+        ({"do": "click", "u": 1, "v": 1, "w": 1}, "'w' is unknown"),
+        ('{"do": "stop", "x": {"a": [[[[1]]]]}}', "'x' is unknown"),
+        ({"do": "token", "token": 5}, "must be text"),
+        ({"do": "token", "token": "x" * 300}, "at most 200"),
+        ({"do": "ratings", "mental": "9" * 350}, "finite number"),
         ({"do": "click", "u": "a", "v": 3}, "finite number"),
         ({"do": "click", "u": True, "v": 3}, "finite number"),
         ('{"do": "click", "u": NaN, "v": 1}', "finite number"),
         ({"do": "sliders", "sensitivity": 9}, "between 0 and 1"),
         ({"do": "fill", "name": "x"}, "choose from"),
         ({"do": "confirm"}, "must be clicked"),
-        ({"do": "joystick"}, "14 numbers"),
+        ({"do": "joystick"}, "'deflection' is missing"),
+        ({"do": "joystick", "deflection": [0] * 13}, "14 numbers"),
         ({"do": "joystick", "deflection": [0] * 13 + ["x"]}, "finite number"),
         ({"do": "joystick", "deflection": [0] * 13 + [200]}, "left_j7 = 200 is outside"),
         ({"do": "sliders_to", "angles_deg": [90] * 14}, "right_j1 = 90 is outside"),
-        ({"do": "timer", "action": "x"}, "choose start"),
+        ({"do": "timer", "action": "x"}, "choose from 'start'"),
         ({"do": "ratings", "operator": "x"}, "control must be one of"),
         ("x" * 5000, None),
         (b"\xff\xfe", None),  # no text: the connection is closed

@@ -7,7 +7,7 @@ from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.teleop.configuration import teleop_entries
-from hydrolek_drake.teleop.hydraulic_arms import JOINTS, HydraulicArms
+from hydrolek_drake.teleop.controllers.hydraulic_arms import JOINTS, HydraulicArms
 from hydrolek_drake.workcell.scene import home_posture
 
 SECOND = round(1.0 / sample_s())

@@ -7,14 +7,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.teleop.arms_end import ArmsEnd
 from hydrolek_drake.teleop.configuration import teleop_entries
-from hydrolek_drake.teleop.link import SetpointServer
+from hydrolek_drake.teleop.controllers.arms_end import ArmsEnd
+from hydrolek_drake.teleop.controllers.serving import Pacer
+from hydrolek_drake.teleop.link.server import SetpointServer
+from hydrolek_drake.teleop.link.signals import Signals
 from hydrolek_drake.teleop.machine import Machine
-from hydrolek_drake.teleop.plant_server import Pacer
 from hydrolek_drake.teleop.sequencer import Mode, Order
-from hydrolek_drake.teleop.signals import Signals
 from hydrolek_drake.workcell.scene import home_posture
 
 
@@ -58,8 +59,10 @@ def test_stop_stands_still_at_any_moment_and_the_task_is_finished_after_a_resume
 
 
 def test_a_lost_link_stops_the_task(plan):
-    arms = ArmsEnd(home_posture(), port=0)
-    machine = Machine(home_posture(), controllers=("127.0.0.1", arms.server.port), realtime_rate=5.0)
+    arms = ArmsEnd(home_posture())
+    machine = Machine(
+        home_posture(), controllers=("127.0.0.1", arms.server.port), token=arms.token, realtime_rate=5.0
+    )
     machine.start(plan)
     time.sleep(0.2)
     arms.server.close()
@@ -73,15 +76,15 @@ def test_a_lost_link_stops_the_task(plan):
 
 
 def test_a_link_that_comes_back_moves_nothing_until_the_operator_resumes(machine, plan, monkeypatch):
-    stall, take = threading.Event(), machine._arms.server._take
+    stall, answer = threading.Event(), machine._arms.server.answer
 
-    def slow(line):
+    def slow(client, line):
         if stall.is_set():
             stall.clear()
             time.sleep(1.5 * teleop_entries("link")["silence"])
-        return take(line)
+        return answer(client, line)
 
-    monkeypatch.setattr(machine._arms.server, "_take", slow)
+    monkeypatch.setattr(machine._arms.server, "answer", slow)
     machine.order(Order.STOP)  # by an operator who presses it before anything moves
     machine.start(plan)
     _until(lambda: machine.state().step == "grasp")
@@ -123,7 +126,9 @@ def test_a_slow_plant_gets_every_set_point_of_a_task_once(plan):
     threading.Thread(target=simulate, daemon=True).start()
     server.report(home_posture(), Signals(time=0.0, supply_pressure=0.0, grip=np.zeros(2), **nothing))
     machine = Machine(
-        home_posture(), plant=SimpleNamespace(port=server.port, close=lambda: None), realtime_rate=rate
+        home_posture(),
+        plant=SimpleNamespace(port=server.port, token=None, close=lambda: None),
+        realtime_rate=rate,
     )
     try:
         machine.start(plan)
@@ -140,7 +145,7 @@ def test_a_slow_plant_gets_every_set_point_of_a_task_once(plan):
 
 def test_a_plant_waits_for_late_messages_and_not_for_none():
     server = SimpleNamespace(message_came=threading.Event())
-    pacer, counts, waited = Pacer(server, 0.25), [], []
+    pacer, counts, waited = Pacer(server, sample_s(), 0.25), [], []
 
     def simulate():
         while len(waited) < 12:

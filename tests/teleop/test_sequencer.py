@@ -7,7 +7,7 @@ from pydrake.systems.analysis import Simulator
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.hand import travel
-from hydrolek_drake.teleop.messages import decode, encode
+from hydrolek_drake.teleop.link.messages import decode, encode
 from hydrolek_drake.teleop.plan import STEPS
 from hydrolek_drake.teleop.sequencer import Mode, Order, TaskSequencer
 from hydrolek_drake.workcell.scene import home_posture

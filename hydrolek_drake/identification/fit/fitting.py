@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.identification.choices import METHODS
 from hydrolek_drake.identification.fit.by_least_squares import by_least_squares
 from hydrolek_drake.identification.fit.rig_objective import RigObjective
 from hydrolek_drake.identification.genetic.settings import GeneticSettings
@@ -22,7 +23,7 @@ from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.identification.search.cluster import ClusterWorkers
 from hydrolek_drake.identification.search.evaluation import Mapping
 from hydrolek_drake.identification.search.journal import Journal
-from hydrolek_drake.identification.search.search import METHODS, SearchResult, search
+from hydrolek_drake.identification.search.search import SearchResult, search
 from hydrolek_drake.identification.search.workers import ProcessWorkers
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.replay.readings import driven_joints

@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.identification.choices import METHODS
 from hydrolek_drake.identification.genetic.settings import MULTI_TEXT, SIMPLE, GeneticSettings
 from hydrolek_drake.identification.search.evaluation import BudgetSpent, Evaluator, Mapping
 from hydrolek_drake.identification.search.journal import Journal
-
-METHODS = ("ga", "nsga2", "de", "cma", "least-squares")
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ Communications 181, 2010). For a signal, numerators and variances are summed ove
 Reliability Engineering and System Safety 96, 2011). The sample is scipy's.
 """
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
@@ -14,8 +13,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.stats import sobol_indices, uniform
 
-from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.objective.norms import segment_edges
+from hydrolek_drake.identification.sensitivity.points import check_points
 
 MOST_SAMPLES = 400
 """Of the signal that are kept: neighbours say the same."""
@@ -47,17 +46,6 @@ class SobolIndices:
     total_high: np.ndarray
     points: int
     diverged: int
-
-
-def check_points(points: int) -> None:
-    """Refuse a number of points that Sobol's sequence cannot take.
-
-    Raises:
-        InputError: not a power of two.
-    """
-    if points < 2 or points & (points - 1):
-        near = 2 ** max(round(math.log2(max(points, 2))), 1)
-        raise InputError(f"--sobol {points}: Sobol's sequence needs a power of two, such as {near}")
 
 
 def sobol_of(

@@ -2,25 +2,21 @@
 
 import json
 import math
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, fields
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.teleop.link.messages import BUSY, ERROR, decode_answer
 
 Array = NDArray[np.float64]
 
-_VECTORS = {
-    "voltage": 14,
-    "pressure_a": 14,
-    "pressure_b": 14,
-    "potentiometer": 14,
-    "grip": 2,
-    "pipe_place": 6,
-}
-_SCALARS = ("time", "supply_pressure", "pace")
+_Joints = Annotated[list[float | None], Field(min_length=14, max_length=14)]
+_Arms = Annotated[list[float | None], Field(min_length=2, max_length=2)]
+_Pose = Annotated[list[float | None], Field(min_length=6, max_length=6)]
 
 
 @dataclass(frozen=True)
@@ -51,8 +47,24 @@ class Signals:
 
     def to_line(self) -> bytes:
         """One line of JSON in SI units; what is not finite is null."""
-        content = {name: _plain(getattr(self, name)) for name in (*_SCALARS, *_VECTORS)}
+        content = {each.name: _plain(getattr(self, each.name)) for each in fields(self)}
         return (json.dumps(content) + "\n").encode("ascii")
+
+
+class _Line(BaseModel):
+    """What a line of signals must hold; null stands for what is not finite."""
+
+    model_config = ConfigDict(strict=True, extra="ignore", allow_inf_nan=False)
+
+    time: float
+    supply_pressure: float | None
+    pace: float | None
+    voltage: _Joints
+    pressure_a: _Joints
+    pressure_b: _Joints
+    potentiometer: _Joints
+    grip: _Arms
+    pipe_place: _Pose
 
 
 def signals_from_line(line: bytes) -> Signals | None:
@@ -61,19 +73,24 @@ def signals_from_line(line: bytes) -> Signals | None:
     Raises:
         InputError: Anything else.
     """
+    if line.strip() == b"{}":
+        return None
+    if line.startswith((BUSY.encode(), ERROR.encode())):
+        decode_answer(line)  # refused, with its reason
     try:
-        content = json.loads(line)
-        if content == {}:
-            return None
-        vectors = {name: np.array([_number(value) for value in content[name]]) for name in _VECTORS}
-        scalars = {name: _number(content[name]) for name in _SCALARS}
-    except (ValueError, KeyError, TypeError):
-        raise InputError(f"link: {line[:60]!r} is no line of signals") from None
-    for name, values in vectors.items():
-        if values.shape != (_VECTORS[name],):
-            raise InputError(f"link: signals: {name} has {len(values)} values; {_VECTORS[name]} are needed")
-    content_si: dict[str, Any] = {**scalars, **vectors}
-    return Signals(**content_si)
+        content = _Line.model_validate_json(line)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_context=False, include_input=False)[0]
+        place = ".".join(str(part) for part in first["loc"])
+        raise InputError(
+            f"link: {line[:60]!r} is no line of signals: {place + ': ' if place else ''}{first['msg']}"
+        ) from None
+    values: dict[str, Any] = {}
+    for name, value in content:
+        values[name] = (
+            np.array([_number(each) for each in value]) if isinstance(value, list) else _number(value)
+        )
+    return Signals(**values)
 
 
 def shown(signals: Signals) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """Starts the full hydraulic plant beside the console and ends it with the console."""
 
+import contextlib
 import json
 import select
 import subprocess
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.teleop.access import new_token
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.workcell.pipe import Pipe
 from hydrolek_drake.workcell.table import Table
@@ -37,6 +39,7 @@ class PlantProcess:
 
     Attributes:
         port: Of the link, on this machine.
+        token: What the link asks for.
         view_port: Of the browser view, or None.
 
     Raises:
@@ -57,7 +60,9 @@ class PlantProcess:
         host: str = "127.0.0.1",
         realtime_rate: float = 1.0,
     ) -> None:
+        self.token = new_token()
         content = {
+            "token": self.token,
             "posture_deg": np.degrees(np.asarray(posture, dtype=float)).tolist(),
             "controller": controller,
             "rig": rig,
@@ -79,11 +84,17 @@ class PlantProcess:
             "realtime_rate": realtime_rate,
         }
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "hydrolek_drake.teleop.plant_server", json.dumps(content)],
+            [sys.executable, "-m", "hydrolek_drake.teleop.controllers.plant_server"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
         )
         try:
+            assert (
+                self._process.stdin is not None
+            )  # it is a pipe; not an argument, which every user could read
+            with contextlib.suppress(BrokenPipeError):  # told below
+                self._process.stdin.write(json.dumps(content).encode() + b"\n")
+                self._process.stdin.flush()
             answer = self._first_line()
         except BaseException:
             self.close()
@@ -100,7 +111,8 @@ class PlantProcess:
         process = self._process
         for stream in (process.stdin, process.stdout):
             if stream is not None:
-                stream.close()
+                with contextlib.suppress(BrokenPipeError):  # it ended before it had read its settings
+                    stream.close()
         try:
             process.wait(_GOODBYE)
         except subprocess.TimeoutExpired:

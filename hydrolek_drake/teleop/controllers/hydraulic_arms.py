@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
 from pydrake.systems.framework import Diagram, DiagramBuilder
-from pydrake.systems.primitives import Adder
+from pydrake.systems.primitives import Adder, MatrixGain
 
 from hydrolek_drake.control.bench import MACHINE_STEP_S
 from hydrolek_drake.control.catalogue import CONTROLLERS, JointSetting, build_law, joystick_law, rig_setting
 from hydrolek_drake.control.controller import Controller
+from hydrolek_drake.control.operator_path import through_operator_computer
 from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.chain import SIDES
@@ -20,7 +21,7 @@ from hydrolek_drake.station.simulation import initial_context
 from hydrolek_drake.station.station import Station, make_station
 from hydrolek_drake.station.step_sizes import StepSizes
 from hydrolek_drake.teleop.configuration import teleop_entries
-from hydrolek_drake.teleop.signals import Signals
+from hydrolek_drake.teleop.link.signals import Signals
 from hydrolek_drake.workcell.grip_contact import GripContact
 from hydrolek_drake.workcell.pipe import Pipe
 from hydrolek_drake.workcell.table import Table
@@ -52,16 +53,18 @@ class HydraulicArms:
     """The full hydraulic machine with a controller and a joystick for each joint.
 
     ```
-       set_point ---> +------------+
-                      | controller | --+
-                  +-> +------------+   |    +-----+         +---------+
-                  |                    +--> | sum | ------> | station | --+--> position_measured
-                  +-> +------------+   |    +-----+ command +---------+   |
-      deflection ---> |  joystick  | --+                                  |
-                  |   +------------+                                      |
-                  +-------------------------------------------------------+
+      set_point ---> +------------+
+                     | controller | --+
+                 +-> +------------+   |    +-----+     +-------------------+         +---------+
+                 |                    +--> | sum | --> | signal_of_voltage | ------> | station | --+--> measured
+                 +-> +------------+   |    +-----+     +-------------------+ signal  +---------+   |
+     deflection ---> |  joystick  | --+                                                            |
+                 |   +------------+                                                                |
+                 +---------------------------------------------------------------------------------+
     ```
-    Of the two, one has NaN as its input and gives 0 V; with both NaN all valves are closed (`control/guard.py`).
+    Of the two, one has NaN as its input and gives 0 V; with both NaN all valves are closed (`control/guard.py`). The
+    voltages pass the operator computer's calibration, (4.2) and (4.3), and the channels of the field point, Table 3.1,
+    which are in the station (`control/operator_path.py`).
     Joints 6 and 7 have no potentiometer on the machine; here the controllers read their simulated angles.
 
     Args:
@@ -111,7 +114,10 @@ class HydraulicArms:
             if visualize is not None:
                 visualize(builder, body, rig, joints)
 
-        self._station = make_station(self.rig, sizes=sizes, noise=noise, visualize=add)
+        machine, signal_per_volt = through_operator_computer(self.rig)
+        if signal_per_volt is None:
+            raise InputError(f"rig {self.rig.name}: command.variant must be calibrated on every joint")
+        self._station = make_station(machine, sizes=sizes, noise=noise, visualize=add, operator=True)
         rest = initial_context(self._station, start)  # while the station is a diagram of its own
         self._controller = Controller(
             [build_law(controller, settings[joint], noisy=True) for joint in self.rig.joints], sample_s()
@@ -121,7 +127,7 @@ class HydraulicArms:
             sample_s(),
             joystick=True,
         )
-        self._diagram = _wired(self._station, self._controller, self._joystick)
+        self._diagram = _wired(self._station, self._controller, self._joystick, signal_per_volt)
         context = self._diagram.CreateDefaultContext()
         self._inner = self._station.diagram.GetMyMutableContextFromRoot(context)
         self._inner.SetContinuousState(rest.get_continuous_state_vector().CopyToVector())
@@ -244,7 +250,7 @@ def _add_contact(builder: DiagramBuilder, body: RigPlant, pipe: Pipe, table: Tab
     return contact
 
 
-def _wired(station: Station, controller: Controller, joystick: Controller) -> Diagram:
+def _wired(station: Station, controller: Controller, joystick: Controller, signal_per_volt: Array) -> Diagram:
     builder = DiagramBuilder()
     builder.AddSystem(station.diagram)
     builder.AddSystem(controller)
@@ -254,7 +260,9 @@ def _wired(station: Station, controller: Controller, joystick: Controller) -> Di
     for index, system in enumerate((controller, joystick)):
         builder.Connect(measured, system.measured)
         builder.Connect(system.command, total.get_input_port(index))
-    builder.Connect(total.get_output_port(), station.diagram.GetInputPort("command"))
+    signal = builder.AddNamedSystem("signal_of_voltage", MatrixGain(np.diag(signal_per_volt)))
+    builder.Connect(total.get_output_port(), signal.get_input_port())
+    builder.Connect(signal.get_output_port(), station.diagram.GetInputPort("signal_commanded"))
     builder.ExportInput(controller.set_point, "set_point")
     builder.ExportInput(joystick.set_point, "deflection")
     builder.ExportInput(station.diagram.GetInputPort("pressure_available"), "pressure_available")

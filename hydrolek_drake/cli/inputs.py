@@ -1,0 +1,52 @@
+"""What commands are given, read and checked before anything is loaded that computes."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hydrolek_drake.cli.settings import parse_settings
+from hydrolek_drake.errors import InputError
+
+if TYPE_CHECKING:
+    from hydrolek_drake.recordings import Recording
+    from hydrolek_drake.rigs import Rig
+
+
+def refuse_twice(recordings: Sequence[Path], why: str = "") -> None:
+    """Check that no recording is given twice.
+
+    Args:
+        recordings: paths as given.
+        why: what is wrong with it, if that needs to be said.
+
+    Raises:
+        InputError: one is.
+    """
+    for path in recordings:
+        if recordings.count(path) > 1:
+            raise InputError(f"recording {path} is given twice{why}")
+
+
+def chosen(option: str, value: str, choices: Sequence[str]) -> None:
+    """Check an option that is one of a few words.
+
+    Raises:
+        InputError: it is none of them.
+    """
+    if value not in choices:
+        raise InputError(f"--{option} {value}: unknown; choose {', '.join(choices)}")
+
+
+def rig_and_recordings(
+    rig: str, settings: list[str] | None, *groups: Sequence[Path] | None
+) -> "tuple[Rig, list[list[Recording]]]":
+    """A rig with `--set`, and groups of recordings by its column names.
+
+    Raises:
+        InputError: what is wrong with any of them.
+    """
+    from hydrolek_drake.recordings import read_recording
+    from hydrolek_drake.rigs import load_rig
+
+    loaded = load_rig(rig, parse_settings(settings))
+    return loaded, [[read_recording(path, loaded.columns) for path in group or []] for group in groups]

@@ -1,0 +1,7 @@
+"""What a fit can be asked to do, by name; apart from what does it, so that a command line is checked at once."""
+
+METHODS = ("ga", "nsga2", "de", "cma", "least-squares")
+"""Searches."""
+
+LOSSES = ("linear", "soft_l1", "huber", "cauchy")
+"""Robust losses of the least squares."""

@@ -1,0 +1,1 @@
+"""The operator's console: a page, a web socket, and who may do what over it."""
