@@ -218,6 +218,7 @@ class _Builder:
                 if 0xD800 <= ord(character) < 0xE000:
                     self._refuse(event, f"text with half a character, {character!a}; leave it out")
         tag = _tag(event)
+        tag = _CORE + "str" if tag == _MERGE else tag  # it merges as a key alone
         if tag not in _SCALARS:
             self._refuse_tag(event)
         name, construct = _SCALARS[tag]
