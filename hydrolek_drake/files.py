@@ -23,6 +23,14 @@ def write_whole(path: Path, data: bytes | str) -> Path:
     return path
 
 
+def is_file(path: Path) -> bool:
+    """Whether there is a file of that name, which may be a name that no file can have."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
 @contextmanager
 def results_folder(folder: Path) -> Iterator[None]:
     """Make a command's `--out` folder and write into it.

@@ -1,9 +1,18 @@
 """Conversion of values with a unit to SI, for everything that comes in from outside."""
 
+import math
+import re
 from functools import cache
 from typing import Any
 
 from hydrolek_drake.errors import InputError
+
+_LONGEST = 60
+_TOKEN = re.compile(
+    r"(?P<power>(?:\^|\*\*)[-+]?\d(?:\.\d{1,2})?(?![\w.]))"
+    r"|(?P<name>[^\W\d]\w*|[%‰°])|(?P<one>1(?![\w.]))|(?P<sign>[ */()·])"
+)
+"""What units are written with. Pint would also calculate: it works at `m^(9^9^9)` until the memory is full."""
 
 
 @cache
@@ -20,22 +29,43 @@ def si_factor(unit: str, si_unit: str) -> float:
     Units are written as in rig files ("m^3/(s Pa)", "deg/s") or as in column names ("deg_per_s").
 
     Raises:
-        InputError: `unit` is unknown or measures something else than `si_unit`.
+        InputError: `unit` is unknown, measures something else than `si_unit`, or has a zero of its own as degC has.
     """
     if unit == si_unit:
         return 1.0
     wanted = f"use {si_unit or 'no unit (1)'}"
     if not unit:
         raise InputError(f"a unit is missing; {wanted}")
+    if not _is_plain(unit):
+        raise InputError(f"unit '{unit[:_LONGEST]}' is not known; {wanted}")
     import pint
 
     registry = _registry()
     try:
-        return float(registry.Quantity(1.0, _spelled(unit)).to(_spelled(si_unit)).magnitude)
+        zero, one = (
+            float(registry.Quantity(value, _spelled(unit)).to(_spelled(si_unit)).magnitude)
+            for value in (0.0, 1.0)
+        )
     except pint.DimensionalityError:
         raise InputError(f"unit '{unit}' does not measure what is wanted here; {wanted}") from None
     except Exception:
         raise InputError(f"unit '{unit}' is not known; {wanted}") from None
+    if zero != 0.0 or not 0.0 < one < math.inf:
+        raise InputError(f"unit '{unit}' is not a multiple of another one; {wanted}")
+    return one
+
+
+def _is_plain(unit: str) -> bool:
+    """Whether a unit consists of names, products, quotients and single powers."""
+    if len(unit) > _LONGEST:
+        return False
+    place, last = 0, ""
+    while place < len(unit):
+        found = _TOKEN.match(unit, place)
+        if found is None or (found.lastgroup == last == "power"):
+            return False
+        place, last = found.end(), str(found.lastgroup)
+    return True
 
 
 def _spelled(unit: str) -> str:

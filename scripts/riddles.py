@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 
 from hydrolek_drake.control.catalogue import build_law, rig_setting
 from hydrolek_drake.control.controlled_station import run_controlled
@@ -29,6 +28,7 @@ from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import make_station
 from hydrolek_drake.station.step_sizes import StepSizes
+from hydrolek_drake.yaml_files import read_yaml
 
 RIDDLES = Path(__file__).parent / "riddles.yaml"
 SPREAD = 0.05
@@ -190,7 +190,7 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--only", type=int, help="number of one riddle, from 1")
     arguments = parser.parse_args()
-    riddles = yaml.safe_load(RIDDLES.read_text())
+    riddles = read_yaml(RIDDLES, "list of riddles")
     chosen = [n for n in range(1, len(riddles) + 1) if arguments.only in (None, n)]
     reports = []
     with ThreadPoolExecutor(arguments.workers) as pool:

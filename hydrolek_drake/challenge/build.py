@@ -2,16 +2,15 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from importlib import resources
 from typing import Any
 
 import numpy as np
-import yaml
 
 from hydrolek_drake.challenge import arm_machine, arm_numbers, bench_machine, bench_numbers
 from hydrolek_drake.challenge.driving import Driving, Played, arm_driving, bench_driving, unhindered
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.yaml_files import package_yaml
 
 BENCH = "joint_bench"
 ARM_JOINTS = tuple(f"hydrolek_{side}_j{number}" for side in ("left", "right") for number in range(1, 6))
@@ -82,7 +81,7 @@ def rig_names(choice: str) -> tuple[str, ...]:
 
 def build_of(rig: Rig) -> Build:
     """Machines of one of `BENCH` and `ARM_JOINTS`."""
-    sizes = yaml.safe_load(resources.files(__package__).joinpath("sizes.yaml").read_text())
+    sizes = package_yaml(__package__, "sizes.yaml")
     if rig.name == BENCH:
         return Build(
             rig,

@@ -2,14 +2,13 @@
 
 import math
 from collections.abc import Mapping
-from importlib import resources
 from typing import Any, NamedTuple
 
 import numpy as np
-import yaml
 from numba import njit
 
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.yaml_files import package_yaml
 
 SAMPLE_S = 0.01
 
@@ -62,9 +61,7 @@ class Played(NamedTuple):
 
 
 def _numbers() -> dict[str, Any]:
-    numbers: dict[str, Any] = yaml.safe_load(
-        resources.files(__package__).joinpath("driving.yaml").read_text()
-    )
+    numbers: dict[str, Any] = package_yaml(__package__, "driving.yaml")
     return numbers
 
 

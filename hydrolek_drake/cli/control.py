@@ -121,13 +121,14 @@ def design(
     from hydrolek_drake.control.rig_model import rig_model
     from hydrolek_drake.control.sdp_model import thesis_model
     from hydrolek_drake.control.thesis_gains import entry
+    from hydrolek_drake.files import is_file
     from hydrolek_drake.rigs import load_rig
 
     if weights is not None and pole:
         raise InputError("give either --weights or --pole, not both")
     if rig == "thesis":
         model = thesis_model(joint or "")
-    elif Path(rig).is_file() and is_model_file(Path(rig)):
+    elif is_file(Path(rig)) and is_model_file(Path(rig)):
         model = read_model(Path(rig))
     else:
         machine = load_rig(rig, parse_settings(set_))

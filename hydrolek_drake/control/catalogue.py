@@ -3,10 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from typing import Any
-
-import yaml
 
 from hydrolek_drake.control.design import integrator, lq_gains
 from hydrolek_drake.control.feedforward import FeedforwardLaw
@@ -33,6 +30,7 @@ from hydrolek_drake.control.thesis_gains import (
 )
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.yaml_files import package_yaml
 
 
 @dataclass(frozen=True)
@@ -65,7 +63,7 @@ class JointSetting:
 @cache
 def chosen() -> dict[str, Any]:
     """Content of `chosen_gains.yaml`."""
-    return yaml.safe_load(files(__package__).joinpath("chosen_gains.yaml").read_text(encoding="utf-8"))
+    return package_yaml(__package__, "chosen_gains.yaml")
 
 
 def thesis_setting(joint: str) -> JointSetting:

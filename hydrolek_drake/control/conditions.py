@@ -2,20 +2,19 @@
 
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
-import yaml
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig, load_rig
+from hydrolek_drake.yaml_files import package_yaml
 
 
 @cache
 def conditions_data() -> dict[str, Any]:
     """Content of `conditions.yaml`."""
-    return yaml.safe_load(files(__package__).joinpath("conditions.yaml").read_text(encoding="utf-8"))
+    return package_yaml(__package__, "conditions.yaml")
 
 
 @dataclass(frozen=True)

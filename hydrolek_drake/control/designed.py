@@ -24,6 +24,7 @@ from hydrolek_drake.control.pip import PipLaw
 from hydrolek_drake.control.sdp_model import SdpModel, thesis_data
 from hydrolek_drake.control.thesis_gains import sample_s, voltage_limit_V
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.yaml_files import read_yaml
 
 
 @dataclass(frozen=True)
@@ -108,9 +109,9 @@ def design_controller(
 def is_model_file(path: Path) -> bool:
     """Whether a YAML file holds an SDP model, and not a rig: it has `alpha`, or `model` with it."""
     try:
-        tree = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError):
-        return False
+        tree = read_yaml(path, "file")
+    except InputError:
+        return False  # whoever reads it as a rig says what is wrong
     return isinstance(tree, dict) and ("alpha" in tree or "model" in tree)
 
 
@@ -122,39 +123,74 @@ def read_model(path: Path) -> SdpModel:
     Raises:
         InputError: not readable, or a value missing or wrong.
     """
-    try:
-        tree = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"model {path} cannot be read: {error}") from None
-    except yaml.YAMLError as error:
-        raise InputError(f"model {path} is not valid YAML: {' '.join(str(error).split())}") from None
+    tree = read_yaml(path, "model")
     if not isinstance(tree, dict):
         raise InputError(f"model {path} must be a mapping with alpha, delay_samples and range_deg")
     inner = tree.get("model", tree)
-    try:
-        beta = inner.get("beta")
-        model = SdpModel(
-            name=str(tree.get("joint", path.stem)),
-            alpha=tuple(float(value) for value in inner["alpha"]),
-            beta=None if beta is None else tuple(float(value) for value in beta),
-            sample_s=float(inner.get("sample_s", thesis_data()["sample"]["value"])),
-            delay_samples=int(inner["delay_samples"]),
-            lower_deg=float(inner["range_deg"][0]),
-            upper_deg=float(inner["range_deg"][1]),
-        )
-    except (KeyError, TypeError, ValueError, IndexError, AttributeError) as error:
-        raise InputError(
-            f"model {path}: {error}; needed are alpha (6 numbers, or 4 with beta of 6), delay_samples and "
-            "range_deg (2 numbers)"
-        ) from None
-    counts = (len(model.alpha), 0 if model.beta is None else len(model.beta))
+    if not isinstance(inner, dict):
+        raise InputError(f"model {path}: 'model' must be a mapping with alpha, delay_samples and range_deg")
+    for key in ("alpha", "delay_samples", "range_deg"):
+        if key not in inner:
+            raise InputError(f"model {path}: '{key}' is missing; needed are {_NEEDED}")
+    alpha = _numbers(inner["alpha"], f"model {path}: alpha")
+    beta = None if inner.get("beta") is None else _numbers(inner["beta"], f"model {path}: beta")
+    counts = (len(alpha), 0 if beta is None else len(beta))
     if counts not in ((6, 0), (4, 6)):
         raise InputError(
             f"model {path}: alpha has {counts[0]} and beta {counts[1]} numbers; give 6 and none, or 4 and 6"
         )
-    if not (model.alpha[0] < 0.0 or model.beta is not None) or model.lower_deg >= model.upper_deg:
-        raise InputError(f"model {path}: alpha begins with the negative rate, and range_deg rises")
+    ends = _numbers(inner["range_deg"], f"model {path}: range_deg")
+    sample = inner.get("sample_s", thesis_data()["sample"]["value"])
+    (interval,) = _numbers([sample], f"model {path}: sample_s")
+    (delay,) = _numbers([inner["delay_samples"]], f"model {path}: delay_samples")
+    if len(ends) != 2 or not ends[0] < ends[1]:
+        raise InputError(f"model {path}: range_deg must be two numbers that rise")
+    if not 0.0 < interval <= _LONGEST_S:
+        raise InputError(f"model {path}: sample_s {interval:g} s must be above 0 and at most {_LONGEST_S:g} s")
+    if delay != int(delay) or not 0.0 <= delay * interval <= _LONGEST_S:
+        raise InputError(
+            f"model {path}: delay_samples {delay:g} must be a whole number of samples, {_LONGEST_S:g} s at most"
+        )
+    model = SdpModel(str(tree.get("joint", path.stem)), alpha, beta, interval, int(delay), *ends)
+    if wrong := _contradiction(model):
+        raise InputError(f"model {path}: {wrong}")
     return model
+
+
+_LARGEST = 1e6  # of any number of a model, in volts, degrees, or by sample
+_LONGEST_S = 10.0
+_NEEDED = "alpha (6 numbers, or 4 with beta of 6), delay_samples and range_deg (2 numbers)"
+
+
+def _numbers(raw: Any, where: str) -> tuple[float, ...]:
+    if not isinstance(raw, list):
+        raise InputError(f"{where}: '{raw}' is no list of numbers; needed are {_NEEDED}")
+    try:
+        values = [float("nan") if isinstance(each, bool) else float(each) for each in raw]
+    except (TypeError, ValueError):
+        raise InputError(f"{where}: '{raw}' is no list of numbers; needed are {_NEEDED}") from None
+    if not all(abs(value) <= _LARGEST for value in values):
+        raise InputError(f"{where}: '{raw}' must be finite numbers of at most {_LARGEST:g}")
+    return tuple(values)
+
+
+def _contradiction(model: SdpModel) -> str:
+    """What is wrong with numbers that cannot be those of a joint; empty if nothing is."""
+    if model.beta is None:
+        a1, a2, a3, a4, a5, a6 = model.alpha
+        if not (a1 < 0.0 < a4 and a2 > 0.0 and a5 > 0.0 and a3 < a6):
+            return (
+                "alpha begins with the negative rate, alpha4 is the positive one; alpha2 and alpha5 are above 0, and "
+                "alpha3 lies below alpha6"
+            )
+    else:
+        b1, b2, b3, b4, b5, b6 = model.beta
+        if not (b1 < 0.0 < b3 and b5 < b2 < b4 < b6 and model.alpha[1] > 0.0 and model.alpha[3] > 0.0):
+            return (
+                "beta begins with the negative rate, beta3 is the positive one, beta5, beta2, beta4 and beta6 rise, and "
+                "the slopes alpha2 and alpha4 are above 0"
+            )
+    return ""
 
 
 def write_designed(designed: Designed, path: Path) -> None:

@@ -2,10 +2,9 @@
 
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
-import yaml
+from hydrolek_drake.yaml_files import package_yaml
 
 
 @dataclass(frozen=True)
@@ -55,7 +54,7 @@ class FeedforwardTuning:
 @cache
 def tuning_data() -> dict[str, Any]:
     """Content of `feedforward.yaml`."""
-    return yaml.safe_load(files(__package__).joinpath("feedforward.yaml").read_text(encoding="utf-8"))
+    return package_yaml(__package__, "feedforward.yaml")
 
 
 @cache

@@ -3,13 +3,12 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
-import yaml
 
 from hydrolek_drake.control.law import Array, InputElement
+from hydrolek_drake.yaml_files import package_yaml
 
 SETS = ("NB", "N", "Z", "P", "PB")
 _POINTS = 1041  # of the output's universe in the centroid
@@ -18,7 +17,7 @@ _POINTS = 1041  # of the output's universe in the centroid
 @cache
 def fuzzy_data() -> dict[str, Any]:
     """Content of `fuzzy.yaml`."""
-    return yaml.safe_load(files(__package__).joinpath("fuzzy.yaml").read_text(encoding="utf-8"))
+    return package_yaml(__package__, "fuzzy.yaml")
 
 
 def membership(value: Array, corners: Sequence[float]) -> Array:

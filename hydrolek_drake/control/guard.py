@@ -2,14 +2,13 @@
 
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from math import isfinite
 from typing import Any
 
 import numpy as np
-import yaml
 
 from hydrolek_drake.control.law import Array, ControlLaw
+from hydrolek_drake.yaml_files import package_yaml
 
 HEALTHY, STUCK = 0.0, 1.0
 _ACTIVE, _FAULT, _LAST, _SAME, _COUNT, _FROM, _DIRECTION, _VOLTAGE = range(8)
@@ -19,7 +18,7 @@ _SIZE = 8
 @cache
 def guard_data() -> dict[str, Any]:
     """Content of `guard.yaml`."""
-    return yaml.safe_load(files(__package__).joinpath("guard.yaml").read_text(encoding="utf-8"))
+    return package_yaml(__package__, "guard.yaml")
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,9 @@
 
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
-import yaml
 from scipy.optimize import least_squares
 
 from hydrolek_drake.control.law import Array
@@ -14,11 +12,12 @@ from hydrolek_drake.control.sdp_model import SdpModel, exponential_rate, thesis_
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout import roll_out
+from hydrolek_drake.yaml_files import package_yaml
 
 
 @cache
 def _data() -> dict[str, Any]:
-    raw = yaml.safe_load(files(__package__).joinpath("rig_model.yaml").read_text(encoding="utf-8"))
+    raw = package_yaml(__package__, "rig_model.yaml")
     return {key: item["value"] for key, item in raw.items()}
 
 

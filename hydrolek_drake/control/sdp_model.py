@@ -7,14 +7,13 @@ numbers are per degree.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
-import yaml
 from numpy.typing import ArrayLike, NDArray
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.yaml_files import package_yaml
 
 Array = NDArray[np.float64]
 
@@ -173,7 +172,7 @@ class SdpModel:
 @cache
 def thesis_data() -> dict[str, Any]:
     """Content of `sdp_models.yaml`."""
-    return yaml.safe_load(files(__package__).joinpath("sdp_models.yaml").read_text(encoding="utf-8"))
+    return package_yaml(__package__, "sdp_models.yaml")
 
 
 def thesis_model(joint: str) -> SdpModel:

@@ -3,14 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
-import yaml
 
 from hydrolek_drake.control.law import Array
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.yaml_files import package_yaml
 
 NAMES = ("step", "sine", "grasp")
 
@@ -18,7 +17,7 @@ NAMES = ("step", "sine", "grasp")
 @cache
 def sequence_data() -> dict[str, Any]:
     """Content of `sequences.yaml`."""
-    return yaml.safe_load(files(__package__).joinpath("sequences.yaml").read_text(encoding="utf-8"))
+    return package_yaml(__package__, "sequences.yaml")
 
 
 @dataclass(frozen=True)

@@ -1,20 +1,18 @@
 """The thesis's controller settings, from `thesis_gains.yaml`."""
 
 from functools import cache
-from importlib.resources import files
 from typing import Any
-
-import yaml
 
 from hydrolek_drake.control.design import PipGains
 from hydrolek_drake.control.scaled_input import ScaledInput
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.yaml_files import package_yaml
 
 
 @cache
 def gains_data() -> dict[str, Any]:
     """Content of the file."""
-    return yaml.safe_load(files(__package__).joinpath("thesis_gains.yaml").read_text(encoding="utf-8"))
+    return package_yaml(__package__, "thesis_gains.yaml")
 
 
 def entry(table: str, joint: str) -> dict[str, Any]:

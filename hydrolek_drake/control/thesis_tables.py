@@ -1,12 +1,11 @@
 """Results that the thesis prints for its SDP models, from `thesis_tables.yaml`."""
 
-from importlib.resources import files
 from typing import Any
 
-import yaml
+from hydrolek_drake.yaml_files import package_yaml
 
 JOINTS = ("j1", "j2", "j3", "j4")
-_RAW = yaml.safe_load(files(__package__).joinpath("thesis_tables.yaml").read_text(encoding="utf-8"))
+_RAW = package_yaml(__package__, "thesis_tables.yaml")
 
 
 def _by_joint(sequence: str) -> dict[str, dict[str, Any]]:

@@ -8,19 +8,17 @@ Jeffreys' half a case on either side.
 """
 
 from functools import cache
-from importlib.resources import files
 from typing import Any
-
-import yaml
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.effort import NOISE_KNOWN
+from hydrolek_drake.yaml_files import package_yaml
 
 
 @cache
 def reliability_data() -> dict[str, Any]:
     """Content of `reliability.yaml`."""
-    return yaml.safe_load(files(__package__).joinpath("reliability.yaml").read_text(encoding="utf-8"))
+    return package_yaml(__package__, "reliability.yaml")
 
 
 def reliability(kind: str) -> float:

@@ -2,14 +2,13 @@
 
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib.resources import files
 
 import numpy as np
-import yaml
 from numpy.typing import ArrayLike, NDArray
 
 from hydrolek_drake.kinematics.forward import arm_geometry
 from hydrolek_drake.units import si_factor
+from hydrolek_drake.yaml_files import package_yaml
 
 Array = NDArray[np.float64]
 
@@ -104,7 +103,7 @@ def cylinder_linkages() -> dict[str, CylinderLinkage]:
 
     Joints 4 (vane) and 6 (motor) have no linear cylinder.
     """
-    data = yaml.safe_load(files(__package__).joinpath("cylinder_mounts.yaml").read_text(encoding="utf-8"))
+    data = package_yaml(__package__, "cylinder_mounts.yaml")
     geometry = arm_geometry()
     axes = {
         f"j{number}": axis for number, axis in enumerate((*geometry.axes, geometry.gripper_axis), start=1)

@@ -2,14 +2,13 @@
 
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 
 import numpy as np
-import yaml
 from numpy.typing import ArrayLike, NDArray
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.units import si_factor
+from hydrolek_drake.yaml_files import package_yaml
 
 Array = NDArray[np.float64]
 
@@ -34,7 +33,7 @@ class ArmGeometry:
 @cache
 def arm_geometry() -> ArmGeometry:
     """The geometry in `arm_geometry.yaml` (thesis Tables 5.1 and 5.2), in SI units."""
-    data = yaml.safe_load(files(__package__).joinpath("arm_geometry.yaml").read_text(encoding="utf-8"))
+    data = package_yaml(__package__, "arm_geometry.yaml")
 
     def in_metres(entry: str) -> Array:
         vectors = np.array(data[entry]["value"], dtype=float) * si_factor(data[entry]["unit"], "m")

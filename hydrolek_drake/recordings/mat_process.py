@@ -1,7 +1,8 @@
 """Variables of a MATLAB file of version 5 to 7, read by SciPy in a process of its own.
 
 SciPy's compiled parser trusts the lengths that the file states: one damaged byte can end the whole
-interpreter with a segmentation fault, which no `except` can catch. In a process of its own it only ends that.
+interpreter with a segmentation fault, which no `except` can catch, or keep it busy for ever. In a process of its
+own it only ends that, or is ended.
 """
 
 import io
@@ -14,20 +15,35 @@ from typing import Any
 
 import numpy as np
 
+LONGEST_S = 60.0
+BYTES_PER_S = 2e6
+"""What reading may take; it takes about a second, and another for each 100 MB."""
+
+_RUN_ALONE = "import runpy, sys; runpy.run_path(sys.argv.pop(1), run_name='__main__')"
+"""Runs this file without the package around it, whose readers take as long to load as SciPy."""
+
 
 def mat_variables(path: Path) -> list[tuple[str, np.ndarray]]:
     """Numeric and text arrays of a MATLAB file, fields of structs as `struct.field`.
 
     Raises:
-        ValueError: The file is damaged.
+        ValueError: The file is damaged, or takes longer than `LONGEST_S` and a second for each `BYTES_PER_S`.
     """
+    limit = LONGEST_S + path.stat().st_size / BYTES_PER_S
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(place or os.getcwd() for place in sys.path)}
-    child = subprocess.run(
-        [sys.executable, "-m", __name__, str(path.absolute())],
-        capture_output=True,
-        env=environment,
-        check=False,
-    )
+    try:
+        child = subprocess.run(  # kills the process where the time is up
+            [sys.executable, "-c", _RUN_ALONE, __file__, str(path.absolute())],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            env=environment,
+            check=False,
+            timeout=limit,
+        )
+    except subprocess.TimeoutExpired:
+        raise ValueError(
+            f"it was not read within {limit:.0f} s, of which even large files need a part; save it anew"
+        ) from None
     if child.returncode != 0:
         said = child.stderr.decode(errors="replace").strip().splitlines()
         raise ValueError(said[-1] if said and child.returncode > 0 else "its contents contradict each other")

@@ -60,7 +60,7 @@ def parse_entry(raw: Any, parameter: Parameter, where: str) -> Entry:
                 f"{where}: '{key}' is missing; write {{value: ..., unit: {parameter.unit}, source: ...}}"
             )
     factor, unit = _factor(str(raw["unit"]), parameter, where)
-    value = _number(raw["value"], where) * factor
+    value = _in_si(raw["value"], factor, where)
     if not parameter.lowest <= value <= parameter.highest:
         raise InputError(
             f"{where}: value {value:g} {unit} is impossible; "
@@ -73,7 +73,7 @@ def parse_entry(raw: Any, parameter: Parameter, where: str) -> Entry:
         pair = raw["range"]
         if not isinstance(pair, list) or len(pair) != 2:
             raise InputError(f"{where}: range '{pair}' must be a list of two numbers, [lowest, highest]")
-        low, high = (_number(v, where) * factor for v in pair)
+        low, high = (_in_si(v, factor, where) for v in pair)
         if not low < high:
             raise InputError(
                 f"{where}: range {pair} is empty; the first number must be smaller than the second"
@@ -126,6 +126,13 @@ def _factor(unit: str, parameter: Parameter, where: str) -> tuple[float, str]:
         except InputError as error:
             problem = error
     raise InputError(f"{where}: {problem}")
+
+
+def _in_si(raw: Any, factor: float, where: str) -> float:
+    value = _number(raw, where) * factor
+    if abs(value) == float("inf"):
+        raise InputError(f"{where}: '{raw}' is too large a number in SI")
+    return value
 
 
 def _number(raw: Any, where: str) -> float:

@@ -7,11 +7,11 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import is_file
 from hydrolek_drake.rigs.reading import rig_from_tree
 from hydrolek_drake.rigs.rig import Rig
+from hydrolek_drake.yaml_files import read_yaml
 
 _TOP_KEYS = (
     "schema", "name", "title", "source", "based_on", "keep",
@@ -19,7 +19,8 @@ _TOP_KEYS = (
 )  # fmt: skip
 
 SCHEMA = 1
-_YAML = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # ten times as fast, where PyYAML has libyaml
+MOST_JOINTS = 64
+_MOST_FILES = 16  # that are based on each other
 
 
 def built_in_rigs() -> dict[str, Path]:
@@ -38,12 +39,9 @@ def load_rig(name_or_path: str | Path, settings: Mapping[str, str] | None = None
     Raises:
         InputError: one line saying which file, key and value is wrong and what would be right.
     """
-    try:
-        path = _find(name_or_path)
-        rig = rig_from_tree(_resolve(path, ()), path)
-        return rig.with_settings(settings) if settings else rig
-    except InputError as error:  # a value that is quoted from the file may hold line breaks
-        raise InputError(" ".join(str(error).split())) from None
+    path = _find(name_or_path)
+    rig = rig_from_tree(_resolve(path, ()), path)
+    return rig.with_settings(settings) if settings else rig
 
 
 def _find(name_or_path: str | Path) -> Path:
@@ -52,7 +50,7 @@ def _find(name_or_path: str | Path) -> Path:
     if text in rigs:
         return rigs[text]
     path = Path(text)
-    if _is_file(path):
+    if is_file(path):
         return path
     if path.suffix in (".yaml", ".yml"):
         raise InputError(f"rig file {path} does not exist")
@@ -61,21 +59,8 @@ def _find(name_or_path: str | Path) -> Path:
     raise InputError(f"no rig '{text}'; {hint}built in are {', '.join(rigs)}; or give a file")
 
 
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):  # a name that no file can have
-        return False
-
-
 def _read(path: Path) -> dict[str, Any]:
-    try:
-        tree = yaml.load(path.read_text(encoding="utf-8"), Loader=_YAML)
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"rig file {path} cannot be read: {error}") from None
-    except yaml.YAMLError as error:
-        problem = " ".join(str(error).split())
-        raise InputError(f"rig file {path} is not valid YAML: {problem}") from None
+    tree = read_yaml(path, "rig file")
     if not isinstance(tree, dict):
         raise InputError(f"rig file {path} is empty or not a mapping; it needs {', '.join(_TOP_KEYS)}")
     for key in tree:
@@ -90,12 +75,14 @@ def _resolve(path: Path, seen: tuple[Path, ...]) -> dict[str, Any]:
     """The rig's tree with everything it is based on merged in."""
     if path.resolve() in seen:
         raise InputError(f"{path}: based_on goes in a circle")
+    if len(seen) >= _MOST_FILES:
+        raise InputError(f"{path}: more than {_MOST_FILES} files that are based on each other")
     tree = _read(path)
     base = tree.pop("based_on", None)
     if base is not None:
         beside = path.parent / f"{base}"
         try:
-            other = beside if _is_file(beside) else _find(str(base))
+            other = beside if is_file(beside) else _find(str(base))
         except InputError as error:
             raise InputError(f"{path}: based_on: {error}") from None
         tree = _merged(_resolve(other, (*seen, path.resolve())), tree)
@@ -103,6 +90,8 @@ def _resolve(path: Path, seen: tuple[Path, ...]) -> dict[str, Any]:
     joints = tree.get("joints")
     if not isinstance(joints, dict) or not joints:
         raise InputError(f"{path}: 'joints' is missing; a rig needs at least one joint")
+    if len(joints) > MOST_JOINTS:
+        raise InputError(f"{path}: {len(joints)} joints; a rig has at most {MOST_JOINTS}")
     for name in joints:
         if not isinstance(name, str) or not name or "." in name:
             raise InputError(

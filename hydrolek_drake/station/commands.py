@@ -14,6 +14,7 @@ from hydrolek_drake.rigs.keys import refuse_unknown
 from hydrolek_drake.station.fields import number, quantity, required, signal
 
 KINDS = ("constant", "steps", "random", "recording")
+_MOST_LEVELS = 100_000  # finer than any converter
 
 
 class Command(Protocol):
@@ -180,7 +181,7 @@ def _random(raw: Mapping[str, Any], rig: Rig, rest: np.ndarray, operator: bool, 
         np.array([joint in names for joint in rig.joints]),
         rest,
         amplitude,
-        number(required(raw, "levels", where), f"{where}.levels", lowest=2),
+        number(required(raw, "levels", where), f"{where}.levels", lowest=2, highest=_MOST_LEVELS),
         (shortest, longest),
         number(raw.get("seed", 0), f"{where}.seed", lowest=0),
     )

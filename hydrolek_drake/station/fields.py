@@ -51,12 +51,14 @@ def signal(raw: Any, where: str) -> float:
     return value
 
 
-def number(raw: Any, where: str, *, lowest: int) -> int:
+def number(raw: Any, where: str, *, lowest: int, highest: int | None = None) -> int:
     """A whole number.
 
     Raises:
-        InputError: anything else, or less than `lowest`.
+        InputError: anything else, less than `lowest` or more than `highest`.
     """
     if isinstance(raw, bool) or not isinstance(raw, int) or raw < lowest:
         raise InputError(f"{where}: '{raw}' must be a whole number, {lowest} or more")
+    if highest is not None and raw > highest:
+        raise InputError(f"{where}: {raw} must be a whole number of at most {highest}")
     return raw

@@ -25,10 +25,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 
 import hydrolek_drake
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import is_file
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rigs.entries import parse_quantity
 from hydrolek_drake.rigs.keys import refuse_unknown
@@ -37,6 +37,7 @@ from hydrolek_drake.station.commands import Command, parse_command
 from hydrolek_drake.station.fields import quantity, required
 from hydrolek_drake.station.simulation import command_source
 from hydrolek_drake.station.step_sizes import StepSizes
+from hydrolek_drake.yaml_files import parse_yaml, read_yaml
 
 PREFIX = "scenario."
 """What a setting of the scenario begins with; all others are the rig's."""
@@ -46,6 +47,8 @@ _KEYS = (
     "integration", "forces", "noise",
 )  # fmt: skip
 _SCHEMA = 1
+_MOST_ROWS = 2_000_000  # of signals: a gigabyte for each 50 of them
+_MOST_STEPS = 1_000_000_000  # a month or so
 
 
 @dataclass(frozen=True)
@@ -132,6 +135,8 @@ def load_scenario(name_or_path: str | Path, settings: Mapping[str, str] | None =
     duration = quantity(tree["duration"], "s", f"{path}: duration", lowest=0.0)
     if duration <= 0.0:
         raise InputError(f"{path}: duration: {duration:g} s must be above 0")
+    sizes = _sizes(tree.get("integration") or {}, path)
+    _check_length(duration, sizes, path)
     command, operator = parse_command(tree["command"], rig, f"{path}: command", path.parent)
     events = tree.get("events") or {}
     refuse_unknown(events, ("supply_lost_at", "commands_zero_at"), f"{path}: events")
@@ -151,7 +156,7 @@ def load_scenario(name_or_path: str | Path, settings: Mapping[str, str] | None =
         operator=operator,
         supply_lost_at=_event(events, "supply_lost_at", path),
         commands_zero_at=_event(events, "commands_zero_at", path),
-        sizes=replace(_sizes(tree.get("integration") or {}, path), mount_forces=forces == "mounts"),
+        sizes=replace(sizes, mount_forces=forces == "mounts"),
         noise=noise,
         tree=tree,
     )
@@ -163,7 +168,7 @@ def _find(name_or_path: str | Path) -> Path:
     if text in files:
         return files[text]
     path = Path(text)
-    if path.is_file():
+    if is_file(path):
         return path
     near = difflib.get_close_matches(text, files, n=2)
     hint = f"did you mean {' or '.join(near)}? " if near else ""
@@ -171,12 +176,7 @@ def _find(name_or_path: str | Path) -> Path:
 
 
 def _read(path: Path) -> dict[str, Any]:
-    try:
-        tree = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"scenario {path} cannot be read: {error}") from None
-    except yaml.YAMLError as error:
-        raise InputError(f"scenario {path} is not valid YAML: {' '.join(str(error).split())}") from None
+    tree = read_yaml(path, "scenario")
     if not isinstance(tree, dict):
         raise InputError(f"scenario {path} is empty or not a mapping; it needs {', '.join(_KEYS)}")
     return tree
@@ -195,17 +195,14 @@ def _apply(tree: dict[str, Any], key: str, text: str) -> None:
         node = node.setdefault(part, {})
         if not isinstance(node, dict):
             raise InputError(f"--set {key}={text}: {part} has no keys below it")
-    try:
-        node[last] = yaml.safe_load(text)
-    except yaml.YAMLError:
-        raise InputError(f"--set {key}={text}: the value is not valid YAML") from None
+    node[last] = parse_yaml(text, f"--set {key}={text}: the value")
 
 
 def _rig(tree: dict[str, Any], path: Path, settings: Mapping[str, str]) -> Rig:
     """The rig with the scenario's settings, then the user's, and the initial positions of all joints."""
     beside = path.parent / str(tree["rig"])
     try:
-        rig = load_rig(beside if beside.is_file() else str(tree["rig"]))
+        rig = load_rig(beside if is_file(beside) else str(tree["rig"]))
     except InputError as error:
         raise InputError(f"{path}: rig: {error}") from None
     own = tree.get("settings") or {}
@@ -253,6 +250,16 @@ def _event(events: Mapping[str, Any], key: str, path: Path) -> float | None:
     if events.get(key) is None:
         return None
     return quantity(events[key], "s", f"{path}: events.{key}", lowest=0.0)
+
+
+def _check_length(duration: float, sizes: StepSizes, path: Path) -> None:
+    """Refuse a run that would not end, or not fit into memory."""
+    for key, most, what in (("log_period", _MOST_ROWS, "rows"), ("step", _MOST_STEPS, "steps")):
+        if duration / getattr(sizes, key) > most:
+            raise InputError(
+                f"{path}: duration: {duration:g} s are more than {most} {what} of {getattr(sizes, key):g} s; "
+                f"shorten it, or lengthen integration.{key}"
+            )
 
 
 def _sizes(raw: Any, path: Path) -> StepSizes:

@@ -3,19 +3,18 @@
 import math
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-import yaml
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.yaml_files import package_yaml
 
 
 @cache
 def _data() -> dict[str, Any]:
-    return yaml.safe_load(files(__package__).joinpath("operator.yaml").read_text(encoding="utf-8"))
+    return package_yaml(__package__, "operator.yaml")
 
 
 @cache

@@ -1,13 +1,11 @@
 """The entries of `kinect.yaml`: value, unit and source of every number that the camera and the vision use."""
 
 from functools import cache
-from importlib.resources import files
 from types import MappingProxyType
 from typing import Any
 
-import yaml
-
 from hydrolek_drake.units import si_factor
+from hydrolek_drake.yaml_files import package_yaml
 
 _SI = {"deg": "rad", "mm": "m"}
 
@@ -15,9 +13,7 @@ _SI = {"deg": "rad", "mm": "m"}
 @cache
 def kinect_entries(part: str) -> MappingProxyType[str, float]:
     """Name -> value in SI units of one part of `kinect.yaml`, such as `camera` or `edges`."""
-    data: dict[str, dict[str, dict[str, Any]]] = yaml.safe_load(
-        files(__package__).joinpath("kinect.yaml").read_text(encoding="utf-8")
-    )
+    data: dict[str, dict[str, dict[str, Any]]] = package_yaml(__package__, "kinect.yaml")
     values = {}
     for name, entry in data[part].items():
         unit = entry["unit"]

@@ -2,14 +2,13 @@
 
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
-import yaml
 from numpy.typing import ArrayLike, NDArray
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.yaml_files import package_yaml
 
 Array = NDArray[np.float64]
 
@@ -84,7 +83,7 @@ def make_pipe(
 @cache
 def workcell_entries() -> dict[str, dict[str, Any]]:
     """Part -> name -> value of `workcell.yaml`."""
-    data = yaml.safe_load(files(__package__).joinpath("workcell.yaml").read_text(encoding="utf-8"))
+    data = package_yaml(__package__, "workcell.yaml")
     return {part: {name: entry["value"] for name, entry in entries.items()} for part, entries in data.items()}
 
 

@@ -1,5 +1,6 @@
 """Bad files are refused with one line that names the file and what is wrong; nothing else is ever raised."""
 
+import os
 import warnings
 
 import numpy as np
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 from nptdms import ChannelObject, TdmsWriter
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.recordings import read_recording
+from hydrolek_drake.recordings import mat_process, read_recording
 
 
 def refusal(path, columns=None):
@@ -263,3 +264,16 @@ def test_one_damaged_byte_raises_only_input_error(good_files, extension, place, 
         except InputError as error:
             assert "\n" not in str(error)
             assert path.name in str(error)
+
+
+def test_a_mat_file_that_is_read_for_ever_is_given_up(tmp_path, monkeypatch):
+    """Reading is done in a process of its own, which is ended when its time is up."""
+    path = tmp_path / "slow.mat"
+    scipy.io.savemat(path, {"time_s": 0.1 * np.arange(50.0), "j": np.arange(50.0)})
+    process_id = tmp_path / "id"
+    sleeping = f"import os, time; open({str(process_id)!r}, 'w').write(str(os.getpid())); time.sleep(100)"
+    monkeypatch.setattr(mat_process, "_RUN_ALONE", sleeping)
+    monkeypatch.setattr(mat_process, "LONGEST_S", 1.0)
+    assert "not read within 1 s" in refusal(path)
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(process_id.read_text()), 0)

@@ -60,7 +60,6 @@ def _refusal(tmp_path, text):
         ("supply/pressure/value", [1], ["supply.pressure", "'[1]' is not a number"]),
         ("supply/pressure/value", float("nan"), ["supply.pressure", "NaN"]),
         ("supply/pressure/value", float("inf"), ["supply.pressure", "not a finite number"]),
-        ("supply/pressure/value", 10**400, ["supply.pressure", "not a number"]),
         ("fluid/density/value", 0, ["fluid.density", "above zero"]),
         ("supply/pressure/range", [19, 13], ["supply.pressure", "[19, 13] is empty"]),
         ("supply/pressure/range", [13], ["supply.pressure", "'[13]' must be a list of two numbers"]),

@@ -10,23 +10,21 @@ entries could be found.
 
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
-import yaml
 
 from hydrolek_drake.identification.mechanical.arm_bodies import JOINTS, arm_bodies
 from hydrolek_drake.identification.mechanical.arm_dynamics import simulate_joints
 from hydrolek_drake.physics.serial_arm import moments_along
 from hydrolek_drake.units import si_factor
+from hydrolek_drake.yaml_files import package_yaml
 
 
 @cache
 def mechanical_data() -> dict[str, Any]:
     """Content of `mechanical_model.yaml`."""
-    text = files(__package__).joinpath("mechanical_model.yaml").read_text(encoding="utf-8")
-    return yaml.safe_load(text)
+    return package_yaml(__package__, "mechanical_model.yaml")
 
 
 @dataclass(frozen=True)

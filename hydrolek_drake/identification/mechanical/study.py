@@ -4,11 +4,9 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
-import yaml
 
 from hydrolek_drake.identification.genetic.multi_objective import pareto_set
 from hydrolek_drake.identification.genetic.settings import SIMPLE, GeneticSettings
@@ -20,6 +18,7 @@ from hydrolek_drake.identification.mechanical.mechanical_model import (
 )
 from hydrolek_drake.identification.objective.output_error import OutputError
 from hydrolek_drake.identification.search.search import METHODS, SearchResult, search
+from hydrolek_drake.yaml_files import package_yaml
 
 OF_OBJECTIVE = ("p", "relative", "segments", "scale")
 
@@ -43,7 +42,7 @@ class _Scaled:
 @cache
 def study_data() -> dict[str, Any]:
     """Content of `study.yaml`."""
-    return yaml.safe_load(files(__package__).joinpath("study.yaml").read_text(encoding="utf-8"))
+    return package_yaml(__package__, "study.yaml")
 
 
 def recommended() -> dict[str, Any]:

@@ -2,20 +2,19 @@
 
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
-import yaml
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings import Recording
+from hydrolek_drake.yaml_files import package_yaml
 
 
 @cache
 def campaign_data() -> dict[str, Any]:
     """Content of `campaign.yaml`."""
-    return yaml.safe_load(files(__package__).joinpath("campaign.yaml").read_text(encoding="utf-8"))
+    return package_yaml(__package__, "campaign.yaml")
 
 
 @dataclass(frozen=True)

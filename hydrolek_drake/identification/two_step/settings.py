@@ -2,14 +2,12 @@
 
 from dataclasses import replace
 from functools import cache
-from importlib.resources import files
 from typing import Any
-
-import yaml
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.rig import declaration
+from hydrolek_drake.yaml_files import package_yaml
 
 MASSES = ("inertia", "gravity_cos", "gravity_sin")
 """What the CAD model says of a load; all grow with the links' masses."""
@@ -21,7 +19,7 @@ NO_GRAVITY = 1e-6
 @cache
 def two_step_data() -> dict[str, Any]:
     """Content of `two_step.yaml`."""
-    return yaml.safe_load(files(__package__).joinpath("two_step.yaml").read_text(encoding="utf-8"))
+    return package_yaml(__package__, "two_step.yaml")
 
 
 def only_joint(rig: Rig) -> str:
