@@ -146,7 +146,9 @@ def read_model(path: Path) -> SdpModel:
     if len(ends) != 2 or not ends[0] < ends[1]:
         raise InputError(f"model {path}: range_deg must be two numbers that rise")
     if not 0.0 < interval <= _LONGEST_S:
-        raise InputError(f"model {path}: sample_s {interval:g} s must be above 0 and at most {_LONGEST_S:g} s")
+        raise InputError(
+            f"model {path}: sample_s {interval:g} s must be above 0 and at most {_LONGEST_S:g} s"
+        )
     if delay != int(delay) or not 0.0 <= delay * interval <= _LONGEST_S:
         raise InputError(
             f"model {path}: delay_samples {delay:g} must be a whole number of samples, {_LONGEST_S:g} s at most"

@@ -12,7 +12,6 @@ HEAVY = (
     "pydrake",
     "numba",
     "cv2",
-    "dask",
     "pymoo",
     "matplotlib",
     "plotly",

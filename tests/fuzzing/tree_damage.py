@@ -109,7 +109,11 @@ def damaged_text(text: str, rng: np.random.Generator) -> str:
                 lines[place] = "\t" + line
             case "inside":
                 at = int(rng.integers(len(line) + 1))
-                lines[place] = line[:at] + str(rng.choice([*RAW, *VALUES[16:20], ":", ",", "\x00", "\u2028", "\ufeff"])) + line[at:]
+                lines[place] = (
+                    line[:at]
+                    + str(rng.choice([*RAW, *VALUES[16:20], ":", ",", "\x00", "\u2028", "\ufeff"]))
+                    + line[at:]
+                )
             case "join":
                 if place + 1 < len(lines):
                     lines[place : place + 2] = [line + lines[place + 1]]

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import yaml
+
 from fuzzing.byte_damage import damaged
 from fuzzing.target import Input, Target
 from fuzzing.tree_damage import damaged_text, damaged_tree, words_of
-
 from hydrolek_drake.control.designed import design_controller, read_model, write_designed
 from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.errors import InputError
