@@ -11,8 +11,9 @@ from typing import Any
 
 from hydrolek_drake import __version__
 from hydrolek_drake.control.bench import Bench, Trial
-from hydrolek_drake.control.bench_tables import MEASURES, printed, ranking_rows, rows, sentence, tool_rows
+from hydrolek_drake.control.bench_tables import MEASURES, ranking_rows, rows, sentence, tool_rows
 from hydrolek_drake.control.catalogue import CONTROLLERS
+from hydrolek_drake.control.thesis_tables import printed
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.replay.page import STYLE
 from hydrolek_drake.replay.panels import Line, Panel
@@ -21,11 +22,21 @@ from hydrolek_drake.replay.plots_html import plots_html
 
 _COLOURS = (
     "#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#e377c2", "#7f7f7f", "#bcbd22",
-    "#17becf", "#393b79", "#637939", "#000000",
+    "#17becf", "#393b79", "#637939", "#8c6d31", "#ad494a", "#000000",
 )  # fmt: skip
 _SET_POINT = "#9aa5b1"
 _SHOWN = 4
 """Joints whose angles and voltages are plotted; the numbers tell of all."""
+
+_BRACKETS = {
+    "sdp": "In brackets: what the thesis prints for the same models (Tables G.1 to G.6, 6.9 to 6.11); j4 linear is "
+    "joint 4 with the linear law of Table 6.7. The grasp's set points are reconstructed.",
+    "full": "In brackets: what the thesis measured on its machine (Tables 7.3 to 7.5, G.7 to G.11), right joints "
+    "1 to 4, means of three runs; 'linear' is joint 4 with the controller for the linear model. To be compared are "
+    "orders of size and which controller does better. The values themselves are another machine's: its valve and "
+    "its flows are not printed, only the four joints moved that were tested, sine and grasp are reconstructed, and "
+    "the noise here is that of the rig's potentiometers.",
+}
 
 
 def write_bench(bench: Bench, folder: Path) -> Path:
@@ -92,12 +103,11 @@ def page(bench: Bench, pictures: Mapping[str, bytes]) -> str:
     The first sequence's plot can be zoomed; the others are pictures, which keeps the page small.
     """
     title = _title(bench)
-    brackets = " In brackets: what the thesis prints (appendix G, Table 6.9)." if bench.plant == "sdp" else ""
     parts = [
         f"<!doctype html><html lang='en'><head><meta charset='utf-8'><title>{html.escape(title)}</title>"
         f"<style>{STYLE}</style></head><body><h1>{html.escape(title)}</h1>",
         f"<p class='sentence'>{html.escape(sentence(bench))}</p>",
-        f"<p class='other'>Variances are those of control samples, 0.05 s apart.{brackets}"
+        f"<p class='other'>Variances are those of control samples, 0.05 s apart. {html.escape(_BRACKETS[bench.plant])}"
         f"{' The comparison was interrupted: what is missing was not run.' if bench.interrupted else ''}</p>",
         *(f"<p class='other'>failed: {html.escape(said)}</p>" for said in bench.failed),
         "<h2>Objectives of chapter 6, step</h2>",
@@ -149,9 +159,9 @@ def as_json(bench: Bench) -> dict[str, Any]:
                     joint: {
                         measure.key: {
                             "value": _finite(measure.value(measures)),
-                            "thesis": _finite(printed(trial.sequence, trial.controller, measure.key, joint))
-                            if bench.plant == "sdp"
-                            else None,
+                            "thesis": _finite(
+                                printed(bench.plant, trial.sequence, trial.controller, measure.key, joint)
+                            ),
                         }
                         for measure in MEASURES
                         if trial.sequence in measure.sequences

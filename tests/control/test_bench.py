@@ -135,7 +135,7 @@ def test_the_report_holds_every_number(step, tmp_path):
     assert rise["value"] == pytest.approx(1.2117, abs=0.03)
     assert (tmp_path / "step.png").read_bytes().startswith(b"\x89PNG")
     head, body = rows(step, "step", MEASURES[0])
-    assert head == ["controller", *JOINTS] and "(1.212)" in body[0][2]
+    assert head == ["controller", *JOINTS, "j4 linear"] and "(1.212)" in body[0][2]
 
 
 def test_the_ranking_puts_first_who_meets_the_objectives_on_most_joints(step):
