@@ -11,6 +11,7 @@ from typing import Any
 
 from hydrolek_drake import __version__
 from hydrolek_drake.control.bench import Bench, Trial
+from hydrolek_drake.control.bench_pictures import fuzzy_pictures, paths_png
 from hydrolek_drake.control.bench_tables import MEASURES, ranking_rows, rows, sentence, tool_rows
 from hydrolek_drake.control.catalogue import CONTROLLERS
 from hydrolek_drake.control.thesis_tables import printed
@@ -40,7 +41,10 @@ _BRACKETS = {
 
 
 def write_bench(bench: Bench, folder: Path) -> Path:
-    """Write `bench.html`, `bench.json` and a picture per sequence, each when complete.
+    """Write `bench.html`, `bench.json` and pictures, each when complete.
+
+    Pictures: the signals and the wrist's path of each sequence (figures 5.9, 6.27, 7.11), and the sets and control
+    surface of every fuzzy controller that was run (figures 7.3, 7.4, 7.6, appendix F).
 
     Returns:
         The page's path.
@@ -54,10 +58,12 @@ def write_bench(bench: Bench, folder: Path) -> Path:
             sequence: plots_png([panels(bench, sequence)], _title(bench), sequence)
             for sequence in _sequences(bench)
         }
-        for sequence, picture in pictures.items():
-            _write(folder / f"{sequence}.png", picture)
+        more = {f"{name}_path.png": paths_png(bench, name, _colours()) for name in _sequences(bench)}
+        more |= fuzzy_pictures(bench)
+        for name, picture in ({f"{key}.png": value for key, value in pictures.items()} | more).items():
+            _write(folder / name, picture)
         _write(folder / "bench.json", json.dumps(as_json(bench), indent=1).encode())
-        _write(folder / "bench.html", page(bench, pictures).encode())
+        _write(folder / "bench.html", page(bench, pictures, more).encode())
     except OSError as error:
         raise InputError(f"--out {folder}: cannot write there: {error.strerror or error}") from None
     return folder / "bench.html"
@@ -92,16 +98,25 @@ def panels(bench: Bench, sequence: str) -> list[Panel]:
 
 
 def _line(trial: Trial, values: Any, *, stepped: bool) -> Line:
-    place = list(CONTROLLERS).index(trial.controller)
-    colour = _COLOURS[place % len(_COLOURS)]
+    colour = _colours()[trial.controller]
     return Line(CONTROLLERS[trial.controller][0], trial.time_s, values, colour, stepped=stepped)
 
 
-def page(bench: Bench, pictures: Mapping[str, bytes]) -> str:
+def _colours() -> dict[str, str]:
+    return {name: _COLOURS[place % len(_COLOURS)] for place, name in enumerate(CONTROLLERS)}
+
+
+def page(bench: Bench, pictures: Mapping[str, bytes], more: Mapping[str, bytes] | None = None) -> str:
     """One HTML file that needs no network: the sentence, the ranking, tables, plots.
 
     The first sequence's plot can be zoomed; the others are pictures, which keeps the page small.
+
+    Args:
+        bench: results.
+        pictures: sequence -> picture of its signals.
+        more: name of a file -> picture: paths of the wrist stand with their sequence, the rest at the end.
     """
+    more = dict(more or {})
     title = _title(bench)
     parts = [
         f"<!doctype html><html lang='en'><head><meta charset='utf-8'><title>{html.escape(title)}</title>"
@@ -125,9 +140,18 @@ def page(bench: Bench, pictures: Mapping[str, bytes]) -> str:
         if sequence == _sequences(bench)[0]:
             parts.append(plots_html([panels(bench, sequence)]))
         else:
-            data = base64.b64encode(pictures[sequence]).decode()
-            parts.append(f"<img alt='{sequence}' style='max-width:100%' src='data:image/png;base64,{data}'>")
+            parts.append(_image(sequence, pictures[sequence]))
+        path = f"{sequence}_path.png"
+        if path in more:
+            parts.append(_image(path, more.pop(path)))
+    if more:
+        parts += ["<h2>Fuzzy controllers</h2>", *(_image(name, picture) for name, picture in more.items())]
     return "\n".join([*parts, "</body></html>"])
+
+
+def _image(name: str, picture: bytes) -> str:
+    data = base64.b64encode(picture).decode()
+    return f"<img alt='{html.escape(name)}' style='max-width:100%' src='data:image/png;base64,{data}'>"
 
 
 def _table(head: list[str], body: list[list[str]]) -> str:
