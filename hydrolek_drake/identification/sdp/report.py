@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import yaml
 
+from hydrolek_drake.control.sdp_model import thesis_data
 from hydrolek_drake.identification.sdp.identify import SdpIdentification
 from hydrolek_drake.identification.sdp.step_test import campaign_data
 from hydrolek_drake.identification.sdp.validation import KINDS, ValidationRun
@@ -91,16 +92,21 @@ def write_report(
 
 
 def picture(found: SdpIdentification, runs: Sequence[ValidationRun]) -> bytes:
-    """Rate and dead time against voltage (figure 6.3), and one validation run of each kind (figure 6.4)."""
+    """Rate and dead time against voltage (figures 6.3, 6.6, 6.22), a validation run of each kind (6.4, appendix E)."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(9.0, 6.5), layout="constrained")
-    grid: Any = figure.subplots(2, 2)
+    figure = Figure(figsize=(10.0, 8.5), layout="constrained")
+    grid: Any = figure.subplots(3, 2, height_ratios=[1.2, 1.0, 0.5])
+    control_sample_s = float(thesis_data()["inverse"]["sample"]["value"])
     level = np.array([step.level_V for step in found.steps])
     fine = np.linspace(level.min(), level.max(), 801)
-    rates, dead, *below = grid[0, 0], grid[0, 1], grid[1, 0], grid[1, 1]
+    rates, dead = grid[0]
     rates.plot(fine, found.model.rate(fine), label="exponential law (6.3)")
     rates.plot(fine, found.linear_model.rate(fine), linestyle="--", label="linear law (6.20)")
+    secants = [found.inverse.increment(float(v)) / control_sample_s for v in fine]
+    rates.plot(fine, secants, color="#555555", linewidth=0.8, label="inverse dead-zone's secants (6.4)")
+    slowest, fastest = found.model.saturation_deg_per_s
+    rates.set_ylim(1.3 * slowest, 1.3 * fastest)
     rates.plot(
         level, [step.rate_deg_per_s for step in found.steps], "o", label="step tests", fillstyle="none"
     )
@@ -110,16 +116,21 @@ def picture(found: SdpIdentification, runs: Sequence[ValidationRun]) -> bytes:
     dead.axhline(found.model.delay_samples * found.model.sample_s, linestyle="--", label="used")
     dead.set(xlabel="voltage [V]", ylabel="dead time [s]", ylim=(0.0, None))
     dead.legend(fontsize=8)
-    for axis, kind in zip(below, KINDS, strict=True):
+    for axis, under, kind in zip(grid[1], grid[2], KINDS, strict=True):
         run = next((run for run in runs if run.kind == kind), None)
         axis.set_visible(run is not None)
+        under.set_visible(run is not None)
         if run is not None:
             time = np.arange(len(run.voltage_V)) * found.model.sample_s
             axis.plot(time, run.machine_deg, label="machine", linewidth=0.9)
             axis.plot(time, run.model_deg, label="SDP model", linewidth=0.9)
             axis.set_title(f"{kind}: {run.mean_squared_error:.3g} deg²", fontsize=9)
-            axis.set(xlabel="time [s]", ylabel="angle [deg]")
+            axis.set_ylabel("angle [deg]")
             axis.legend(fontsize=8)
+            axis.sharex(under)
+            axis.tick_params(labelbottom=False)
+            under.plot(time, run.voltage_V, linewidth=0.6, color="#555555")
+            under.set(xlabel="time [s]", ylabel="voltage [V]")
     for axis in grid.flat:
         axis.grid(alpha=0.25)
     figure.suptitle(f"SDP model of {found.joint}", fontsize=10)
