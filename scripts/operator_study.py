@@ -46,6 +46,7 @@ from hydrolek_drake.workcell.loose_pipe import clasped
 from hydrolek_drake.workcell.pipe import make_pipe, workcell_entries
 from hydrolek_drake.workcell.scene import home_posture
 from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
+from hydrolek_drake.yaml_files import package_yaml
 
 OPERATORS = ("inexperienced", "experienced")
 CLICKS = 5  # snapshot, object, grasp, cut, confirmation
@@ -305,6 +306,10 @@ def main() -> None:
         draft.write_text(json.dumps(figures, indent=1) + "\n")
         draft.rename(out)  # what is measured is kept, however it ends
     print(json.dumps(figures["summary"], indent=1), f"\nfigures: {out}")
+    printed = package_yaml("hydrolek_drake.teleop", "thesis_operators.yaml")
+    for name in OPERATORS:
+        times = {way: printed[name][way] for way in ("joystick", "assisted")}
+        print(f"{printed['source']}: {name}, seconds: {json.dumps(times)}")
 
 
 if __name__ == "__main__":

@@ -10,6 +10,8 @@ from hydrolek_drake.control.bench import Bench, JointMeasures, Trial, bench_on_m
 from hydrolek_drake.control.bench_report import as_json, page
 from hydrolek_drake.control.bench_tables import MEASURES, rows, tool_rows
 from hydrolek_drake.control.metrics import StepMeasures
+from hydrolek_drake.control.sdp_model import thesis_model
+from hydrolek_drake.control.sequences import sequence_data
 from hydrolek_drake.control.thesis_tables import (
     GRASP_TABLES,
     JOINTS,
@@ -155,3 +157,25 @@ def test_the_linear_model_swings_more_with_its_own_inverse_in_print_and_here(lin
     assert theirs["j4_linear"] > 3.0 * theirs["j4"]
     (exponential,) = bench_on_models([name], ["step"]).trials
     assert linear[name].switching > 3.0 * exponential.joints["j4"].switching
+
+
+@pytest.fixture(scope="module")
+def grasp():
+    return bench_on_models(["pip_forward_a", "pip_forward_b", "pip_forward_c"], ["grasp"])
+
+
+@pytest.mark.parametrize("tuning", "abc")
+def test_the_forward_path_of_joint_2_in_the_grasp_of_g_5(grasp, tuning):
+    """The reconstructed first step of 16.9 deg: rise within 1 %, overshoot within half a point."""
+    name = f"pip_forward_{tuning}"
+    measured, theirs = grasp.trial(name, "grasp").joints["j2"].step, GRASP_TABLES[name]
+    assert measured.rise_s == pytest.approx(theirs["rise_s"]["j2"], rel=0.01)
+    assert measured.overshoot_percent == pytest.approx(theirs["overshoot_percent"]["j2"], abs=0.5)
+
+
+def test_joint_3s_first_step_of_the_grasp_is_smaller_than_reconstructed():
+    """15.5 deg in G.5's 0.286 s, from 10 to 90 %, would be faster than the joint's saturation."""
+    data = sequence_data()["grasp"]
+    size = abs(data["before"]["j3"] - data["from"]["j3"])
+    rate = 0.8 * size / GRASP_TABLES["pip_idz_b"]["rise_s"]["j3"]
+    assert rate > 1.2 * max(map(abs, thesis_model("j3").saturation_deg_per_s))
