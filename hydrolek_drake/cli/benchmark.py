@@ -17,6 +17,7 @@ def benchmark(
 
     from hydrolek_drake.benchmark.measure import measure
     from hydrolek_drake.cli.output import console, progress
+    from hydrolek_drake.files import write_results
 
     output = console()
     with progress("measuring") as tell:
@@ -40,7 +41,5 @@ def benchmark(
         soft_wrap=True,
     )
     if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
-        draft = out / "benchmark.json.part"
-        draft.write_text(json.dumps(figures, indent=1) + "\n")
-        output.print(f"figures: {draft.rename(out / 'benchmark.json')}")
+        (written,) = write_results(out, {"benchmark.json": json.dumps(figures, indent=1) + "\n"})
+        output.print(f"figures: {written}", markup=False, soft_wrap=True)

@@ -23,7 +23,9 @@ def main() -> int:
     many.add_argument("--minutes", type=float, help="how long altogether; 10 if there is no --count")
     many.add_argument("--count", type=int, help="how many inputs for each target")
     parser.add_argument("--target", action="append", choices=list(TARGETS), help="one of them (repeatable)")
-    parser.add_argument("--seed", type=int, default=int(time.time()), help="of the inputs; a new one by default")
+    parser.add_argument(
+        "--seed", type=int, default=int(time.time()), help="of the inputs; a new one by default"
+    )
     parser.add_argument("--first", type=int, default=0, help="number of the first input")
     parser.add_argument("--workers", type=int, default=1, help="targets at a time")
     parser.add_argument("--out", type=Path, default=Path("out/fuzz"), help="folder for inputs that failed")

@@ -148,7 +148,9 @@ def run(
     index, last = first, None if count is None else first + count
     try:
         while (last is None or index < last) and (seconds is None or time.monotonic() - began < seconds):
-            index = _until_it_ends(outcome, index, last, None if seconds is None else began + seconds, place, tell)
+            index = _until_it_ends(
+                outcome, index, last, None if seconds is None else began + seconds, place, tell
+            )
     finally:
         shutil.rmtree(place, ignore_errors=True)
         outcome.seconds = time.monotonic() - began
@@ -199,7 +201,9 @@ def _failure(index: int, told: dict) -> Failure:
         status = told["ended"]
         what = signal.Signals(-status).name if status < 0 else f"exit status {status}"
         ours = [line.strip() for line in told["errors"].splitlines() if "hydrolek_drake" in line]
-        return Failure(index, f"crash {ours[0] if ours else ''}", f"the process ended: {what}", told["errors"])
+        return Failure(
+            index, f"crash {ours[0] if ours else ''}", f"the process ended: {what}", told["errors"]
+        )
     return Failure(index, told["where"], told["failed"], told["trace"])
 
 

@@ -1,6 +1,7 @@
 """All targets."""
 
+from fuzzing.recording_targets import RECORDING_TARGETS
 from fuzzing.target import Target
 from fuzzing.yaml_targets import YAML_TARGETS
 
-TARGETS: dict[str, Target] = {target.name: target for target in (*YAML_TARGETS,)}
+TARGETS: dict[str, Target] = {target.name: target for target in (*RECORDING_TARGETS, *YAML_TARGETS)}

@@ -12,28 +12,32 @@ _MARK = "rawtext{}rawtext"
 
 VALUES: tuple[Any, ...] = (
     None, True, False, 0, 1, -1, 2**31, 2**63 - 1, -(2**63), 0.0, -0.0, 1e-300, 1e300, -1e300, 5e-324,
-    float("inf"), float("-inf"), float("nan"), "", " ", "0", "1", "-1", "1e999", "nan", "inf", "-inf", "1_0", "0x10",
-    "none", "null", "x" * 300, "a.b", "a/b", "../..", "/", "é", "𝛑", "٣", "% s", "{0}", "%s", "$HOME", "~",
-    [], {}, [[]], [None], [0, 0], [1, 2, 3], {"value": 1}, {"a": {"b": {}}}, ["1 s", "2 s"],
+    float("inf"), float("-inf"), float("nan"), "", " ", "0", "1", "-1", "1e999", "nan", "inf", "-inf", "1_0",
+    "0x10", "none", "null", "x" * 300, "a.b", "a/b", "../..", "/", "é", "𝛑", "٣", "% s", "{0}", "%s", "$HOME",
+    "~", [], {}, [[]], [None], [0, 0], [1, 2, 3], {"value": 1}, {"a": {"b": {}}}, ["1 s", "2 s"],
 )  # fmt: skip
 UNITS = (
-    "m", "s", "deg", "rad", "Pa", "MPa", "V", "kg", "N m", "1", "%", "", " ", "m^9^9", "m^99", "m**2", "degC", "dB",
-    "m/s/s", "(m", "m)", "m**(2)", "1/m", "/", "*", "^", "m m m m", "yottam", "m_per_s", "5 m", "m^-0.5", "µm", "°",
-    "m^0", "lambda", "m+m", "[m]", "inch", "furlong", "e", "pi", "hbar", "delta_degC", "°C", "m^0.33333",
+    "m", "s", "deg", "rad", "Pa", "MPa", "V", "kg", "N m", "1", "%", "", " ", "m^9^9", "m^99", "m**2", "degC",
+    "dB", "m/s/s", "(m", "m)", "m**(2)", "1/m", "/", "*", "^", "m m m m", "yottam", "m_per_s", "5 m", "m^-0.5",
+    "µm", "°", "m^0", "lambda", "m+m", "[m]", "inch", "furlong", "e", "pi", "hbar", "delta_degC", "°C",
+    "m^0.33333",
 )  # fmt: skip
 QUANTITIES = (
-    "1 s", "0 s", "-1 s", "1e300 s", "1e-300 s", "nan s", "inf V", "1 V", "1 m", "1 deg", "5", "5 parsec", "1e999 V", "V",
-    "1 V V", "1 V^2/V", "100 %", "101 %", "-100 %", "1e5 s", "1 1 s", ".5 V", "5. V", "+1 V", "--1 V", "0x10 V", "1e V",
+    "1 s", "0 s", "-1 s", "1e300 s", "1e-300 s", "nan s", "inf V", "1 V", "1 m", "1 deg", "5", "5 parsec",
+    "1e999 V", "V", "1 V V", "1 V^2/V", "100 %", "101 %", "-100 %", "1e5 s", "1 1 s", ".5 V", "5. V", "+1 V",
+    "--1 V", "0x10 V", "1e V",
 )  # fmt: skip
 RAW = (
-    "!!float x", "!!int x", "!!int ''", "!!bool x", "!!timestamp x", "!!timestamp 2026-13-45", "!!binary x", "!!null x",
-    "!!set {a}", "!!omap [a: 1]", "!!str 1", "!!float 1", "!!int 1.5", "!x y", "!!python/name:os.system x", "!<x> y",
-    "2026-13-45", "2026-11-24", "2026-11-24T25:61:61Z", "9" * 30, "9" * 5000, "0b" + "1" * 70, "0o7", "017", "1:30",
-    "1:99:99.5", "*undefined", "&a [*a]", "&a {b: *a}", "<<", "{<<: x}", "{<<: [{a: 1}, 2]}", "{? [a] : b}", "{? {a: b}}",
-    "{a, a}", "{1: 2, 1: 3}", "{~: 1}", "{yes: 1, true: 2}", "[" * 50 + "]" * 50, "[" * 3000, "{a: " * 60 + "}" * 60,
-    '"\\0"', '"\\x1b[2J"', '"\\ud800"', '"\\q"', '"', "'", "|", ">", "|9", ">-\n  x", "%", "@x", "`x", "- x", "? x", ": x",
-    "x: y: z", "# x", "---", "...", "--- x\n---\n", "[a", "{a", "]", "}", "\tx", "&a", "&a &b x", "!!map []", "!!seq {}",
-    "=", "~", "yes", "on", "off", ".inf", "-.inf", ".nan", "+.5", "1_000", "1__0_", "._", "0.1_", "1e5", "1.e5", "1.0e+400",
+    "!!float x", "!!int x", "!!int ''", "!!bool x", "!!timestamp x", "!!timestamp 2026-13-45", "!!binary x",
+    "!!null x", "!!set {a}", "!!omap [a: 1]", "!!str 1", "!!float 1", "!!int 1.5", "!x y",
+    "!!python/name:os.system x", "!<x> y", "2026-13-45", "2026-11-24", "2026-11-24T25:61:61Z", "9" * 30,
+    "9" * 5000, "0b" + "1" * 70, "0o7", "017", "1:30", "1:99:99.5", "*undefined", "&a [*a]", "&a {b: *a}", "<<",
+    "{<<: x}", "{<<: [{a: 1}, 2]}", "{? [a] : b}", "{? {a: b}}", "{a, a}", "{1: 2, 1: 3}", "{~: 1}",
+    "{yes: 1, true: 2}", "[" * 50 + "]" * 50, "[" * 3000, "{a: " * 60 + "}" * 60, '"\\0"', '"\\x1b[2J"',
+    '"\\ud800"', '"\\q"', '"', "'", "|", ">", "|9", ">-\n  x", "%", "@x", "`x", "- x", "? x", ": x", "x: y: z",
+    "# x", "---", "...", "--- x\n---\n", "[a", "{a", "]", "}", "\tx", "&a", "&a &b x", "!!map []", "!!seq {}",
+    "=", "~", "yes", "on", "off", ".inf", "-.inf", ".nan", "+.5", "1_000", "1__0_", "._", "0.1_", "1e5", "1.e5",
+    "1.0e+400",
 )  # fmt: skip
 
 
@@ -109,7 +113,11 @@ def damaged_text(text: str, rng: np.random.Generator) -> str:
                 lines[place] = "\t" + line
             case "inside":
                 at = int(rng.integers(len(line) + 1))
-                lines[place] = line[:at] + str(rng.choice([*RAW, *VALUES[16:20], ":", ",", "\x00", "\u2028", "\ufeff"])) + line[at:]
+                lines[place] = (
+                    line[:at]
+                    + str(rng.choice([*RAW, *VALUES[16:20], ":", ",", "\x00", "\u2028", "\ufeff"]))
+                    + line[at:]
+                )
             case "join":
                 if place + 1 < len(lines):
                     lines[place : place + 2] = [line + lines[place + 1]]

@@ -2,23 +2,27 @@
 
 import functools
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import yaml
+
 from fuzzing.byte_damage import damaged
 from fuzzing.target import Input, Target
 from fuzzing.tree_damage import damaged_text, damaged_tree, words_of
-
 from hydrolek_drake.control.designed import design_controller, read_model, write_designed
 from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.records import JOINT_STAGES, SHARED_STAGES
 from hydrolek_drake.rigs import built_in_rigs, load_rig
+from hydrolek_drake.rollout.rollout import roll_out
+from hydrolek_drake.runs.running import run_scenario
 from hydrolek_drake.station.scenario import load_scenario, scenario_files
 
 _NAME = "mine.yaml"
+_STEPS = 5  # that what was read has to bear: values that are possible one by one
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 _RIGS = (
@@ -53,11 +57,12 @@ _SCENARIOS = (
     "schema: 1\nrig: joint_bench\nduration: 1 s\ncommand: {kind: recording, path: run.csv}\n",
 )
 _MODELS = (
-    "joint: j2\nalpha: [-0.18, 0.62, -1.09, 0.22, 0.98, 1.05]\nsample_s: 0.01\ndelay_samples: 6\nrange_deg: [-10, 60]\n",
+    "joint: j2\nalpha: [-0.18, 0.62, -1.09, 0.22, 0.98, 1.05]\nsample_s: 0.01\ndelay_samples: 6\n"
+    "range_deg: [-10, 60]\n",
     "alpha: [0.14, 0.13, -0.1, 0.1]\nbeta: [-0.2, -1.1, 0.2, 1.0, -2.6, 3.0]\nsample_s: 0.01\ndelay_samples: 6\n"
     "range_deg: [-60, 60]\n",
-    "schema: 1\njoint: j1\nmodel: {alpha: [-0.2, 0.6, -1.1, 0.2, 1.0, 1.0], beta: null, sample_s: 0.01, delay_samples: 3,\n"
-    "  range_deg: [-20, 20]}\n",
+    "schema: 1\njoint: j1\nmodel: {alpha: [-0.2, 0.6, -1.1, 0.2, 1.0, 1.0], beta: null, sample_s: 0.01,\n"
+    "  delay_samples: 3, range_deg: [-20, 20]}\n",
 )
 
 
@@ -109,7 +114,18 @@ def _made(texts: Callable[[], tuple[str, ...]], rng: np.random.Generator) -> Inp
 
 def _read_rig(path: Path) -> str:
     rig = load_rig(path)
-    rig.records()
+    records = rig.records()
+    step = rig.value("integration.longest_step")
+    for record in np.split(records, len(records)):
+        neutral = float(record["command"]["neutral"][0])
+        roll_out(
+            record,
+            np.array([0.0, 3.0 * step]),
+            np.array([neutral, neutral + 1.0]),
+            step * np.arange(_STEPS),
+            longest_step=step,
+            spool_steps=int(rig.value("integration.spool_steps")),
+        )
     again = path.with_name("again.yaml")
     again.write_text(yaml.dump(rig.as_tree(), Dumper=getattr(yaml, "CSafeDumper", yaml.SafeDumper)))
     try:
@@ -123,6 +139,10 @@ def _read_scenario(path: Path) -> str:
     scenario = load_scenario(path)
     times, values = scenario.command_table()
     assert np.isfinite(times).all() and np.isfinite(values).all(), "commands that are no numbers"
+    try:
+        run_scenario(replace(scenario, duration=min(scenario.duration, _STEPS * scenario.sizes.step)))
+    except InputError:
+        return "diverged"
     return "read"
 
 

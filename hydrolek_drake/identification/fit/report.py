@@ -5,6 +5,7 @@ from pathlib import Path
 
 import yaml
 
+from hydrolek_drake.files import write_results
 from hydrolek_drake.identification.fit.fitting import RigFit
 
 AT_NOISE = 1.05
@@ -49,7 +50,6 @@ def _judged(over_noise: float) -> str:
 
 def write_fit(fitted: RigFit, folder: Path) -> list[Path]:
     """Write `rig_fitted.yaml` and `fit.json`, each when complete."""
-    folder.mkdir(parents=True, exist_ok=True)
     rows = fitted.intervals()
     content = {
         "method": fitted.method,
@@ -67,9 +67,4 @@ def write_fit(fitted: RigFit, folder: Path) -> list[Path]:
         "rig_fitted.yaml": yaml.safe_dump(fitted.rig.as_tree(), sort_keys=False, allow_unicode=True),
         "fit.json": json.dumps(content, indent=1) + "\n",
     }
-    written = []
-    for name, text in texts.items():
-        draft = folder / f"{name}.part"
-        draft.write_text(text, encoding="utf-8")
-        written.append(draft.rename(folder / name))
-    return written
+    return write_results(folder, texts)
