@@ -6,6 +6,7 @@ from functools import cache
 from typing import Any
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.unit_memory import remember, remembered
 
 _LONGEST = 60
 _TOKEN = re.compile(
@@ -38,6 +39,9 @@ def si_factor(unit: str, si_unit: str) -> float:
         raise InputError(f"a unit is missing; {wanted}")
     if not _is_plain(unit):
         raise InputError(f"unit '{unit[:_LONGEST]}' is not known; {wanted}")
+    known = remembered(unit, si_unit)
+    if known is not None:
+        return known
     import pint
 
     registry = _registry()
@@ -52,6 +56,7 @@ def si_factor(unit: str, si_unit: str) -> float:
         raise InputError(f"unit '{unit}' is not known; {wanted}") from None
     if zero != 0.0 or not 0.0 < one < math.inf:
         raise InputError(f"unit '{unit}' is not a multiple of another one; {wanted}")
+    remember(unit, si_unit, one)
     return one
 
 

@@ -3,13 +3,16 @@
 import math
 import os
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hydrolek_drake.cli.inputs import refuse_twice, rig_and_recordings
-from hydrolek_drake.cli.settings import SetOption
+from hydrolek_drake.cli.settings import ConfirmOption, SetOption
 from hydrolek_drake.errors import InputError
+
+if TYPE_CHECKING:
+    from hydrolek_drake.replay.confirmation import Confirmation
 
 
 def diagnose(
@@ -33,6 +36,7 @@ def diagnose(
         float | None,
         typer.Option(metavar="MINUTES", help="end the search then, with what is known by that time"),
     ] = None,
+    confirm: ConfirmOption = True,
     set_: SetOption = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="folder for report, fitted rig and residuals")
@@ -78,11 +82,19 @@ def diagnose(
                 raise InputError(
                     f"--at-most {at_most:g}: ended before anything could be told; give it longer"
                 ) from None
+        confirmed: list[Confirmation] = []
+        if confirm and done.bench is not None and INTERRUPTED not in done.reasons:
+            from hydrolek_drake.replay.confirmation import confirm as run_confirmation
+
+            told = held or [each if between is None else each.between(*between) for each in train]
+            confirmed = run_confirmation(done.fitted_rig(), told, say)
         if out is not None:
             tell("writing the report ...")
-            page = write_report(done, out)
+            page = write_report(done, out, confirmed)
     for line in summary(done):
         output.print(line, soft_wrap=True)
+    for each in confirmed:
+        output.print(each.sentence(), markup=False, soft_wrap=True)
     if out is not None:
         output.print(f"\nreport: {page}", markup=False, soft_wrap=True)
     if INTERRUPTED in done.reasons and not limit.reached:

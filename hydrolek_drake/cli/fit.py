@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from hydrolek_drake.cli.inputs import chosen, refuse_twice, rig_and_recordings
-from hydrolek_drake.cli.settings import SetOption
+from hydrolek_drake.cli.settings import ConfirmOption, SetOption
 
 
 def fit(
@@ -39,6 +39,11 @@ def fit(
         list[str] | None,
         typer.Option(metavar="PATH", help="also the profile likelihood of this parameter (repeatable)"),
     ] = None,
+    plant: Annotated[
+        str,
+        typer.Option(help="rollout: compiled; diagram: the Drake diagram itself, hundreds of times slower"),
+    ] = "rollout",
+    confirm: ConfirmOption = True,
     set_: SetOption = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="folder for rig_fitted.yaml, fit.json, checkpoint")
@@ -54,11 +59,12 @@ def fit(
     from rich.table import Table
 
     from hydrolek_drake.cli.output import console
-    from hydrolek_drake.identification.choices import LOSSES, METHODS
+    from hydrolek_drake.identification.choices import LOSSES, METHODS, PLANTS
 
     chosen("method", method, METHODS)
     chosen("norm", norm, ("1", "2", "inf"))
     chosen("loss", loss, LOSSES)
+    chosen("plant", plant, PLANTS)
     refuse_twice([*recordings, *(holdout or [])])
     loaded, (read, held) = rig_and_recordings(rig, set_, recordings, holdout)
 
@@ -80,6 +86,7 @@ def fit(
             p=float(norm),
             segments=segments,
             loss=loss,
+            plant=plant,
             seed=seed,
             workers=workers,
             cluster=cluster,
@@ -102,6 +109,15 @@ def fit(
             output.print(f"wrote {file}", markup=False, soft_wrap=True)
     if fitted.interrupted:
         raise KeyboardInterrupt
+    if confirm:
+        from hydrolek_drake.replay.confirmation import confirm as run_confirmation
+
+        with progress.status("Drake diagram") as status:
+            confirmed = run_confirmation(fitted.rig, held or read, status.update)
+        for each in confirmed:
+            output.print(each.sentence(), markup=False, soft_wrap=True)
+        if out is not None:
+            write_fit(fitted, out, confirmed)
     if profiled:
         with progress.status("profile likelihood") as status:
             profiles = profiles_of(fitted, read, profiled, status.update)

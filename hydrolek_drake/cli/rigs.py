@@ -22,7 +22,7 @@ def rigs(
 ) -> None:
     """List the built-in rigs, or one rig's parameters with value, unit, range and source."""
     from hydrolek_drake.cli.output import console
-    from hydrolek_drake.rigs import built_in_rigs, load_rig
+    from hydrolek_drake.rigs import built_in_titles, load_rig
 
     out = console()
     if name is None:
@@ -31,8 +31,8 @@ def rigs(
         table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
         table.add_column("name", no_wrap=True)
         table.add_column("machine")
-        for built_in in built_in_rigs():
-            table.add_row(built_in, load_rig(built_in).title)
+        for built_in, title in built_in_titles().items():
+            table.add_row(built_in, title)
         out.print(table)
         return
     rig = load_rig(name, parse_settings(set_))

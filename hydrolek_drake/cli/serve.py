@@ -47,9 +47,6 @@ def serve(
 
     from hydrolek_drake.cli.output import console as output
     from hydrolek_drake.teleop.access import SHORTEST_TOKEN, is_loopback, new_token
-    from hydrolek_drake.teleop.controllers.adapter import load_adapter
-    from hydrolek_drake.teleop.controllers.serving import Clock, Pacer, serve_arms
-    from hydrolek_drake.teleop.link.server import SetpointServer
 
     logging.getLogger("drake").setLevel(logging.WARNING)
     if plant not in ("full", "simple"):
@@ -66,6 +63,11 @@ def serve(
         from hydrolek_drake.rigs import load_rig
 
         machine_rig = load_rig(rig, parsed)
+
+    from hydrolek_drake.teleop.controllers.adapter import load_adapter
+    from hydrolek_drake.teleop.controllers.serving import Clock, Pacer, serve_arms
+    from hydrolek_drake.teleop.link.server import SetpointServer
+
     arms = None if adapter is None else load_adapter(adapter)
     if arms is None:
         with output().status("starting the plant"):

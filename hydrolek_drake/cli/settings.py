@@ -16,6 +16,14 @@ SetOption = Annotated[
     ),
 ]
 
+ConfirmOption = Annotated[
+    bool,
+    typer.Option(
+        "--confirm/--no-confirm",
+        help="run what was found through the Drake diagram too, a quarter as long as the recordings take",
+    ),
+]
+
 
 def parse_settings(pairs: Iterable[str] | None) -> dict[str, str]:
     """Path -> value as text.

@@ -80,13 +80,7 @@ def teleop(
 
     from hydrolek_drake.cli.output import console as output
     from hydrolek_drake.teleop.access import SHORTEST_TOKEN, is_loopback, page_address
-    from hydrolek_drake.teleop.console.server import Console
-    from hydrolek_drake.teleop.controllers.plant_process import PlantProcess
-    from hydrolek_drake.teleop.machine import Machine
     from hydrolek_drake.teleop.trial import TrialLog
-    from hydrolek_drake.workcell.pipe import make_pipe
-    from hydrolek_drake.workcell.scene import home_posture
-    from hydrolek_drake.workcell.table import make_loose_pipe, make_table
 
     logging.getLogger("drake").setLevel(logging.WARNING)
     if plant not in ("full", "simple"):
@@ -101,6 +95,14 @@ def teleop(
     if settings and (plant == "simple" or address is not None):
         raise InputError("teleop: --set is the full plant's; leave it out")
     _check_camera(camera, pipe_point, pipe_axis, loose)
+
+    from hydrolek_drake.teleop.console.server import Console
+    from hydrolek_drake.teleop.controllers.plant_process import PlantProcess
+    from hydrolek_drake.teleop.machine import Machine
+    from hydrolek_drake.workcell.pipe import make_pipe
+    from hydrolek_drake.workcell.scene import home_posture
+    from hydrolek_drake.workcell.table import make_loose_pipe, make_table
+
     table = make_table() if loose else None
     pipe = None
     if camera == "sim":

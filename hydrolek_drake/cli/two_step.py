@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrolek_drake.cli.inputs import refuse_twice, rig_and_recordings
-from hydrolek_drake.cli.settings import SetOption
+from hydrolek_drake.cli.settings import ConfirmOption, SetOption
 from hydrolek_drake.errors import InputError
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ def two_step(
     polish: Annotated[
         bool, typer.Option(help="fit all parameters together at the end, which the thesis does not")
     ] = True,
+    confirm: ConfirmOption = True,
     set_: SetOption = None,
     out: Annotated[
         Path | None,
@@ -89,6 +90,13 @@ def two_step(
             output.print(f"wrote {path}", markup=False, soft_wrap=True)
     if found.interrupted:
         raise KeyboardInterrupt
+    if confirm:
+        from hydrolek_drake.replay.confirmation import confirm as run_confirmation
+
+        with progress.status("Drake diagram") as status:
+            confirmed = run_confirmation(found.rig, held or fitted, status.update)
+        for each in confirmed:
+            output.print(each.sentence(), markup=False, soft_wrap=True)
 
 
 def _simulated(rig: "Rig", seed: int, out: Path | None) -> "tuple[Rig, list[Recording], list[Recording]]":

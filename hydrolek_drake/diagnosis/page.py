@@ -13,6 +13,7 @@ from hydrolek_drake.diagnosis.report_json import MOST_LISTED, detectable, effect
 from hydrolek_drake.diagnosis.told_numbers import quantity, with_interval
 from hydrolek_drake.diagnosis.words import headline, off_zero_sentences
 from hydrolek_drake.identification.thinning import STEPS
+from hydrolek_drake.replay.confirmation import Confirmation
 from hydrolek_drake.replay.display import ratio, three_digits
 from hydrolek_drake.replay.page import STYLE
 from hydrolek_drake.replay.panels import Panel
@@ -34,8 +35,13 @@ _STYLE = """
 """
 
 
-def page(diagnosis: Diagnosis) -> str:
-    """The whole page."""
+def page(diagnosis: Diagnosis, confirmed: Sequence[Confirmation] = ()) -> str:
+    """The whole page.
+
+    Args:
+        diagnosis: the outcome.
+        confirmed: the fitted rig on the Drake Diagram, where that was run.
+    """
     title = f"Diagnosis of {diagnosis.rig.name}"
     colour = COLOURS[diagnosis.verdict]
     parts = [
@@ -57,6 +63,7 @@ def page(diagnosis: Diagnosis) -> str:
     parts += [
         _effects(diagnosis),
         _fit(diagnosis),
+        *(f"<p>{html.escape(each.sentence())}</p>" for each in confirmed),
         "<h2>Measured, before and after</h2>",
         _legend(pictures),
         plots_html(pictures),

@@ -1,6 +1,7 @@
 """What a diagnosis leaves in its folder: report, page, fitted rig, residuals."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,13 +15,19 @@ from hydrolek_drake.diagnosis.words import headline
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.files import write_whole
 from hydrolek_drake.recordings import write_signals
+from hydrolek_drake.replay.confirmation import Confirmation
 from hydrolek_drake.replay.picture import plots_png
 
 
-def write_report(diagnosis: Diagnosis, folder: Path) -> Path:
+def write_report(diagnosis: Diagnosis, folder: Path, confirmed: Sequence[Confirmation] = ()) -> Path:
     """Write `report.json`, `.html`, `.png`, `rig_fitted.yaml` and `residuals_*.parquet`, each when complete.
 
     Bad data leave only the first two. `next_experiment.csv` is the command of a proposed recording.
+
+    Args:
+        diagnosis: the outcome.
+        folder: where; made if it is missing.
+        confirmed: the fitted rig on the Drake Diagram, where that was run.
 
     Returns:
         Path of the page.
@@ -30,7 +37,7 @@ def write_report(diagnosis: Diagnosis, folder: Path) -> Path:
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        tree = as_json(diagnosis)
+        tree = as_json(diagnosis) | {"diagram": [each.as_json() for each in confirmed]}
         if diagnosis.bench is not None:
             rig = diagnosis.fitted_rig().as_tree()
             write_whole(folder / "rig_fitted.yaml", yaml.safe_dump(rig, sort_keys=False, allow_unicode=True))
@@ -45,7 +52,7 @@ def write_report(diagnosis: Diagnosis, folder: Path) -> Path:
                 {f"{joint}.command": diagnosis.proposal.command},
                 {f"{joint}.command": "V"},
             )
-        write_whole(folder / "report.html", page(diagnosis))
+        write_whole(folder / "report.html", page(diagnosis, confirmed))
         write_whole(folder / "report.json", json.dumps(tree, indent=1, allow_nan=False))
     except OSError as error:
         raise InputError(f"--out {folder}: cannot write there: {error.strerror or error}") from None

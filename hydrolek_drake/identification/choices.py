@@ -3,5 +3,8 @@
 METHODS = ("ga", "nsga2", "de", "cma", "least-squares")
 """Searches."""
 
+PLANTS = ("rollout", "diagram")
+"""Executions of the plant that a fit can run against."""
+
 LOSSES = ("linear", "soft_l1", "huber", "cauchy")
 """Robust losses of the least squares."""

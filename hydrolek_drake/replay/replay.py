@@ -1,7 +1,7 @@
 """A rig's model driven by a recorded command."""
 
 import time as clock
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,7 +51,12 @@ class Replay:
     seconds: float
 
 
-def replay(rig: Rig, recording: Recording, between: tuple[float, float] | None = None) -> Replay:
+def replay(
+    rig: Rig,
+    recording: Recording,
+    between: tuple[float, float] | None = None,
+    by: Callable[..., dict[str, Moved]] = moved,
+) -> Replay:
     """Drive every joint of the rig that has a command in the recording.
 
     Joints that share the pump or an arm run together, every other one on its own, from rest in balance, with recorded
@@ -63,6 +68,8 @@ def replay(rig: Rig, recording: Recording, between: tuple[float, float] | None =
         recording: read with the rig's `columns`.
         between: start and end [s] in the recording's own time; None for all of it. Commands before the
             start still act, as far as the transport delay reaches.
+        by: what drives the joints: the compiled rollout (`driving.moved`), or the Drake Diagram
+            (`by_diagram.moved_by_diagram`).
 
     Raises:
         InputError: no command for any joint, a command without a value, no position to compare with, or a
@@ -88,7 +95,7 @@ def replay(rig: Rig, recording: Recording, between: tuple[float, float] | None =
         notes += said
         under.append(Driven(joint, *_command_until(recording, key, window.time[0], window.time[-1]), start))
         commands[joint] = window.signal(key)
-    outcomes = moved(rig, under, window.time, _elsewhere(rig, window, driven))
+    outcomes = by(rig, under, window.time, _elsewhere(rig, window, driven))
     pairs: list[Pair] = []
     for joint, outcome in outcomes.items():
         if outcome.diverged:

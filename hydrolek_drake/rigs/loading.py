@@ -31,6 +31,11 @@ def built_in_rigs() -> dict[str, Path]:
     return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
 
 
+def built_in_titles() -> dict[str, str]:
+    """Name and title of every built-in rig, which is not loaded for that."""
+    return {name: str(_read(path)["title"]) for name, path in built_in_rigs().items()}
+
+
 def load_rig(name_or_path: str | Path, settings: Mapping[str, str] | None = None) -> Rig:
     """Load a rig by its built-in name or from a file.
 

@@ -35,7 +35,6 @@ from hydrolek_drake.rigs.keys import refuse_unknown
 from hydrolek_drake.rigs.rig import declaration
 from hydrolek_drake.station.commands import Command, parse_command
 from hydrolek_drake.station.fields import quantity, required
-from hydrolek_drake.station.simulation import command_source
 from hydrolek_drake.station.step_sizes import StepSizes
 from hydrolek_drake.yaml_files import parse_yaml, read_yaml
 
@@ -96,6 +95,8 @@ class Scenario:
 
     def command_source(self, seed: int | None = None) -> Any:
         """The system that plays the commands, to be built into a station."""
+        from hydrolek_drake.station.simulation import command_source  # Drake is loaded once a scenario is right
+
         return command_source(*self.command_table(seed))
 
 

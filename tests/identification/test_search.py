@@ -121,6 +121,7 @@ def test_a_journal_of_another_search_is_refused(tmp_path):
     ("arguments", "said"),
     [
         (("annealing", LOWER, UPPER, 10), "choose ga, nsga2, de, cma, least-squares"),
+        (("cma", LOWER[:1], UPPER[:1], 10), "two parameters or more"),
         (("de", UPPER, LOWER, 10), "a range is empty"),
         (("de", LOWER, UPPER, 0), "choose 1 or more"),
     ],

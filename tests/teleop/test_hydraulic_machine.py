@@ -42,14 +42,14 @@ def _until(condition, seconds=PATIENCE):
         time.sleep(0.02)
 
 
-def _watch(port):
+def _watch(plant):
     """A client that asks for signals alone, which opens no valve."""
     client = None
     limit = time.monotonic() + PATIENCE
     while client is None:
         assert time.monotonic() < limit
         time.sleep(0.05)
-        client = SetpointClient(port)
+        client = SetpointClient(plant.port, token=plant.token)
         try:
             client.signals()
         except InputError:  # the one before is still being missed
@@ -68,8 +68,8 @@ def _clock(client):
     return lambda: client.signals().time
 
 
-def _stands_still(port):
-    client = _watch(port)
+def _stands_still(plant):
+    client = _watch(plant)
     _pass(_clock(client), DEAD_TIME)
     np.testing.assert_array_equal(client.signals().voltage, 0.0)
     before = client.stop()
@@ -94,31 +94,31 @@ def _move(client, send, seconds=1.0):
     [b"hello\n", b"1,2,3\n", b"9" * 2000 + b"\n", b"RATE,1,2\n", b"RATE" + b",101" * 14 + b"\n", b"STOP\n"],
 )
 def test_a_bad_message_or_a_stop_closes_the_valves_of_a_moving_machine(plant, message):
-    client = _watch(plant.port)
+    client = _watch(plant)
     away = home_posture() + np.radians(4.0) * np.sign(home_posture()[0] - client.stop()[0] + 1e-9)
     assert _move(client, lambda: client.send(away)) > 1.0
     client._socket.sendall(message)
     time.sleep(0.1)
     client.close()
-    _stands_still(plant.port)
+    _stands_still(plant)
 
 
 def test_a_client_that_leaves_or_falls_silent_closes_the_valves_of_a_moving_machine(plant):
     deflection = np.zeros(14)
     for sign, leaves in ((30.0, True), (-30.0, False)):
         deflection[[0, 8]] = sign
-        client = _watch(plant.port)
+        client = _watch(plant)
         assert _move(client, lambda client=client: client.rate(deflection)) > 2.0
         if leaves:
             client.close()
         else:
             time.sleep(teleop_entries("link")["silence"])
             client.close()
-        _stands_still(plant.port)
+        _stands_still(plant)
 
 
 def test_asking_for_signals_is_no_sign_of_life(plant):
-    client = _watch(plant.port)
+    client = _watch(plant)
     deflection = np.zeros(14)
     deflection[0] = -20.0
     client.rate(deflection)
@@ -128,7 +128,7 @@ def test_asking_for_signals_is_no_sign_of_life(plant):
 
 
 def test_the_plant_keeps_to_the_clock_or_tells_its_pace(plant):
-    client = _watch(plant.port)
+    client = _watch(plant)
     begin, first = time.monotonic(), client.signals().time
     paces = []
     for _ in range(40):
@@ -155,7 +155,7 @@ def test_rates_as_text():
 
 
 def test_the_task_with_a_stop_and_a_resume_the_release_of_a_held_pipe_and_a_plant_that_dies(plant, plan):
-    client = _watch(plant.port)
+    client = _watch(plant)
     _move(client, lambda: client.send(home_posture()), 2.0)  # where the plan begins
     client.close()
     time.sleep(0.3)  # until the plant has noticed

@@ -11,13 +11,14 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.identification.choices import METHODS
+from hydrolek_drake.identification.choices import METHODS, PLANTS
 from hydrolek_drake.identification.fit.by_least_squares import by_least_squares
 from hydrolek_drake.identification.fit.rig_objective import RigObjective
 from hydrolek_drake.identification.genetic.settings import GeneticSettings
 from hydrolek_drake.identification.identifiability import Identifiability, identifiability
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet, free_of_joints, free_parameters
 from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.problem_on_diagram import ProblemOnDiagram
 from hydrolek_drake.identification.problem_together import problem_of
 from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.identification.search.cluster import ClusterWorkers
@@ -110,6 +111,7 @@ def fit_rig(
     segments: int = 8,
     settings: GeneticSettings | None = None,
     loss: str = "linear",
+    plant: str = "rollout",
     seed: int = 1,
     workers: int = 1,
     cluster: str | None = None,
@@ -131,6 +133,8 @@ def fit_rig(
         segments: of nsga2.
         settings: of the genetic algorithms; None for the thesis's.
         loss: of the least squares.
+        plant: one of `PLANTS`: the compiled rollout, or the Drake Diagram; on that least squares is a search with a
+            budget like the others.
         seed: of everything random.
         workers: processes for the evaluations; threads, for the least squares.
         cluster: address of a Dask scheduler, instead of processes.
@@ -147,15 +151,19 @@ def fit_rig(
     parameters = ParameterSet(rig, searched(rig, recordings, paths))
     training = [one for recording in recordings for one in experiments_of(rig, recording, signals)]
     held = [one for recording in holdout for one in experiments_of(rig, recording, signals)]
-    problem = problem_of(parameters, training)
-    if method == "least-squares" and (cluster is not None or overdue is not None):
+    if plant not in PLANTS:
+        raise InputError(f"--plant {plant}: unknown; choose {', '.join(PLANTS)}")
+    on_diagram = plant == "diagram"
+    problem = ProblemOnDiagram(parameters, training) if on_diagram else problem_of(parameters, training)
+    by_rollouts = method == "least-squares" and not on_diagram
+    if by_rollouts and (cluster is not None or overdue is not None):
         option = "--cluster" if cluster is not None else "--overdue"
         raise InputError(
             f"{option}: least-squares runs in threads of this process (--workers N) and cannot use it; "
             f"choose --method {', '.join(name for name in METHODS if name != method)}"
         )
     rng = np.random.default_rng(seed)
-    if method == "least-squares":
+    if by_rollouts:
         with ThreadPoolExecutor(workers) as threads:
             pool = threads if workers > 1 else None
             fit, evaluations, interrupted = by_least_squares(parameters, training, pool, rng, loss, progress)
@@ -167,7 +175,10 @@ def fit_rig(
         if checkpoint is not None:
             size = objective.size
             journal = Journal(
-                checkpoint, _belongs(rig, problem, method, seed, p, segments, settings), len(parameters), size
+                checkpoint,
+                _belongs(rig, problem, method, seed, p, segments, settings, plant),
+                len(parameters),
+                size,
             )
         ends = np.zeros(len(parameters)), np.ones(len(parameters))
         with _workers(objective, workers, cluster, overdue) as evaluate:
@@ -178,6 +189,7 @@ def fit_rig(
                 budget,
                 rng,
                 settings=settings,
+                loss=loss,
                 first=parameters.unit()[None],
                 evaluate=evaluate,
                 journal=journal,
@@ -188,7 +200,9 @@ def fit_rig(
         unit, evaluations, interrupted = found.point, found.evaluations, found.interrupted
         jacobian = problem.jacobian(unit)
     residuals = problem.residuals(unit)
-    judge = problem_of(parameters, held) if held else None
+    judge = None
+    if held:
+        judge = ProblemOnDiagram(parameters, held) if on_diagram else problem_of(parameters, held)
     return RigFit(
         method=method,
         rig=parameters.with_rig_values(unit),
@@ -229,6 +243,7 @@ def _belongs(
     p: float,
     segments: int,
     settings: GeneticSettings | None,
+    plant: str,
 ) -> dict[str, Any]:
     """What a checkpoint is bound to: the same search on the same data."""
     data = hashlib.sha256(rig.records().tobytes())
@@ -240,6 +255,7 @@ def _belongs(
         data.update(repr(free).encode())
     return {
         "method": method,
+        **({} if plant == "rollout" else {"plant": plant}),
         "seed": seed,
         "p": str(p),
         "segments": segments,

@@ -1,12 +1,14 @@
 """What a fit says and writes."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 import yaml
 
 from hydrolek_drake.files import write_results
 from hydrolek_drake.identification.fit.fitting import RigFit
+from hydrolek_drake.replay.confirmation import Confirmation
 
 AT_NOISE = 1.05
 """Rms over noise up to which a fit counts as having reached it."""
@@ -48,8 +50,14 @@ def _judged(over_noise: float) -> str:
     return f"the residuals are {over_noise:.3g} times the noise, so the model misses something"
 
 
-def write_fit(fitted: RigFit, folder: Path) -> list[Path]:
-    """Write `rig_fitted.yaml` and `fit.json`, each when complete."""
+def write_fit(fitted: RigFit, folder: Path, confirmed: Sequence[Confirmation] = ()) -> list[Path]:
+    """Write `rig_fitted.yaml` and `fit.json`, each when complete.
+
+    Args:
+        fitted: what was found.
+        folder: where; made if it is missing.
+        confirmed: the same on the Drake Diagram, where that was run.
+    """
     rows = fitted.intervals()
     content = {
         "method": fitted.method,
@@ -62,6 +70,7 @@ def write_fit(fitted: RigFit, folder: Path) -> list[Path]:
         },
         "confused": [list(pair) for pair in fitted.known.confused],
         "not_determined": list(fitted.known.blurred()),
+        "diagram": [each.as_json() for each in confirmed],
     }
     texts = {
         "rig_fitted.yaml": yaml.safe_dump(fitted.rig.as_tree(), sort_keys=False, allow_unicode=True),

@@ -132,6 +132,10 @@ def _check(method: str, lower: np.ndarray, upper: np.ndarray, budget: int, size:
         raise InputError("search: a range is empty; each lower end must lie below its upper end")
     if budget < 1:
         raise InputError(f"search: a budget of {budget} evaluations allows nothing; choose 1 or more")
+    if method == "cma" and lower.size < 2:
+        raise InputError(
+            "search: cma adapts a covariance and needs two parameters or more; choose de for one"
+        )
     if size > 1 and method != "nsga2":
         raise InputError(f"search: {method} takes one objective, not {size} segments; use nsga2")
 
