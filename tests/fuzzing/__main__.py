@@ -6,7 +6,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from fuzzing.runner import HANG_S, Outcome, keep, run
+from fuzzing.runner import HANG_S, Outcome, kinds_of_failure, run
 from fuzzing.targets import TARGETS
 
 _TOLD_EVERY = 10.0  # s
@@ -54,14 +54,20 @@ def main() -> int:
 
     def one(name: str) -> Outcome:
         return run(
-            name, arguments.seed, count=arguments.count, seconds=seconds, first=arguments.first, tell=tell
+            name,
+            arguments.seed,
+            count=arguments.count,
+            seconds=seconds,
+            first=arguments.first,
+            kept_in=arguments.out,
+            tell=tell,
         )
 
     failed = 0
     with ThreadPoolExecutor(arguments.workers) as pool:
         for outcome in pool.map(one, names):
             print(outcome.line(), flush=True)
-            for line in keep(outcome, arguments.out):
+            for line in kinds_of_failure(outcome, arguments.out):
                 print(f"  {line}", flush=True)
             failed += len(outcome.failures)
     return 1 if failed else 0

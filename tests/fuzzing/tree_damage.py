@@ -41,17 +41,35 @@ RAW = (
 )  # fmt: skip
 
 
-def damaged_tree(
-    tree: Any, words: Sequence[str], others: Sequence[Any], rng: np.random.Generator, most: int = 4
-) -> str:
-    """A tree with a few places changed, as YAML text.
+def damaged_tree(tree: Any, words: Sequence[str], others: Sequence[Any], rng: np.random.Generator) -> str:
+    """A tree with a few places changed, as YAML text; see `changed_tree`."""
+    changed, raw = changed_tree(tree, words, others, rng, RAW)
+    text = yaml.dump(changed, Dumper=_DUMPER, sort_keys=False, allow_unicode=True, width=10_000)
+    for number, each in enumerate(raw):
+        text = text.replace(_MARK.format(number), each)
+    return text
+
+
+def changed_tree(
+    tree: Any,
+    words: Sequence[str],
+    others: Sequence[Any],
+    rng: np.random.Generator,
+    raws: Sequence[str],
+    most: int = 4,
+) -> tuple[Any, list[str]]:
+    """A tree with a few places changed.
 
     Args:
         tree: content of a good file.
         words: that such files have: keys, names, choices.
         others: trees whose pieces may be put in.
         rng: says what.
+        raws: text that stands for itself once the tree is text.
         most: changes.
+
+    Returns:
+        The tree, in which `rawtext0rawtext` stands for the first of the raw texts, and those.
     """
     tree = copy.deepcopy(tree)
     raw: list[str] = []
@@ -65,13 +83,13 @@ def damaged_tree(
             p=[0.3, 0.1, 0.1, 0.1, 0.1, 0.05, 0.05, 0.2],
         ):
             case "value":
-                parent[key] = _value(key, words, raw, rng)
+                parent[key] = _value(key, words, raw, raws, rng)
             case "delete":
                 del parent[key]
             case "rename" if isinstance(parent, dict):
                 parent[_key(words, rng)] = parent.pop(key)
             case "add" if isinstance(parent, dict):
-                parent[_key(words, rng)] = _value(key, words, raw, rng)
+                parent[_key(words, rng)] = _value(key, words, raw, raws, rng)
             case "piece":
                 found = list(_places(others[rng.integers(len(others))]))
                 if found:
@@ -86,10 +104,7 @@ def damaged_tree(
             case "scale" if isinstance(parent[key], (int, float)):
                 factor = float(rng.choice([-1.0, 0.0, 1e-9, 0.5, 0.9, 1.1, 2.0, 1e9, 1e300]))
                 parent[key] = parent[key] * factor
-    text = yaml.dump(tree, Dumper=_DUMPER, sort_keys=False, allow_unicode=True, width=10_000)
-    for number, each in enumerate(raw):
-        text = text.replace(_MARK.format(number), each)
-    return text
+    return tree, raw
 
 
 def damaged_text(text: str, rng: np.random.Generator) -> str:
@@ -135,14 +150,16 @@ def words_of(trees: Sequence[Any]) -> list[str]:
     return list(found)
 
 
-def _value(key: Any, words: Sequence[str], raw: list[str], rng: np.random.Generator) -> Any:
+def _value(
+    key: Any, words: Sequence[str], raw: list[str], raws: Sequence[str], rng: np.random.Generator
+) -> Any:
     kind = rng.random()
     if key == "unit" and kind < 0.7:
         return str(rng.choice(UNITS))
     if kind < 0.35:
         return copy.deepcopy(VALUES[rng.integers(len(VALUES))])
     if kind < 0.55:
-        raw.append(str(rng.choice(RAW)))
+        raw.append(str(rng.choice(raws)))
         return _MARK.format(len(raw) - 1)
     if kind < 0.7:
         return str(rng.choice(QUANTITIES))
