@@ -16,7 +16,7 @@ import warnings
 from pathlib import Path
 
 from fuzzing.target import judged, put
-from fuzzing.targets import TARGETS
+from fuzzing.targets import target_named
 
 MOST_MEMORY = 3_000_000  # kB resident, beyond which an input is taken to have asked for too much
 
@@ -27,7 +27,7 @@ def main() -> None:
     faulthandler.enable()
     faulthandler.register(signal.SIGUSR1, all_threads=True)  # sent before a hanging process is ended
     warnings.simplefilter("ignore")
-    target, place = TARGETS[name], Path(folder)
+    target, place = target_named(name), Path(folder)
     told = sys.stdout
     sys.stdout = sys.stderr
     for each in target.seeds():  # loads and compiles all that is needed

@@ -344,6 +344,8 @@ def _mcap_bytes(messages: list[tuple[Any, ...]], definition: str = _JOINT_STATE,
     stream = io.BytesIO()
     writer = Writer(stream)
     if options:
+        stream.truncate(0)  # the first writer has begun the file already
+        stream.seek(0)
         writer._writer = McapWriter(stream, compression=CompressionType.NONE, **options)
         writer._writer.start(profile="ros2", library="here")
     schema = writer.register_msgdef("sensor_msgs/msg/JointState", definition)
@@ -427,7 +429,7 @@ def _seeds(name: str, files: Callable[[], list[bytes]]) -> Callable[[], list[Inp
     return lambda: [Input(name, data) for data in files()]
 
 
-RECORDING_TARGETS = (
+TARGETS = (
     Target("csv", _csv, _read, _csv_seeds),
     Target("parquet", _parquet, _read, _seeds("run.parquet", _parquet_files)),
     Target("tdms", _tdms, _read, _seeds("run.tdms", _tdms_files)),

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from fuzzing.target import put
-from fuzzing.targets import TARGETS
+from fuzzing.targets import target_named
 
 HANG_S = 10.0
 """An input that takes longer has made the reader hang."""
@@ -222,7 +222,7 @@ def _keep(outcome: Outcome, failure: Failure, folder: Path) -> None:
         return
     kept = _place_of(outcome, failure, folder)
     kept.mkdir(parents=True, exist_ok=True)
-    put(TARGETS[outcome.name].input(outcome.seed, failure.index), kept)
+    put(target_named(outcome.name).input(outcome.seed, failure.index), kept)
     again = f"scripts/fuzz --target {outcome.name} --seed {outcome.seed} --first {failure.index} --count 1"
     (kept / "failure.txt").write_text(f"{again}\n{failure.what}\n\n{failure.trace}\n")
 

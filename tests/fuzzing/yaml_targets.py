@@ -174,7 +174,7 @@ def _models() -> tuple[str, ...]:
     return _MODELS
 
 
-YAML_TARGETS = (
+TARGETS = (
     Target("rig", functools.partial(_made, _rig_texts), _read_rig, _seeds(_rig_texts)),
     Target(
         "scenario",
