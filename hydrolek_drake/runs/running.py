@@ -63,9 +63,12 @@ def run_scenario(
         on_progress: called with the simulated time now and then.
 
     Raises:
-        InputError: the simulation diverged, which a smaller step cures.
+        InputError: the simulation diverged, which a smaller step cures, or its numbers make no machine.
     """
-    station = make_scenario_station(scenario, seed, view)
+    try:
+        station = make_scenario_station(scenario, seed, view)
+    except RuntimeError as error:  # what Drake raises for masses and inertias that no body has
+        raise InputError(f"scenario {scenario.name}: its numbers make no machine: {error}") from None
     outcome: list[Run] = []
     begun = clock.perf_counter()
 

@@ -206,7 +206,9 @@ def _tdms_bytes(columns: dict[str, np.ndarray], rng: np.random.Generator, segmen
                         rng.choice([0.0, np.inf, 1e300]) if rng.random() < 0.8 else "x"
                     )
                 objects.append(
-                    ChannelObject(str(rng.choice(["j", "g", ""])), name or "x", pieces[part], properties)
+                    ChannelObject(
+                        str(rng.choice(["j", "g", ""])), name or "unnamed", pieces[part], properties
+                    )
                 )
             writer.write_segment([RootObject({"made": "here"}), *objects])
     return stream.getvalue()
@@ -322,7 +324,10 @@ def _hdf5_user_block(columns: dict[str, Any]) -> bytes:
             if place and place not in file:
                 try:
                     file.create_dataset(place, data=np.atleast_2d(values))
-                except ValueError:  # a group of that name, or a part of the name is a value already
+                except (
+                    ValueError,
+                    TypeError,
+                ):  # a group of that name, or a part of the name is a value already
                     continue
     stream.seek(0)
     stream.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(116) + bytes(8) + b"\x00\x02IM")

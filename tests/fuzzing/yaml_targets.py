@@ -102,7 +102,9 @@ def _made(texts: Callable[[], tuple[str, ...]], rng: np.random.Generator) -> Inp
     number = int(rng.integers(len(everything)))
     kind = rng.random()
     text = everything[number]
-    if kind < 0.75:
+    if texts is _scenario_texts and rng.random() < 0.4:
+        text = yaml.dump(_trees(texts)[number] | {"settings": _settings(rng)})
+    elif kind < 0.75:
         text = damaged_tree(_trees(texts)[number], _words(texts), _trees(texts), rng)
     if kind > 0.65:
         text = damaged_text(text, rng)
@@ -110,6 +112,23 @@ def _made(texts: Callable[[], tuple[str, ...]], rng: np.random.Generator) -> Inp
     if kind > 0.93:
         data = damaged(data, [each.encode() for each in everything], rng)
     return Input(_NAME, data)
+
+
+@functools.cache
+def _parameters() -> list[str]:
+    return list(load_rig("joint_bench").entries)
+
+
+def _settings(rng: np.random.Generator) -> dict[str, Any]:
+    """Values of a rig that are possible one by one, far from usual or not."""
+    rig = load_rig("joint_bench")
+    chosen = rng.choice(_parameters(), int(rng.integers(1, 4)))
+    factors = [0.0, 1e-300, 1e-9, 0.1, 0.9, 1.1, 10.0, 1e9, 1e300, -1.0]
+    return {
+        str(path): float(rng.choice([1.0, rig.entries[str(path)].value])) * float(rng.choice(factors))
+        for path in chosen
+        if np.isfinite(rig.entries[str(path)].value)
+    }
 
 
 def _read_rig(path: Path) -> str:
