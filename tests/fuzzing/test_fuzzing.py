@@ -62,6 +62,36 @@ FOUND = {
         STEPS % "[5.0e-324, 0], [1, 1 V]",
         "read",
     ),
+    "a plant step that is none": (
+        "scenario",
+        STEPS % "[1, 1 V]" + "integration: {plant_step: 5.0e-324}\n",
+        "refused",
+    ),
+    "a setting whose name is true": (
+        "scenario",
+        STEPS % "[1, 1 V]" + "settings: {true: 12 MPa}\n",
+        "refused",
+    ),
+    "a dead time of thirty years": (
+        "scenario",
+        STEPS % "[1, 1 V]" + "settings: {command.delay: 1.0e+9 s}\n",
+        "not run",
+    ),
+    "effects that make a dead time negative": (
+        "scenario",
+        STEPS % "[1, 1 V]" + "settings: {joints.joint.effects.command.delay.delay_s: -1 s}\n",
+        "not run",
+    ),
+    "a joint that weighs nothing": (
+        "scenario",
+        STEPS % "[1, 1 V]" + "settings: {load.inertia: 1.0e-300}\n",
+        "not run",
+    ),
+    "a step of the rollout of a nanosecond": (
+        "scenario",
+        STEPS % "[1, 1 V]" + "settings: {integration.longest_step: 1.0e-9}\n",
+        "refused",
+    ),
     "a merge key as a value": ("design", "alpha: <<\n", "refused"),
     "a dead time of 6e300 samples": ("design", LINEAR % (-0.2, 0.01, "6.0e+300"), "refused"),
     "a negative rate that is positive": ("design", LINEAR % (1.05, 0.01, 6), "refused"),

@@ -161,7 +161,7 @@ def _read_scenario(path: Path) -> str:
     try:
         run_scenario(replace(scenario, duration=min(scenario.duration, _STEPS * scenario.sizes.step)))
     except InputError:
-        return "diverged"
+        return "not run"
     return "read"
 
 
