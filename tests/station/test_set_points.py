@@ -108,7 +108,11 @@ def test_a_valve_with_a_neutral_voltage_is_driven_about_it(scenario_file):
         ARM.replace("hydrolek_right_j2", "joint_bench").replace("right_j2", "joint").replace("4 s", "2.5 s")
     )
     text = text.replace("25 deg", "0 deg").replace("40 deg", "15 deg").replace("feedforward", "pi")
-    done = run_scenario(load_scenario(scenario_file(text + "settings: {command.neutral: 5 V}\ninitial_position: {joint: 0 deg}\n")))
+    done = run_scenario(
+        load_scenario(
+            scenario_file(text + "settings: {command.neutral: 5 V}\ninitial_position: {joint: 0 deg}\n")
+        )
+    )
     signals, _ = named_signals(done)
     before = (done.run.time > 0.1) & (done.run.time < 0.999)
     assert set(signals["joint.command"][before]) == {5.0}
