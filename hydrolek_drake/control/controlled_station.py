@@ -58,7 +58,7 @@ def run_controlled(
         initial_deg: where joints start; the others at the rig's initial position.
         noise: of the sensors; None for ideal ones.
         supply_lost_at: when the supply falls to tank pressure [s].
-        sizes: steps of the diagram; `step_sizes.sizes_for` the rig, by symplectic Euler, if not given. It is logged at
+        sizes: steps of the diagram; `step_sizes.sizes_for` the rig if not given, forces as moments. It is logged at
             the control samples, whatever they say.
         on_progress: called with the simulated time now and then.
 
@@ -68,7 +68,7 @@ def run_controlled(
     Raises:
         InputError: a law for a joint that the rig does not move, or no column for a law.
     """
-    sizes = sizes or replace(sizes_for(rig), integrator="symplectic_euler", mount_forces=False)
+    sizes = sizes or replace(sizes_for(rig), mount_forces=False)
     rig, signal_per_volt = through_operator_computer(rig)
     loop = loop_command(rig, laws, set_points_deg, sample_s, signal_per_volt)
     station = make_station(
