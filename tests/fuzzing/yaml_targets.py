@@ -55,6 +55,10 @@ _SCENARIOS = (
     "schema: 1\nrig: joint_bench\nduration: 3 s\n"
     "command: {kind: steps, operator: true, joints: {joint: [[0 s, 0], [1 s, 40 %], [2 s, -40 %]]}}\n",
     "schema: 1\nrig: joint_bench\nduration: 1 s\ncommand: {kind: recording, path: run.csv}\n",
+    "schema: 1\nrig: joint_bench\nduration: 1 s\n"
+    "command: {kind: controlled, controller: {joint: pi}, joints: {joint: [[0 s, 5 deg], [1 s, 10 deg]]}}\n",
+    "schema: 1\nrig: joint_bench\nduration: 1 s\n"
+    "command: {kind: controlled, controller: pi, joints: {joint: {recording: run.csv, signal: joint.angle}}}\n",
 )
 _MODELS = (
     "joint: j2\nalpha: [-0.18, 0.62, -1.09, 0.22, 0.98, 1.05]\nsample_s: 0.01\ndelay_samples: 6\n"
@@ -156,6 +160,10 @@ def _read_rig(path: Path) -> str:
 
 def _read_scenario(path: Path) -> str:
     scenario = load_scenario(path)
+    if scenario.controlled is not None:
+        table = scenario.controlled.table_deg(scenario.duration, 0.05)
+        assert not np.isinf(table).any(), "set points that are no numbers"
+        return "read"
     times, values = scenario.command_table()
     assert np.isfinite(times).all() and np.isfinite(values).all(), "commands that are no numbers"
     try:
