@@ -149,9 +149,9 @@ def read_model(path: Path) -> SdpModel:
         raise InputError(
             f"model {path}: sample_s {interval:g} s must be above 0 and at most {_LONGEST_S:g} s"
         )
-    if delay != int(delay) or not 0.0 <= delay * interval <= _LONGEST_S:
+    if delay != int(delay) or not 0.0 <= delay * interval <= _LONGEST_DELAY_S:
         raise InputError(
-            f"model {path}: delay_samples {delay:g} must be a whole number of samples, {_LONGEST_S:g} s at most"
+            f"model {path}: delay_samples {delay:g} must be a whole number of samples, {_LONGEST_DELAY_S:g} s at most"
         )
     model = SdpModel(str(tree.get("joint", path.stem)), alpha, beta, interval, int(delay), *ends)
     if wrong := _contradiction(model):
@@ -160,7 +160,8 @@ def read_model(path: Path) -> SdpModel:
 
 
 _LARGEST = 1e6  # of any number of a model, in volts, degrees, or by sample
-_LONGEST_S = 10.0
+_LONGEST_S = 10.0  # of a sampling interval
+_LONGEST_DELAY_S = 2.0  # a design of an order above 40 takes minutes, and controls nothing
 _NEEDED = "alpha (6 numbers, or 4 with beta of 6), delay_samples and range_deg (2 numbers)"
 
 
