@@ -145,13 +145,13 @@ def read_model(path: Path) -> SdpModel:
     (delay,) = _numbers([inner["delay_samples"]], f"model {path}: delay_samples")
     if len(ends) != 2 or not ends[0] < ends[1]:
         raise InputError(f"model {path}: range_deg must be two numbers that rise")
-    if not 0.0 < interval <= _LONGEST_S:
+    if not _SHORTEST_S <= interval <= _LONGEST_S:
         raise InputError(
-            f"model {path}: sample_s {interval:g} s must be above 0 and at most {_LONGEST_S:g} s"
+            f"model {path}: sample_s {interval:g} s must lie between {_SHORTEST_S:g} and {_LONGEST_S:g} s"
         )
-    if delay != int(delay) or not 0.0 <= delay * interval <= _LONGEST_S:
+    if delay != int(delay) or not 0.0 <= delay * interval <= _LONGEST_DELAY_S:
         raise InputError(
-            f"model {path}: delay_samples {delay:g} must be a whole number of samples, {_LONGEST_S:g} s at most"
+            f"model {path}: delay_samples {delay:g} must be a whole number of samples, {_LONGEST_DELAY_S:g} s at most"
         )
     model = SdpModel(str(tree.get("joint", path.stem)), alpha, beta, interval, int(delay), *ends)
     if wrong := _contradiction(model):
@@ -160,7 +160,8 @@ def read_model(path: Path) -> SdpModel:
 
 
 _LARGEST = 1e6  # of any number of a model, in volts, degrees, or by sample
-_LONGEST_S = 10.0
+_SHORTEST_S, _LONGEST_S = 1e-6, 10.0  # of a sampling interval
+_LONGEST_DELAY_S = 2.0  # a design of an order above 40 takes minutes, and controls nothing
 _NEEDED = "alpha (6 numbers, or 4 with beta of 6), delay_samples and range_deg (2 numbers)"
 
 
@@ -176,8 +177,14 @@ def _numbers(raw: Any, where: str) -> tuple[float, ...]:
     return tuple(values)
 
 
+_LEAST_DEG = 1e-9  # of a rate by sample, below which it is none
+
+
 def _contradiction(model: SdpModel) -> str:
     """What is wrong with numbers that cannot be those of a joint; empty if nothing is."""
+    rates = model.alpha[::3] if model.beta is None else model.beta[0:3:2]
+    if min(map(abs, rates)) < _LEAST_DEG:
+        return f"rates of saturation {rates} deg by sample are too small to be any"
     if model.beta is None:
         a1, a2, a3, a4, a5, a6 = model.alpha
         if not (a1 < 0.0 < a4 and a2 > 0.0 and a5 > 0.0 and a3 < a6):

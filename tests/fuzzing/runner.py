@@ -179,7 +179,8 @@ def _until_it_ends(
         if "ready" not in told:
             raise RuntimeError(f"{outcome.name}: its good inputs are not read: {told}")
         while (last is None or index < last) and (until is None or time.monotonic() < until):
-            child.next(HANG_S)  # says which input comes
+            if "renewed" in child.next(HANG_S):  # else it says which input comes
+                break
             began = time.monotonic()
             told = child.next(HANG_S)
             taken = time.monotonic() - began

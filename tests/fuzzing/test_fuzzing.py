@@ -94,6 +94,13 @@ FOUND = {
     ),
     "a merge key as a value": ("design", "alpha: <<\n", "refused"),
     "a dead time of 6e300 samples": ("design", LINEAR % (-0.2, 0.01, "6.0e+300"), "refused"),
+    "a dead time of six seconds": ("design", LINEAR % (-0.2, 1.05, 6), "refused"),
+    "a positive rate that is next to nothing": (
+        "design",
+        (LINEAR % (-0.2, 0.01, 6)).replace("-1.1, 0.2", "-1.1, 5.0e-324"),
+        "refused",
+    ),
+    "samples that take no time": ("design", LINEAR % (-0.2, "1.0e-300", 6), "refused"),
     "a negative rate that is positive": ("design", LINEAR % (1.05, 0.01, 6), "refused"),
     "samples without time between them": ("design", LINEAR % (-0.2, "0.0", 6), "refused"),
     "a dead-zone that swallows what is beyond it": ("design", EXPONENTIAL % "-1.0e+300", "refused"),
