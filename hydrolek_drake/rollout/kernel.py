@@ -10,12 +10,12 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import command, hooks, load, sensor
 from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.probes import Probe, probe_at
-from hydrolek_drake.physics.solenoid import GAMMA
+from hydrolek_drake.physics.solenoid import GAMMA, steps_needed
 from hydrolek_drake.rollout.drive import Drive, acts_early, driven_on
 from hydrolek_drake.rollout.rates import Slopes, State, Turned, felt_at, rates, turned
 
@@ -212,6 +212,7 @@ def integrate(
     playing = hooks.linkage_gap(joint) > 0.0
     rocking = hooks.base_stiffness(joint) > 0.0
     early = acts_early(law, joint)
+    spool_steps = steps_needed(spool_steps, joint)
     delay = command.transport_delay(joint)
     rod = load.reflected_rod_inertia(joint)
     begin = times[0]

@@ -6,8 +6,8 @@ Only the wiring stands here, as in the Diagram; every equation is called from `p
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import base, cylinder, fluid, hooks, linkage, load, supply, valve
 from hydrolek_drake.physics.angle import Angle, angle, angle_near
 from hydrolek_drake.physics.law import Seen, felt

@@ -95,7 +95,9 @@ class Scenario:
 
     def command_source(self, seed: int | None = None) -> Any:
         """The system that plays the commands, to be built into a station."""
-        from hydrolek_drake.station.simulation import command_source  # Drake is loaded once a scenario is right
+        from hydrolek_drake.station.simulation import (
+            command_source,  # Drake is loaded once a scenario is right
+        )
 
         return command_source(*self.command_table(seed))
 
