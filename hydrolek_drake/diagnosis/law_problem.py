@@ -230,8 +230,6 @@ def records_of(law: Law, span: Span, values: np.ndarray) -> np.ndarray:
 class LawProblem(Problem):
     """Residuals as a function of the nominal parameters and of a law's own."""
 
-    in_lanes = False
-
     def __init__(
         self,
         parameters: ParameterSet,

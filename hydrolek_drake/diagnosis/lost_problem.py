@@ -23,8 +23,6 @@ from hydrolek_drake.identification.problem import Problem
 class LostProblem(Problem):
     """Residuals as a function of the nominal parameters and of when commands were lost."""
 
-    in_lanes = False
-
     def __init__(
         self,
         parameters: ParameterSet,

@@ -50,13 +50,7 @@ Own = TypeVar("Own", bound="Problem")
 
 
 class Problem:
-    """Weighted residuals of several experiments, all under the same parameters.
-
-    Attributes:
-        in_lanes: whether several places are rolled out at once, in lanes.
-    """
-
-    in_lanes = True
+    """Weighted residuals of several experiments, all under the same parameters."""
 
     def __init__(
         self,
@@ -136,7 +130,7 @@ class Problem:
         Args:
             units: places in the unit cube. # (n,) each
         """
-        if not self.in_lanes or any(experiment.others is not None for experiment in self.experiments):
+        if not self._in_lanes:
             return [self.residuals(unit) for unit in units]
         self.evaluations += len(units)
         machines = [self.parameters.records(unit) for unit in units]
@@ -154,6 +148,12 @@ class Problem:
                 elif known is not None:
                     parts[k].append(known[1])
         return [self.bounded(found) for found in parts]
+
+    @property
+    def _in_lanes(self) -> bool:
+        """Whether several places can be rolled out at once: joints that move alone, by `Problem`'s own residuals."""
+        own = type(self).residuals is Problem.residuals
+        return own and all(experiment.others is None for experiment in self.experiments)
 
     def _keep(self, unit: np.ndarray, base: np.ndarray) -> None:
         """Keep the residuals at a place: a column of the Jacobian changes few joints of a machine."""
@@ -224,7 +224,7 @@ class Problem:
             return [(there - base) / steps[i] for i, there in zip(indices, found, strict=True)]
 
         indices = list(range(len(unit))) if moving is None else np.flatnonzero(moving).tolist()
-        batch = LANES if self.in_lanes else 1
+        batch = LANES if self._in_lanes else 1
         batches = [indices[k : k + batch] for k in range(0, len(indices), batch)]
         shared = list(map(some, batches)) if self.pool is None else shared_map(self.pool, some, batches)
         columns = [column for found in shared for column in found]

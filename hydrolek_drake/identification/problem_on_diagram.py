@@ -19,8 +19,6 @@ class ProblemOnDiagram(Problem):
     There are no pulled rollouts: an observer's corrections are not wired into the Diagram.
     """
 
-    in_lanes = False
-
     def __init__(self, parameters: ParameterSet, experiments: Sequence[Experiment]) -> None:
         """Prepare; arguments as of `Problem`."""
         super().__init__(parameters, experiments)

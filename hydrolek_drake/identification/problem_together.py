@@ -29,8 +29,6 @@ def problem_of(
 class ProblemTogether(Problem):
     """Weighted residuals of joints that move together, of which all are rolled out at once."""
 
-    in_lanes = False
-
     def __init__(self, *given: Any, **named: Any) -> None:
         """Prepare; what is given is that of `Problem`."""
         super().__init__(*given, **named)

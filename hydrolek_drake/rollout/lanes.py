@@ -149,9 +149,7 @@ _Places = tuple[tuple[int, float], ...]
 
 @cache
 def _places() -> tuple[tuple[int, ...], tuple[tuple[_Places, _Places], ...], tuple[int, ...]]:
-    """Places in a flat record: of variants; of each group's sizes, and of all its numbers, with neutral values; of
-    `SOMETIMES`.
-    """
+    """Places in a flat record: of variants; of each group: sizes, and all numbers, with neutral values; others."""
     variants = tuple(position_of(stage, "variant") for stage in STAGES)
     groups = []
     for hooks in GROUPS:

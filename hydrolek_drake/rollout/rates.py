@@ -9,7 +9,7 @@ import numpy as np
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import base, cylinder, fluid, hooks, linkage, load, supply, valve
-from hydrolek_drake.physics.angle import Angle, angle, angle_near
+from hydrolek_drake.physics.angle import Angle, AngleKept, angle, angle_near
 from hydrolek_drake.physics.law import Seen, felt
 from hydrolek_drake.physics.probes import Probe
 
@@ -41,8 +41,8 @@ class Slopes(NamedTuple):
 class Turned(NamedTuple):
     """How far the joint has turned, for the sines and cosines of places that are near (`physics.angle`)."""
 
-    position: Angle  # of the link
-    included: Angle  # between the mounts of the cylinder
+    position: Angle | AngleKept  # of the link
+    included: Angle | AngleKept  # between the mounts of the cylinder
 
 
 @njit

@@ -211,6 +211,11 @@ def _with_own(law: np.ndarray | None, joint: np.ndarray) -> np.ndarray | None:
 
 
 def check_times(command_times: np.ndarray, command_values: np.ndarray, times: np.ndarray) -> None:
+    """Refuse what no rollout can be driven with.
+
+    Raises:
+        InputError: times that do not rise, or not as many command values as command times.
+    """
     if len(command_times) == 0 or len(command_times) != len(command_values):
         raise InputError(
             f"rollout: {len(command_times)} command times but {len(command_values)} command values"
