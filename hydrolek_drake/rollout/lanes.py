@@ -39,6 +39,10 @@ SOMETIMES = ("command.ramp", "amplifier.coil_time", "valve.flow_force")
 """Parameters of the stages that most machines have at zero, and that cost as much."""
 
 
+FEW = 2
+"""So many machines take no longer one by one."""
+
+
 def roll_out_lanes(
     joints: np.ndarray,
     command_times: np.ndarray,
@@ -69,11 +73,12 @@ def roll_out_lanes(
         InputError: as of `roll_out`.
     """
     check_times(command_times, command_values, times)
+    few = len(joints) <= FEW
     found: dict[int, Outcome] = {}
     groups: dict[Kind, list[int]] = {}
     for i in range(len(joints)):
         joint = joints[i : i + 1]
-        if law_of(joint) is not None or missing_number(joint) is not None:
+        if few or law_of(joint) is not None or missing_number(joint) is not None:
             found[i] = roll_out(
                 joint,
                 command_times,
