@@ -72,7 +72,7 @@ def measure_lanes(
             return roll_out(records[i : i + 1], times, volts, times, longest_step=step)
 
         def together(count: int, records: np.ndarray = records, step: float = step) -> Any:
-            return roll_out_lanes(records[:count], times, volts, times, longest_step=step)
+            return roll_out_lanes(records[:count], times, volts, times, longest_step=step, at_once=True)
 
         def every(count: int, alone: Callable[[int], Any] = alone) -> None:
             for i in range(count):

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import command, hooks, linkage, load, sensor
+from hydrolek_drake.physics import command, hooks, load, sensor
 from hydrolek_drake.physics.amplifier import Currents
-from hydrolek_drake.physics.angle import AngleKept, angle_near
+from hydrolek_drake.physics.angle import AngleKept
 from hydrolek_drake.physics.probes import no_probe
 from hydrolek_drake.rollout.drive import Drive, driven_on
 from hydrolek_drake.rollout.kernel import (
@@ -24,7 +24,7 @@ from hydrolek_drake.rollout.kernel import (
     written,
 )
 from hydrolek_drake.rollout.lane_view import LANES, NUMBERS, lane_joint, spool_steps_of
-from hydrolek_drake.rollout.rates import State, Turned, _rod_side, turned
+from hydrolek_drake.rollout.rates import State, Turned, carried_on, kept, turned
 
 _L = LANES
 
@@ -167,9 +167,8 @@ def _loop(kind: Any, b: np.ndarray) -> None:
         inertia = inertia_at(time, b[_ROD * _L + lane], joint)
         n = _step(s, d.x, e.x, drive, time, h, inertia, probe, probe, None, near, joint)
         played = sensor.played(play, n.q - n.tilt, joint)
-        side, _ = _rod_side(n, joint)
-        position = angle_near(n.q, near.position)
-        included = angle_near(linkage.included_angle(side, joint), near.included)
+        after = carried_on(near, n, joint)
+        position, included = after.position, after.included
         f, g, go = _NEXT * _L + lane, _NEAR_NEXT * _L + lane, h > 0.0
         b[f] = n.p_a if go else s.p_a
         b[f + _L] = n.p_b if go else s.p_b
@@ -334,7 +333,9 @@ def _write(
         time = t - machines[lane, 0]
         volts = arrived(command_values, held[lane], joint)
         inertia = inertia_at(time, b[_ROD * _L + lane], joint)
-        written(d, s, play, volts, time, inertia, no_probe(), None, turned(s, joint), joint, out[lane, row])
+        written(
+            d, s, play, volts, time, inertia, no_probe(), None, kept(turned(s, joint)), joint, out[lane, row]
+        )
         if share > 0.0:
             s, by = _pulled(s, share, out[lane, row, 0], measured[row])
             _put(b, _STATE, lane, s, d, play + by)

@@ -11,6 +11,7 @@ from hydrolek_drake.physics.law import law_of
 from hydrolek_drake.physics.records import STAGES, flat, position_of
 from hydrolek_drake.physics.solenoid import steps_needed
 from hydrolek_drake.rollout import kernel
+from hydrolek_drake.rollout.lane_compiling import compiled, ready
 from hydrolek_drake.rollout.lane_kernel import integrate_lanes
 from hydrolek_drake.rollout.lane_view import LANES, Kind
 from hydrolek_drake.rollout.rollout import (
@@ -53,8 +54,9 @@ def roll_out_lanes(
     longest_step: float,
     spool_steps: int = 1,
     pull: tuple[float, np.ndarray] | None = None,
+    at_once: bool = False,
 ) -> list[Outcome]:
-    """Drive several machines with one recorded command; each as `roll_out` would drive it alone.
+    """Drive several machines with one recorded command; each as `roll_out` would drive it alone, to the last bit.
 
     Args:
         joints: parameter records, shape (n,), dtype `physics.records.JOINT`.
@@ -65,6 +67,8 @@ def roll_out_lanes(
         longest_step: as of `roll_out`.
         spool_steps: as of `roll_out`.
         pull: as of `roll_out`.
+        at_once: compile what is not compiled yet, and wait for it; else the machines are driven one by one until that
+            is done (`lane_compiling`).
 
     Returns:
         What each of them did, in their order. One that diverges disturbs no other.
@@ -73,24 +77,32 @@ def roll_out_lanes(
         InputError: as of `roll_out`.
     """
     check_times(command_times, command_values, times)
-    few = len(joints) <= FEW
     found: dict[int, Outcome] = {}
     groups: dict[Kind, list[int]] = {}
+    alone: list[int] = []
     for i in range(len(joints)):
         joint = joints[i : i + 1]
-        if few or law_of(joint) is not None or missing_number(joint) is not None:
-            found[i] = roll_out(
-                joint,
-                command_times,
-                command_values,
-                times,
-                state=None if states is None else states[i],
-                longest_step=longest_step,
-                spool_steps=spool_steps,
-                pull=pull,
-            )
+        if law_of(joint) is not None or missing_number(joint) is not None:
+            alone.append(i)
         else:
             groups.setdefault(kind_of(joint, spool_steps), []).append(i)
+    for kind, members in list(groups.items()):
+        first = members[0]
+        if not at_once and (
+            len(members) <= FEW or not ready(kind, joints[first : first + 1], len(members), spool_steps)
+        ):
+            alone += groups.pop(kind)
+    for i in alone:
+        found[i] = roll_out(
+            joints[i : i + 1],
+            command_times,
+            command_values,
+            times,
+            state=None if states is None else states[i],
+            longest_step=longest_step,
+            spool_steps=spool_steps,
+            pull=pull,
+        )
     pull_time, measured = pull or (0.0, kernel.NOT_PULLED)
     changes = np.concatenate([[True], np.diff(command_values) != 0.0])
     moments, values = read_only(command_times[changes]), read_only(command_values[changes])
@@ -129,6 +141,7 @@ def roll_out_lanes(
                     if diverged == DIVIDED_BY_ZERO:
                         out[lane] = np.nan
                 found[i] = Outcome(Signals(wanted, *out[lane].T), diverged, begun[lane])
+        compiled(kind)
     return [found[i] for i in range(len(joints))]
 
 

@@ -53,6 +53,25 @@ def turned(s: State, joint: Any) -> Turned:
 
 
 @njit
+def carried_on(near: Turned, s: State, joint: Any) -> Turned:
+    """How far the joint has turned, a step after it had turned so far: sines and cosines by the series alone."""
+    side, _ = _rod_side(s, joint)
+    position = angle_near(s.q, near.position)
+    included = angle_near(linkage.included_angle(side, joint), near.included)
+    return Turned(
+        AngleKept(position.value, position.sine, position.cosine, True),
+        AngleKept(included.value, included.sine, included.cosine, True),
+    )
+
+
+@njit
+def kept(found: Turned) -> Turned:
+    """The same, to be carried on from step to step."""
+    p, i = found.position, found.included
+    return Turned(AngleKept(p.value, p.sine, p.cosine, True), AngleKept(i.value, i.sine, i.cosine, True))
+
+
+@njit
 def _rod_side(s: State, joint: Any) -> tuple[float, float]:
     """Position and speed of the joint [rad or m] as the rod has them, before a play and from a base that rocks."""
     playing = hooks.linkage_gap(joint) > 0.0
