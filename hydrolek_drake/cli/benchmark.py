@@ -33,6 +33,18 @@ def benchmark(
             "" if ratio is None else f"{ratio:.4g}",
         )
     output.print(table)
+    lanes = Table(
+        "machines in lanes", "how many", "rollouts of one", "one by one", "machine-seconds per second"
+    )
+    for row in figures["lanes"]:
+        lanes.add_row(
+            row["machine"],
+            str(row["count"]),
+            f"{row['in_lanes']:.2f}",
+            f"{row['one_by_one']:.2f}",
+            f"{row['machine_seconds']:.4g}",
+        )
+    output.print(lanes)
     error = figures["rollout_error_deg"]
     output.print(
         f"rollout against its 0.01 ms reference: {error['rms']:.4f} deg rms, {error['largest']:.4f} deg at most; "
