@@ -43,6 +43,10 @@ def challenge(
 
     Machines drawn and finished cases are kept and scored: the same command goes on where it was interrupted.
     """
+    for name, value in (("--cases", cases), ("--workers", workers), ("--first", first)):
+        if value is not None and value < 1:
+            raise InputError(f"{name} {value}: at least 1 is needed")
+
     from concurrent.futures import ThreadPoolExecutor
 
     from hydrolek_drake.challenge.build import BENCH, rig_names
@@ -59,9 +63,6 @@ def challenge(
     from hydrolek_drake.rigs import load_rig
     from hydrolek_drake.runs.report import prepare_folder
 
-    for name, value in (("--cases", cases), ("--workers", workers), ("--first", first)):
-        if value is not None and value < 1:
-            raise InputError(f"{name} {value}: at least 1 is needed")
     if kind not in (known := [name for name, _ in KINDS]) and kind != "all":
         raise InputError(f"--kind {kind}: no such cases; choose {', '.join([*known, 'all'])}")
     output = console()
