@@ -257,7 +257,7 @@ def integrate(
         probe = probe_at(t, begin, probe_spacing, probe_values)
         inertia = inertia_at(t - on, rod, joint)
         volts = arrived(command_values, held, joint)
-        written(d, s, play, volts, t - on, inertia, probe, law, kept(turned(s, joint)), joint, out[row])
+        written(d, s, play, volts, t - on, inertia, probe, law, near, joint, out[row])
         if pull_time > 0.0 and row + 1 < len(times):
             share = 1.0 - math.exp((t - times[row + 1]) / pull_time)
             s, by = pulled(s, share, out[row, 0], measured[row])

@@ -41,7 +41,7 @@ from hydrolek_drake.rollout.lane_table import (
     state_in,
 )
 from hydrolek_drake.rollout.lane_view import LANES, NUMBERS, lane_joint, spool_steps_of
-from hydrolek_drake.rollout.rates import State, carried_on, kept, turned
+from hydrolek_drake.rollout.rates import State, carried_on, turned
 
 _L = LANES
 
@@ -288,7 +288,7 @@ def _write(
         volts = arrived(command_values, held[lane], joint)
         inertia = inertia_at(time, b[ROD * _L + lane], joint)
         written(
-            d, s, play, volts, time, inertia, no_probe(), None, kept(turned(s, joint)), joint, out[lane, row]
+            d, s, play, volts, time, inertia, no_probe(), None, near_in(b, NEAR, lane), joint, out[lane, row]
         )
         if share > 0.0:
             s, by = pulled(s, share, out[lane, row, 0], measured[row])
