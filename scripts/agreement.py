@@ -6,17 +6,25 @@ Runs every instrumented joint of both arms with every effect off, and each effec
 held is one rigid body on a fixed axis, so each case is a body of its own with that inertia and gravity. At the end
 every joint runs on the arms' own plant, one of each arm at a time. Finished rows are kept, so an interrupted
 study goes on where it was.
+
+With `--closed` it is controllers that drive both executions, and the section about closed loops is written anew.
 """
 
 import argparse
 import datetime
 import json
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from pydrake.multibody.tree import UniformGravityFieldElement
 
+from hydrolek_drake.control.catalogue import build_law, rig_setting
+from hydrolek_drake.control.closed_loop import loop_on_rollout
+from hydrolek_drake.control.controlled_station import run_controlled
+from hydrolek_drake.control.thesis_gains import sample_s
+from hydrolek_drake.files import read_kept, write_whole
 from hydrolek_drake.physics import load
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rigs.geometry import FROM_ARM
@@ -25,7 +33,7 @@ from hydrolek_drake.rigs.rig import Rig
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import make_station
-from hydrolek_drake.station.step_sizes import StepSizes
+from hydrolek_drake.station.step_sizes import StepSizes, sizes_for
 
 JOINTS = [f"hydrolek_{side}_j{number}" for side in ("right", "left") for number in range(1, 6)]
 GRAVITY = UniformGravityFieldElement.kDefaultStrength  # m/s^2, of Drake and of the arms
@@ -39,6 +47,11 @@ RUBBING_BESIDE = {
 }
 """What differs between the directions is a part of a friction. Alone it pushes in one of them, and feeds what rings
 until a hair's breadth decides."""
+
+CONTROLLERS = ("feedforward", "pip_idz_c", "pip_forward_c")
+"""The project's own, and what the thesis recommends of feedback and of forward path for steps (section 6.3)."""
+
+CLOSED_BEGINS, CLOSED_ENDS = "<!-- in closed loop -->\n", "<!-- end of closed loop -->"
 
 BOUNCES = ("hydrolek_left_j4", BLOWS)
 """A light joint, a vane: it bounces where a hair's breadth decides, and both executions are of first order there."""
@@ -161,14 +174,67 @@ def on_the_arms(cases: list[Case]) -> Rig:
     return rig
 
 
+def closed(joint: str, controllers: tuple[str, ...], step: float | None = None) -> list[float]:
+    """Largest difference of a controlled joint's readings [deg], controller by controller.
+
+    The joint is brought 18 deg forward and 11 deg back, with three seconds for each way.
+
+    Args:
+        joint: rig of one joint.
+        controllers: of the catalogue.
+        step: of the diagram [s]; the rig's own (`sizes_for`) if not given. The rollout takes its own.
+    """
+    rig = load_rig(joint)
+    [name] = rig.joints
+    setting, records = rig_setting(rig, name), rig.records()
+    start = float(np.degrees(records["load"]["initial_position"][0]))
+    wanted = np.repeat([start + 18.0, start + 7.0], round(3.0 / sample_s()))
+    sizes = replace(sizes_for(rig), mount_forces=False)
+    sizes = sizes if step is None else replace(sizes, step=step)
+    figures = []
+    for controller in controllers:
+        law = build_law(controller, setting, noisy=False)
+        diagram = run_controlled(rig, {name: law}, wanted[:, np.newaxis], sample_s(), sizes=sizes)
+        plain = loop_on_rollout(
+            law, records, wanted, sample_s(),
+            rows_per_sample=1, longest_step=rig.value("integration.longest_step"),
+        )  # fmt: skip
+        figures.append(
+            float(np.abs(diagram.angle_deg[:, 0] - plain.angle_deg[: len(diagram.angle_deg)]).max())
+        )
+    return figures
+
+
+def closed_table() -> str:
+    """The table of all joints under the controllers of `CONTROLLERS`, at the diagram's own step and half of it."""
+    titles = [f"{name}, {which}" for name in CONTROLLERS for which in ("1 ms", "0.5 ms")]
+    lines = [f"| joint | {' | '.join(titles)} |", "|---" * (1 + len(titles)) + "|"]
+    for joint in JOINTS:
+        own, half = closed(joint, CONTROLLERS), closed(joint, CONTROLLERS, 0.5e-3)
+        cells = [f"{value:.4f}" for pair in zip(own, half, strict=True) for value in pair]
+        lines.append(f"| {joint} | {' | '.join(cells)} |")
+        print(lines[-1], flush=True)
+    return "\n".join(lines)
+
+
 def main() -> None:
     """Run the study and write docs/agreement.md, anew after each diagram."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--duration", type=float, default=60.0, help="seconds of random voltage per case")
     parser.add_argument("--step", type=float, default=0.4e-3, help="step of the diagram [s]")
     parser.add_argument("--all", action="store_true", help="then each effect on every other joint")
+    parser.add_argument("--closed", action="store_true", help="controllers in both executions")
     parser.add_argument("--out", type=Path, default=Path("docs/agreement.md"))
     arguments = parser.parse_args()
+    if arguments.closed:
+        text = arguments.out.read_text()
+        before, table, after = (
+            text.partition(CLOSED_BEGINS)[0],
+            closed_table(),
+            text.partition(CLOSED_ENDS)[2],
+        )
+        arguments.out.write_text(f"{before}{CLOSED_BEGINS}{table}\n{CLOSED_ENDS}{after}")
+        return
     effects = list(json.loads(SIZES.read_text()))
     cases: list[Case] = [(joint, None) for joint in JOINTS]
     cases += [(JOINTS[i % len(JOINTS)], effect) for i, effect in enumerate(effects)]
@@ -182,7 +248,9 @@ def main() -> None:
             runs += [(ONE_BODY, part[i : i + len(cases)]) for i in range(0, len(part), len(cases))]
         runs += [(ARMS, [case]) for case in more if not fits_one_body(case)]
     kept = arguments.out.with_suffix(".partial.json")
-    rows: list[Row] = [tuple(row) for row in json.loads(kept.read_text())] if kept.exists() else []
+    rows: list[Row] = (
+        [tuple(row) for row in read_kept(kept, "what an earlier run compared")] if kept.exists() else []
+    )
     for plant, together in runs:
         if any(row[:3] == (plant, *together[0]) for row in rows):
             continue
@@ -190,7 +258,7 @@ def main() -> None:
         step = arguments.step * share_of_step(together[0])
         figures = compare(rig, arguments.duration, step, *(seeds[case] for case in together))
         rows += [(plant, *case, step, *figure) for case, figure in zip(together, figures, strict=True)]
-        kept.write_text(json.dumps(rows))
+        write_whole(kept, json.dumps(rows))
         for row in rows[-len(together) :]:
             print(
                 "{:9s} {:18s} {!s:28s} step {:g} s: rms {:.4f} deg, largest {:.4f} deg".format(*row),
@@ -227,9 +295,7 @@ def write(out: Path, rows: list[Row], done: str, duration: float) -> None:
         f"| {p} | {j} | {e or '-'} | {1e3 * step:g} | {rms:.4f} | {largest:.4f} |"
         for p, j, e, step, rms, largest in rows
     ]
-    draft = out.with_name(f".{out.name}.part")
-    draft.write_text("\n".join(lines) + "\n" + heading + below)
-    draft.replace(out)
+    write_whole(out, "\n".join(lines) + "\n" + heading + below)
 
 
 if __name__ == "__main__":

@@ -5,22 +5,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
-from pydrake.systems.framework import DiagramBuilder
-from pydrake.systems.primitives import LogVectorOutput, MatrixGain, TrajectorySource
-from pydrake.trajectories import PiecewisePolynomial
 
-from hydrolek_drake.control.controller import Controller
 from hydrolek_drake.control.law import Array, ControlLaw
+from hydrolek_drake.control.loop_command import loop_command
 from hydrolek_drake.control.operator_path import through_operator_computer
-from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.station.simulation import initial_context
+from hydrolek_drake.station.simulation import initial_context, run
 from hydrolek_drake.station.station import make_station
-from hydrolek_drake.station.step_sizes import INTEGRATORS, StepSizes
-
-_EARLY = 1e-9  # seconds by which set points come early, so that rounding never makes them a sample late
-_PROGRESS_S = 0.5
+from hydrolek_drake.station.step_sizes import StepSizes, sizes_for
 
 
 @dataclass(frozen=True)
@@ -66,7 +58,8 @@ def run_controlled(
         initial_deg: where joints start; the others at the rig's initial position.
         noise: of the sensors; None for ideal ones.
         supply_lost_at: when the supply falls to tank pressure [s].
-        sizes: steps of the diagram; it is logged at the control samples, whatever they say.
+        sizes: steps of the diagram; `step_sizes.sizes_for` the rig if not given, forces as moments. It is logged at
+            the control samples, whatever they say.
         on_progress: called with the simulated time now and then.
 
     Returns:
@@ -75,85 +68,34 @@ def run_controlled(
     Raises:
         InputError: a law for a joint that the rig does not move, or no column for a law.
     """
-    joints = list(laws)
-    wanted = np.asarray(set_points_deg, dtype=float)
-    for joint in joints:
-        if joint not in rig.joints:
-            raise InputError(f"rig {rig.name} has no joint '{joint}'; choose {', '.join(rig.joints)}")
-    if wanted.ndim != 2 or wanted.shape[1] != len(joints):
-        raise InputError(
-            f"set points have shape {wanted.shape}; {len(joints)} controllers need (n, {len(joints)})"
-        )
-    sizes = replace(
-        sizes or StepSizes(integrator="symplectic_euler", mount_forces=False), log_period=sample_s
-    )
+    sizes = sizes or replace(sizes_for(rig), mount_forces=False)
     rig, signal_per_volt = through_operator_computer(rig)
-    operator = signal_per_volt is not None
-    station = make_station(rig, sizes=sizes, noise=noise, operator=operator)
+    loop = loop_command(rig, laws, set_points_deg, sample_s, signal_per_volt)
+    station = make_station(
+        rig,
+        sizes=replace(sizes, log_period=sample_s),
+        command=loop.system,
+        noise=noise,
+        operator=signal_per_volt is not None,
+    )
     positions = np.array(station.joints["load"]["initial_position"], dtype=float)
     for joint, angle_deg in (initial_deg or {}).items():
         positions[rig.joints.index(joint)] = np.radians(angle_deg)
-    rest = initial_context(station, positions)  # while the station is a diagram of its own
-    places = [rig.joints.index(joint) for joint in joints]
-    scatter = np.zeros((len(rig.joints), len(joints)))
-    scatter[places, np.arange(len(joints))] = 1.0
-
-    builder = DiagramBuilder()
-    builder.AddSystem(station.diagram)
-    controller = builder.AddSystem(Controller([laws[joint] for joint in joints], sample_s))
-    signals = scatter if signal_per_volt is None else signal_per_volt[:, np.newaxis] * scatter
-    spread = builder.AddNamedSystem("signal_of_voltage" if operator else "to_all_joints", MatrixGain(signals))
-    gather = builder.AddNamedSystem("of_controlled_joints", MatrixGain(scatter.T.copy()))
-    duration = len(wanted) * sample_s
-    breaks = np.append(np.arange(len(wanted)) * sample_s - _EARLY, duration + 1.0)
-    held = np.radians(np.vstack([wanted, wanted[-1:]])).T
-    source = builder.AddNamedSystem(
-        "set_points", TrajectorySource(PiecewisePolynomial.ZeroOrderHold(breaks, held))
+    done = run(
+        station,
+        len(loop.set_points_deg) * sample_s,
+        context=initial_context(station, positions),
+        supply_lost_at=supply_lost_at,
+        on_progress=on_progress,
     )
-    lost = duration + 1.0 if supply_lost_at is None else supply_lost_at
-    available = PiecewisePolynomial.ZeroOrderHold([-1.0, lost, duration + 2.0], np.array([[1.0, 0.0, 0.0]]))
-    supply = builder.AddNamedSystem("supply_available", TrajectorySource(available))
-    builder.Connect(source.get_output_port(), controller.set_point)
-    builder.Connect(station.diagram.GetOutputPort("position_measured"), gather.get_input_port())
-    builder.Connect(gather.get_output_port(), controller.measured)
-    builder.Connect(controller.command, spread.get_input_port())
-    entry = "signal_commanded" if operator else "command"
-    builder.Connect(spread.get_output_port(), station.diagram.GetInputPort(entry))
-    builder.Connect(supply.get_output_port(), station.diagram.GetInputPort("pressure_available"))
-    logs = {
-        name: LogVectorOutput(port, builder, publish_period=sample_s)
-        for name, port in (("voltage", controller.command), ("output", controller.output))
-    }
-    diagram = builder.Build()
-    diagram.set_name(f"{rig.name}_controlled")
-
-    context = diagram.CreateDefaultContext()
-    inner = station.diagram.GetMyMutableContextFromRoot(context)
-    inner.SetContinuousState(rest.get_continuous_state_vector().CopyToVector())
-    for group in range(rest.num_discrete_state_groups()):
-        inner.SetDiscreteState(group, rest.get_discrete_state(group).get_value())
-    simulator = Simulator(diagram, context)
-    config = SimulatorConfig(
-        integration_scheme=INTEGRATORS[sizes.integrator], max_step_size=sizes.step, use_error_control=False
-    )
-    ApplySimulatorConfig(config, simulator)
-    simulator.Initialize()
-    now = 0.0
-    while now < duration - _EARLY:
-        now = min(now + _PROGRESS_S, duration)
-        simulator.AdvanceTo(now)
-        if on_progress is not None:
-            on_progress(now)
-    rows = len(wanted)
-    reading = station.logs["reading"].FindLog(context)
-    angle = np.degrees(reading.data()[places, :rows].T)
-    # a log at a sample is written before that sample's update shows: the next row holds what it gave
-    held_rows = {name: log.FindLog(context).data()[:, 1 : rows + 1].T for name, log in logs.items()}
-    rows = min(len(angle), *(len(values) for values in held_rows.values()))
+    places = [rig.joints.index(joint) for joint in loop.joints]
+    angle = np.degrees(done.signals["reading"][:, places])
+    voltage, output = (loop.held(name, done.final) for name in ("voltage", "output"))
+    rows = min(len(loop.set_points_deg), len(angle), len(voltage))
     return MachineSignals(
         np.arange(rows) * sample_s,
-        wanted[:rows],
+        loop.set_points_deg[:rows],
         angle[:rows].copy(),
-        held_rows["voltage"][:rows].copy(),
-        held_rows["output"][:rows].copy(),
+        voltage[:rows],
+        output[:rows],
     )

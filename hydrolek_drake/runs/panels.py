@@ -12,6 +12,7 @@ from hydrolek_drake.runs.signals import named_signals
 _MANY = 4  # joints; from here on small multiples, the arms side by side
 _POINTS_OF_MANY = 1000
 _POSITION_COLOUR, _SIDE_A_COLOUR, _SIDE_B_COLOUR = RESIDUAL_COLOUR, MODEL_COLOUR, "#7570b3"
+_SET_POINT_COLOUR = "#7a7a7a"
 _SUPPLY_COLOUR = "#1b7837"
 _LEAST_SPAN = 1.0  # deg, mm or MPa; what hardly moves is not blown up until rounding fills the plot
 
@@ -57,7 +58,10 @@ class _Plots:
             unit, values = "mm", 1e3 * self._signals[f"{joint}.position"]
         else:
             unit, values = "deg", self._signals[f"{joint}.angle"]
-        return self._panel(f"{joint} [{unit}]", {"position": (values, _POSITION_COLOUR)}, 1.6)
+        lines = {"position": (values, _POSITION_COLOUR)}
+        if f"{joint}.reference" in self._signals:
+            lines = {"set point": (self._signals[f"{joint}.reference"], _SET_POINT_COLOUR), **lines}
+        return self._panel(f"{joint} [{unit}]", lines, 1.6)
 
     def pressures(self, joint: str) -> list[Panel]:
         if f"{joint}.pressure_a" not in self._signals:

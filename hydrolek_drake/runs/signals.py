@@ -3,20 +3,12 @@
 import numpy as np
 
 from hydrolek_drake.physics.command import calibrated_voltages
-from hydrolek_drake.runs.running import ScenarioRun
-
-_ROUNDING = 1e-9  # seconds by which a logged time may miss the command's
-
-
-def held_at(times: np.ndarray, values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Rows of a command table, each held until the next, at other times; shape (wanted, joints)."""
-    rows = np.searchsorted(times, wanted + _ROUNDING, side="right") - 1
-    return values[np.clip(rows, 0, len(times) - 1)]
+from hydrolek_drake.runs.running import ScenarioRun, held_at
 
 
 def commanded_voltages(done: ScenarioRun) -> np.ndarray:
     """What the computer sends each joint at each time of the run [V], shape (n, joints)."""
-    commands = held_at(*done.scenario.command_table(done.seed), done.run.time)
+    commands = held_at(*done.command_table(), done.run.time)
     if not done.scenario.operator:
         return commands
     volts = np.empty_like(commands)
@@ -37,8 +29,11 @@ def named_signals(done: ScenarioRun) -> tuple[dict[str, np.ndarray], dict[str, s
         signals[key], units[key] = values, unit
 
     volts = commanded_voltages(done)
-    table = held_at(*done.scenario.command_table(done.seed), run.time)
+    table = held_at(*done.command_table(), run.time)
+    wanted = done.set_points()
     for i, joint in enumerate(rig.joints):
+        if joint in wanted:
+            keep(f"{joint}.reference", np.degrees(wanted[joint]), "deg")
         if done.scenario.operator:
             keep(f"{joint}.signal", table[:, i], "percent")
         keep(f"{joint}.command", volts[:, i], "V")

@@ -76,8 +76,10 @@ def summarize(done: ScenarioRun) -> tuple[JointSummary, ...]:
 def sentence(done: ScenarioRun, joints: tuple[JointSummary, ...]) -> str:
     """What was run and what stands out."""
     scenario, end = done.scenario, float(done.run.time[-1])
-    what = "operator's signals" if scenario.operator else "voltages"
-    parts = [f"{scenario.name}: rig {scenario.rig.name} ran for {end:.3g} s on {what}"]
+    what = "on operator's signals" if scenario.operator else "on voltages"
+    if scenario.controlled is not None:
+        what = f"under {' and '.join(dict.fromkeys(scenario.controlled.controllers.values()))}"
+    parts = [f"{scenario.name}: rig {scenario.rig.name} ran for {end:.3g} s {what}"]
     if done.run.interrupted:
         parts[0] += f" and was interrupted (asked for: {scenario.duration:.3g} s)"
     if scenario.supply_lost_at is not None and scenario.supply_lost_at < end:
@@ -87,6 +89,13 @@ def sentence(done: ScenarioRun, joints: tuple[JointSummary, ...]) -> str:
         parts.append("no joint moved")
     else:
         parts.append(f"{widest.joint} moved farthest, {shown(widest.range, widest.unit)}")
+    missed = {joint: abs(wanted[-1] - _end_of(joints, joint)) for joint, wanted in done.set_points().items()}
+    missed = {joint: error for joint, error in missed.items() if np.isfinite(error)}
+    if missed:
+        worst = max(missed, key=lambda joint: missed[joint])
+        parts.append(
+            f"at the end joints were at most {shown(missed[worst], 'rad')} off their set points ({worst})"
+        )
     creeping = [joint for joint in joints if joint.rest_movement is not None]
     if creeping:
         most = max(creeping, key=lambda joint: joint.rest_movement or 0.0)
@@ -96,6 +105,10 @@ def sentence(done: ScenarioRun, joints: tuple[JointSummary, ...]) -> str:
         highest = max(pressed, key=lambda joint: joint.pressure or 0.0)
         parts.append(f"the highest pressure was {shown(highest.pressure or 0.0, 'Pa')} in {highest.joint}")
     return "; ".join(parts) + "."
+
+
+def _end_of(joints: tuple[JointSummary, ...], name: str) -> float:
+    return next(joint.end for joint in joints if joint.joint == name)
 
 
 _STILL_DEG = 0.01  # half the resolution of the sensors

@@ -15,8 +15,9 @@ from pathlib import Path
 from pydrake.systems.framework import Diagram, InputPortIndex, OutputPortIndex, System
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import write_whole
 from hydrolek_drake.station.scenario import Scenario, load_scenario, scenario_files
-from hydrolek_drake.station.station import make_station
+from hydrolek_drake.station.scenario_station import scenario_station
 
 _HIDDEN = ("log_", "scene_graph", "meshcat_visualizer", "cylinder_poses")
 """Systems that only write down or draw; they are not part of the machine."""
@@ -25,6 +26,7 @@ _INPUTS, _OUTPUTS = "in", "out"
 _COMPUTER, _ELECTRIC, _OIL, _MECHANICS = "#e8eef7", "#fdf3dc", "#fbe3d6", "#e3f1e4"
 _COLOURS = {
     "command_player": _COMPUTER,
+    "controllers": _COMPUTER,
     "operator_computer": _COMPUTER,
     "field_point": _COMPUTER,
     "transport_delay": _COMPUTER,
@@ -171,12 +173,7 @@ def as_svg(diagram: Diagram, title: str) -> str:
 
 def scenario_diagram(scenario: Scenario) -> Diagram:
     """The diagram that a scenario runs."""
-    return make_station(
-        scenario.rig,
-        sizes=scenario.sizes,
-        command=scenario.command_source(),
-        operator=scenario.operator,
-    ).diagram
+    return scenario_station(scenario).station.diagram
 
 
 def main() -> None:
@@ -188,9 +185,7 @@ def main() -> None:
         scenario = load_scenario(name)
         picture = (out or path.parent) / f"{name}.svg"
         svg = as_svg(scenario_diagram(scenario), f"{name}: rig {scenario.rig.name}")
-        part = picture.with_name(f".{picture.name}.part")
-        part.write_text(svg, encoding="utf-8")
-        part.replace(picture)
+        write_whole(picture, svg)
         print(picture)
 
 

@@ -11,9 +11,10 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings import read_recording, require
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.keys import refuse_unknown
-from hydrolek_drake.station.fields import number, quantity, required, signal
+from hydrolek_drake.station.fields import joints_of, number, quantity, required, signal, steps
+from hydrolek_drake.station.set_points import KIND, Controlled, parse_controlled
 
-KINDS = ("constant", "steps", "random", "recording")
+KINDS = ("constant", "steps", "random", "recording", KIND)
 _MOST_LEVELS = 100_000  # finer than any converter
 
 
@@ -106,8 +107,8 @@ class Playback:
         return self.times, self.values
 
 
-def parse_command(raw: Any, rig: Rig, where: str, folder: Path) -> tuple[Command, bool]:
-    """The command of a scenario, and whether it is signals in percent that pass the operator computer.
+def parse_command(raw: Any, rig: Rig, where: str, folder: Path) -> tuple[Command | Controlled, bool]:
+    """The command of a scenario or its controllers, and whether it is signals in percent for the operator computer.
 
     Args:
         raw: the scenario's `command`.
@@ -121,6 +122,8 @@ def parse_command(raw: Any, rig: Rig, where: str, folder: Path) -> tuple[Command
     if not isinstance(raw, Mapping):
         raise InputError(f"{where} must be a mapping with kind: {', '.join(KINDS)}")
     kind = raw.get("kind")
+    if kind == KIND:
+        return parse_controlled(raw, rig, where, folder), False
     operator = raw.get("operator", False)
     if not isinstance(operator, bool):
         raise InputError(f"{where}.operator: '{operator}' is neither true nor false")
@@ -133,7 +136,7 @@ def parse_command(raw: Any, rig: Rig, where: str, folder: Path) -> tuple[Command
     if kind not in ("constant", "steps"):
         raise InputError(f"{where}.kind: '{kind}' is unknown; choose {', '.join(KINDS)}")
     refuse_unknown(raw, ("kind", "operator", "joints"), where)
-    given = _joints(required(raw, "joints", where), rig, f"{where}.joints")
+    given = joints_of(required(raw, "joints", where), rig, f"{where}.joints")
     rows: list[tuple[tuple[float, float], ...]] = []
     for joint in rig.joints:
         key = f"{where}.joints.{joint}"
@@ -142,24 +145,8 @@ def parse_command(raw: Any, rig: Rig, where: str, folder: Path) -> tuple[Command
         elif kind == "constant":
             rows.append(((0.0, _value(given[joint], operator, key)),))
         else:
-            rows.append(_steps(given[joint], operator, key))
+            rows.append(steps(given[joint], key, "2 V", lambda value, at: _value(value, operator, at)))
     return Steps(tuple(rows), rest), operator
-
-
-def _steps(raw: Any, operator: bool, where: str) -> tuple[tuple[float, float], ...]:
-    if not isinstance(raw, list) or not raw:
-        raise InputError(
-            f"{where}: '{raw}' must be a list of [time, value], such as [[0.5 s, 2 V], [2 s, 0 V]]"
-        )
-    rows: list[tuple[float, float]] = []
-    for index, pair in enumerate(raw):
-        if not isinstance(pair, list) or len(pair) != 2:
-            raise InputError(f"{where}[{index}]: '{pair}' must be [time, value], such as [0.5 s, 2 V]")
-        time = quantity(pair[0], "s", f"{where}[{index}]", lowest=0.0)
-        if rows and time <= rows[-1][0]:
-            raise InputError(f"{where}[{index}]: time {time:g} s does not come after {rows[-1][0]:g} s")
-        rows.append((time, _value(pair[1], operator, f"{where}[{index}]")))
-    return tuple(rows)
 
 
 def _random(raw: Mapping[str, Any], rig: Rig, rest: np.ndarray, operator: bool, where: str) -> RandomLevels:
@@ -167,7 +154,7 @@ def _random(raw: Mapping[str, Any], rig: Rig, rest: np.ndarray, operator: bool, 
     names = raw.get("joints", list(rig.joints))
     if not isinstance(names, list):
         raise InputError(f"{where}.joints: '{names}' must be a list of joints from {', '.join(rig.joints)}")
-    _joints(dict.fromkeys(map(str, names)), rig, f"{where}.joints")
+    joints_of(dict.fromkeys(map(str, names)), rig, f"{where}.joints")
     hold = required(raw, "hold", where)
     if not isinstance(hold, list) or len(hold) != 2:
         raise InputError(f"{where}.hold: '{hold}' must be [shortest, longest], such as [0.2 s, 1 s]")
@@ -197,19 +184,6 @@ def _playback(path: Path, rig: Rig, where: str) -> Playback:
     return Playback(
         recording.time - recording.time[0], np.column_stack([recording.signal(key) for key in keys])
     )
-
-
-def _joints(raw: Any, rig: Rig, where: str) -> Mapping[str, Any]:
-    if not isinstance(raw, Mapping):
-        raise InputError(
-            f"{where} must be a mapping from joint to command; joints are {', '.join(rig.joints)}"
-        )
-    for joint in raw:
-        if joint not in rig.joints:
-            raise InputError(
-                f"{where}.{joint}: rig {rig.name} has no moving joint of that name; choose {', '.join(rig.joints)}"
-            )
-    return raw
 
 
 def _value(raw: Any, operator: bool, where: str) -> float:

@@ -1,12 +1,13 @@
 """Single entries of a scenario file, checked and converted to SI."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.parameters import Parameter
+from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.entries import parse_quantity
 
 _FULL_SIGNAL = 100.0  # percent
@@ -62,3 +63,50 @@ def number(raw: Any, where: str, *, lowest: int, highest: int | None = None) -> 
     if highest is not None and raw > highest:
         raise InputError(f"{where}: {raw} must be a whole number of at most {highest}")
     return raw
+
+
+def joints_of(raw: Any, rig: Rig, where: str) -> Mapping[str, Any]:
+    """A mapping from moving joints of a rig to what they are given.
+
+    Raises:
+        InputError: no mapping, or another joint.
+    """
+    if not isinstance(raw, Mapping):
+        raise InputError(
+            f"{where} must be a mapping from joint to command; joints are {', '.join(rig.joints)}"
+        )
+    for joint in raw:
+        if joint not in rig.joints:
+            raise InputError(
+                f"{where}.{joint}: rig {rig.name} has no moving joint of that name; choose {', '.join(rig.joints)}"
+            )
+    return raw
+
+
+def steps(
+    raw: Any, where: str, example: str, value: Callable[[Any, str], float]
+) -> tuple[tuple[float, float], ...]:
+    """A list of [time, value]: times [s] that increase, and what each value means.
+
+    Args:
+        raw: as written.
+        where: file and key, for errors.
+        example: of a value, for errors.
+        value: entry and its place -> number.
+
+    Raises:
+        InputError: anything else.
+    """
+    if not isinstance(raw, list) or not raw:
+        raise InputError(
+            f"{where}: '{raw}' must be a list of [time, value], such as [[0.5 s, {example}], [2 s, 0]]"
+        )
+    rows: list[tuple[float, float]] = []
+    for index, pair in enumerate(raw):
+        if not isinstance(pair, list) or len(pair) != 2:
+            raise InputError(f"{where}[{index}]: '{pair}' must be [time, value], such as [0.5 s, {example}]")
+        time = quantity(pair[0], "s", f"{where}[{index}]", lowest=0.0)
+        if rows and time <= rows[-1][0]:
+            raise InputError(f"{where}[{index}]: time {time:g} s does not come after {rows[-1][0]:g} s")
+        rows.append((time, value(pair[1], f"{where}[{index}]")))
+    return tuple(rows)

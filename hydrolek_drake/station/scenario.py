@@ -10,7 +10,8 @@ A scenario is a YAML file; the folder `diagrams` holds those that come with the 
     command: {kind: constant, joints: {right_j2: 2 V}} # see `station.commands` for all kinds
     initial_position: {right_j2: 20 deg, right_j3: 0}  # optional; held joints too
     events: {supply_lost_at: 5 s, commands_zero_at: 5 s}   # optional
-    integration: {step: 1 ms, plant_step: 0, log_period: 10 ms, integrator: runge_kutta3}  # optional
+    integration: {step: 1 ms, plant_step: 0, log_period: 10 ms, integrator: runge_kutta3}  # optional; steps as
+                                      # `step_sizes.sizes_for` the rig if not given
     forces: mounts                    # where cylinders push: at their mounts, or as moments on the joints
     noise: false                      # whether the sensors are noisy, optional
 
@@ -35,7 +36,8 @@ from hydrolek_drake.rigs.keys import refuse_unknown
 from hydrolek_drake.rigs.rig import declaration
 from hydrolek_drake.station.commands import Command, parse_command
 from hydrolek_drake.station.fields import quantity, required
-from hydrolek_drake.station.step_sizes import StepSizes
+from hydrolek_drake.station.set_points import Controlled
+from hydrolek_drake.station.step_sizes import StepSizes, sizes_for
 from hydrolek_drake.yaml_files import parse_yaml, read_yaml
 
 PREFIX = "scenario."
@@ -60,10 +62,11 @@ class Scenario:
         title: one line for people.
         rig: the machine, with settings and initial positions.
         duration: [s].
-        command: what drives it.
+        command: what drives it, or None where controllers do.
+        controlled: controllers and their set points, or None.
         operator: whether commands are signals in percent that pass operator computer and field point.
         supply_lost_at: when the supply falls to tank pressure [s], or None.
-        commands_zero_at: from when on all commands are zero, whatever `command` says [s], or None.
+        commands_zero_at: from when on all commands are zero and set points withdrawn [s], or None.
         sizes: step sizes.
         noise: whether the sensors are noisy.
         tree: the file's content with the settings.
@@ -74,7 +77,8 @@ class Scenario:
     title: str
     rig: Rig
     duration: float
-    command: Command
+    command: Command | None
+    controlled: Controlled | None
     operator: bool
     supply_lost_at: float | None
     commands_zero_at: float | None
@@ -84,6 +88,8 @@ class Scenario:
 
     def command_table(self, seed: int | None = None) -> tuple[np.ndarray, np.ndarray]:
         """Times [s], shape (m,), and commands [V or %], shape (m, joints), each held until the next."""
+        if self.command is None:
+            raise ValueError("what controllers command is known after the run only")
         times, values = self.command.table(self.duration, self.sizes.log_period, seed)
         if self.commands_zero_at is None:
             return times, values
@@ -92,14 +98,6 @@ class Scenario:
         if not self.operator:
             rest = self.rig.records()["command"]["neutral"].astype(float)
         return np.append(times[before], self.commands_zero_at), np.vstack([values[before], rest])
-
-    def command_source(self, seed: int | None = None) -> Any:
-        """The system that plays the commands, to be built into a station."""
-        from hydrolek_drake.station.simulation import (
-            command_source,
-        )  # Drake is loaded once a scenario is right
-
-        return command_source(*self.command_table(seed))
 
 
 def scenario_files() -> dict[str, Path]:
@@ -138,7 +136,7 @@ def load_scenario(name_or_path: str | Path, settings: Mapping[str, str] | None =
     duration = quantity(tree["duration"], "s", f"{path}: duration", lowest=0.0)
     if duration <= 0.0:
         raise InputError(f"{path}: duration: {duration:g} s must be above 0")
-    sizes = _sizes(tree.get("integration") or {}, path)
+    sizes = _sizes(tree.get("integration") or {}, rig, path)
     _check_length(duration, sizes, path)
     command, operator = parse_command(tree["command"], rig, f"{path}: command", path.parent)
     events = tree.get("events") or {}
@@ -149,16 +147,21 @@ def load_scenario(name_or_path: str | Path, settings: Mapping[str, str] | None =
     noise = tree.get("noise", False)
     if not isinstance(noise, bool):
         raise InputError(f"{path}: noise: '{noise}' is neither true nor false")
+    zero_at = _event(events, "commands_zero_at", path)
+    controlled = command if isinstance(command, Controlled) else None
+    if controlled is not None and zero_at is not None:
+        controlled = controlled.until(zero_at)
     return Scenario(
         name=path.stem,
         path=path,
         title=str(tree.get("title", path.stem)),
         rig=rig,
         duration=duration,
-        command=command,
+        command=None if isinstance(command, Controlled) else command,
+        controlled=controlled,
         operator=operator,
         supply_lost_at=_event(events, "supply_lost_at", path),
-        commands_zero_at=_event(events, "commands_zero_at", path),
+        commands_zero_at=zero_at,
         sizes=replace(sizes, mount_forces=forces == "mounts"),
         noise=noise,
         tree=tree,
@@ -226,7 +229,7 @@ def _rig(tree: dict[str, Any], path: Path, settings: Mapping[str, str]) -> Rig:
             raise InputError(f"{where}: no such joint; choose {', '.join([*rig.joints, *held])}")
     rig = replace(rig, held=copy.deepcopy(held))
     try:
-        rig = rig.with_settings({key: str(value) for key, value in own.items()})
+        rig = rig.with_settings({str(key): str(value) for key, value in own.items()})
     except InputError as error:
         raise InputError(f"{path}: settings: {error}") from None
     rig = rig.with_values(moving).with_settings(settings)
@@ -257,15 +260,21 @@ def _event(events: Mapping[str, Any], key: str, path: Path) -> float | None:
 
 def _check_length(duration: float, sizes: StepSizes, path: Path) -> None:
     """Refuse a run that would not end, or not fit into memory."""
-    for key, most, what in (("log_period", _MOST_ROWS, "rows"), ("step", _MOST_STEPS, "steps")):
-        if duration / getattr(sizes, key) > most:
+    limits = (
+        ("log_period", _MOST_ROWS, "rows"),
+        ("step", _MOST_STEPS, "steps"),
+        ("plant_step", _MOST_STEPS, "steps"),
+    )
+    for key, most, what in limits:
+        each = getattr(sizes, key)
+        if each > 0.0 and duration / each > most:
             raise InputError(
-                f"{path}: duration: {duration:g} s are more than {most} {what} of {getattr(sizes, key):g} s; "
+                f"{path}: duration: {duration:g} s are more than {most} {what} of {each:g} s; "
                 f"shorten it, or lengthen integration.{key}"
             )
 
 
-def _sizes(raw: Any, path: Path) -> StepSizes:
+def _sizes(raw: Any, rig: Rig, path: Path) -> StepSizes:
     where = f"{path}: integration"
     refuse_unknown(raw, ("step", "plant_step", "log_period", "integrator"), where)
     times = {
@@ -277,11 +286,11 @@ def _sizes(raw: Any, path: Path) -> StepSizes:
         if times.get(key, 1.0) <= 0.0:
             raise InputError(f"{where}.{key}: 0 s is impossible; give a time above 0")
     try:
-        usual = StepSizes()
+        usual = sizes_for(rig)
         return StepSizes(
             step=times.get("step", usual.step),
             plant_step=times.get("plant_step", usual.plant_step),
-            log_period=times.get("log_period", usual.log_period),
+            log_period=times.get("log_period", StepSizes.log_period),
             integrator=str(raw.get("integrator", usual.integrator)),
         )
     except InputError as error:

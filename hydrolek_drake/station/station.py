@@ -69,8 +69,9 @@ def make_station(
     Args:
         rig: the machine.
         sizes: step sizes; the defaults run the whole machine several times faster than real time.
-        command: system with one output of n voltages (or signals, with `operator`); None leaves the diagram's
-            input `command` (or `signal_commanded`) open.
+        command: system whose first output are n voltages (or signals, with `operator`); one that has an input
+            `position_measured` is a controller, and sees what the sensors measure. None leaves the diagram's input
+            `command` (or `signal_commanded`) open.
         operator: whether commands are signals in percent that pass the operator computer and the field point.
         noise: source of sensor noise; None for ideal sensors.
         visualize: called with builder, plant, scene graph, rig and records before the diagram is built.
@@ -103,6 +104,8 @@ def make_station(
         _wire_hydraulics(builder, add, rig, joints, sizes, delay, parts)
     sensor = add(Potentiometer(joints, sizes.step, noise))
     builder.Connect(parts.sensed, sensor.motion)
+    if command is not None and command.num_input_ports() > 0:
+        builder.Connect(sensor.measured, command.GetInputPort("position_measured"))
     if any(law_of(joints[i : i + 1]) is not None for i in range(len(joints))):
         _wire_law(builder, add(ShortLaw(joints)), systems)
     logs = _add_logs(builder, systems, sizes.log_period)

@@ -120,7 +120,7 @@ def test_settings_reach_scenario_and_rig():
         ("duration: 1 s", "duration: -1", ["mine.yaml: duration", "impossible"]),
         ("duration: 1 s", "duraton: 1 s", ["mine.yaml.duraton", "did you mean duration"]),
         ("duration: 1 s\n", "", ["duration is missing"]),
-        ("kind: constant", "kind: sine", ["'sine'", "constant, steps, random, recording"]),
+        ("kind: constant", "kind: sine", ["'sine'", "constant, steps, random, recording, controlled"]),
         ("joint: 2 V", "elbow: 2 V", ["command.joints.elbow", "choose joint"]),
         ("joint: 2 V", "joint: 2 MPa", ["command.joints.joint", "'MPa'"]),
         (

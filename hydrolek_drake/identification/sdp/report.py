@@ -10,6 +10,7 @@ import numpy as np
 import yaml
 
 from hydrolek_drake.control.sdp_model import thesis_data
+from hydrolek_drake.files import write_results
 from hydrolek_drake.identification.sdp.identify import SdpIdentification
 from hydrolek_drake.identification.sdp.step_test import campaign_data
 from hydrolek_drake.identification.sdp.validation import KINDS, ValidationRun
@@ -73,7 +74,6 @@ def write_report(
     results: Sequence[tuple[SdpIdentification, Sequence[ValidationRun]]], folder: Path
 ) -> list[Path]:
     """Write `sdp.json`, `sdp_models.yaml` and a picture for each joint; returns the paths."""
-    folder.mkdir(parents=True, exist_ok=True)
     models = {
         "sample": {"value": results[0][0].model.sample_s, "unit": "s"},
         "joints": {found.joint: as_model_entry(found) for found, _ in results},
@@ -83,12 +83,7 @@ def write_report(
         "sdp_models.yaml": yaml.safe_dump(models, sort_keys=False).encode(),
         **{f"sdp_{found.joint}.png": picture(found, runs) for found, runs in results},
     }
-    written = []
-    for name, content in contents.items():
-        draft = folder / f"{name}.part"
-        draft.write_bytes(content)
-        written.append(draft.rename(folder / name))
-    return written
+    return write_results(folder, contents)
 
 
 def picture(found: SdpIdentification, runs: Sequence[ValidationRun]) -> bytes:

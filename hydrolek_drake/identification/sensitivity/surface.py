@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import write_results
 from hydrolek_drake.identification.objective.norms import mean_norm
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.identification.sensitivity.response import response_of
@@ -136,7 +137,6 @@ def performance_surface(
 
 def write_surface(surface: PerformanceSurface, folder: Path) -> list[Path]:
     """Write `surface_<joint>.json` and a picture, each when complete; returns the paths."""
-    folder.mkdir(parents=True, exist_ok=True)
     tree = {
         "joint": surface.joint,
         "against": "recording" if surface.measured else "rig",
@@ -151,16 +151,11 @@ def write_surface(surface: PerformanceSurface, folder: Path) -> list[Path]:
             [None if np.isnan(value) else float(value) for value in row] for row in surface.error
         ],
     }
-    contents = {
+    contents: dict[str, bytes | str] = {
         f"surface_{surface.joint}.json": (json.dumps(tree, indent=1) + "\n").encode(),
         f"surface_{surface.joint}.png": surface_png(surface),
     }
-    written = []
-    for name, content in contents.items():
-        draft = folder / f"{name}.part"
-        draft.write_bytes(content)
-        written.append(draft.rename(folder / name))
-    return written
+    return write_results(folder, contents)
 
 
 def surface_png(surface: PerformanceSurface) -> bytes:
