@@ -25,7 +25,8 @@ def test_bench_prints_the_ranking_and_writes_the_report(printed, tmp_path):
     numbers = json.loads((tmp_path / "out" / "bench.json").read_text())
     assert numbers["sentence"] in text
     assert "worst rise [s]" in text and "PIP IDZ c" in text
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {"bench.html", "bench.json", "step.png"}
+    written = {path.name for path in (tmp_path / "out").iterdir()}
+    assert written == {"bench.html", "bench.json", "step.png", "step_path.png"}
 
 
 def test_design_from_the_thesis_gives_table_6_6(printed, tmp_path):
