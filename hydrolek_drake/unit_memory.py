@@ -21,7 +21,7 @@ def _file() -> Path:
 @cache
 def _known() -> dict[str, float]:
     """What is on disk; nothing if it cannot be read."""
-    with contextlib.suppress(OSError, ValueError, RecursionError):
+    with contextlib.suppress(OSError, ValueError, RecursionError, RuntimeError):  # the last: there is no home
         found = json.loads(_file().read_text(encoding="utf-8"))
         if isinstance(found, dict) and all(
             isinstance(f, float) and 0.0 < f < math.inf for f in found.values()
@@ -46,7 +46,7 @@ _added: dict[str, float] = {}
 
 
 def _write() -> None:
-    with contextlib.suppress(OSError):  # a read-only home: converted anew in each run
+    with contextlib.suppress(OSError, RuntimeError):  # a read-only home, or none: converted anew in each run
         _file().parent.mkdir(parents=True, exist_ok=True)
         _known.cache_clear()  # other programs may have added theirs meanwhile
         write_whole(_file(), json.dumps(_known() | _added, indent=0, sort_keys=True))

@@ -25,6 +25,7 @@ from hydrolek_drake.control.catalogue import build_law, rig_setting
 from hydrolek_drake.control.closed_loop import loop_on_rollout
 from hydrolek_drake.control.controlled_station import run_controlled
 from hydrolek_drake.control.thesis_gains import sample_s
+from hydrolek_drake.files import read_kept, write_whole
 from hydrolek_drake.physics import load
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rigs.geometry import FROM_ARM
@@ -268,7 +269,9 @@ def main() -> None:
             runs += [(ONE_BODY, part[i : i + len(cases)]) for i in range(0, len(part), len(cases))]
         runs += [(ARMS, [case]) for case in more if not fits_one_body(case)]
     kept = arguments.out.with_suffix(".partial.json")
-    rows: list[Row] = [tuple(row) for row in json.loads(kept.read_text())] if kept.exists() else []
+    rows: list[Row] = (
+        [tuple(row) for row in read_kept(kept, "what an earlier run compared")] if kept.exists() else []
+    )
     for plant, together in runs:
         if any(row[:3] == (plant, *together[0]) for row in rows):
             continue
@@ -276,7 +279,7 @@ def main() -> None:
         step = arguments.step * share_of_step(together[0])
         figures = compare(rig, arguments.duration, step, *(seeds[case] for case in together))
         rows += [(plant, *case, step, *figure) for case, figure in zip(together, figures, strict=True)]
-        kept.write_text(json.dumps(rows))
+        write_whole(kept, json.dumps(rows))
         for row in rows[-len(together) :]:
             print(
                 "{:9s} {:18s} {!s:28s} step {:g} s: rms {:.4f} deg, largest {:.4f} deg".format(*row),
@@ -313,9 +316,7 @@ def write(out: Path, rows: list[Row], done: str, duration: float) -> None:
         f"| {p} | {j} | {e or '-'} | {1e3 * step:g} | {rms:.4f} | {largest:.4f} |"
         for p, j, e, step, rms, largest in rows
     ]
-    draft = out.with_name(f".{out.name}.part")
-    draft.write_text("\n".join(lines) + "\n" + heading + below)
-    draft.replace(out)
+    write_whole(out, "\n".join(lines) + "\n" + heading + below)
 
 
 if __name__ == "__main__":

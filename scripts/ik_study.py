@@ -15,6 +15,7 @@ import numpy as np
 from pydrake.multibody.inverse_kinematics import InverseKinematics
 from pydrake.solvers import Solve
 
+from hydrolek_drake.files import write_whole
 from hydrolek_drake.kinematics.arms import make_arms_plant, position_indices
 from hydrolek_drake.kinematics.chain import arm_chain, joint_limits
 from hydrolek_drake.kinematics.forward import tool_pose, wrist_position
@@ -161,9 +162,8 @@ def main() -> None:
     for name, solve, targets, side, directed in solvers:
         figures["solvers"].append({"solver": name} | measure(solve, targets, side, directed))
         print(figures["solvers"][-1])
-    draft = arguments.out.with_suffix(".json.part")
-    draft.write_text(json.dumps(figures, indent=1) + "\n")
-    print(f"figures: {draft.rename(arguments.out)}")
+    write_whole(arguments.out, json.dumps(figures, indent=1) + "\n")
+    print(f"figures: {arguments.out}")
 
 
 if __name__ == "__main__":

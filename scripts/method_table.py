@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from hydrolek_drake.files import read_kept, write_whole
 from hydrolek_drake.identification.fit.rig_objective import RigObjective
 from hydrolek_drake.identification.genetic.multi_objective import pareto_set
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
@@ -125,9 +126,7 @@ def main() -> None:
                 flush=True,
             )
             content = {"date": date.today().isoformat(), **conditions, "runs": rows}
-            draft = arguments.out.with_suffix(".part")
-            draft.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
-            draft.rename(arguments.out)
+            write_whole(arguments.out, json.dumps(content, indent=1) + "\n")
     print(table(rows))
 
 
@@ -149,7 +148,7 @@ def kept_rows(path: Path, conditions: dict) -> list[dict]:
     """Rows that were made before under the same conditions."""
     if not path.is_file():
         return []
-    before = json.loads(path.read_text(encoding="utf-8"))
+    before = read_kept(path, "the runs made before", ("runs",))
     same = all(before.get(key) == value for key, value in conditions.items())
     return list(before["runs"]) if same else []
 

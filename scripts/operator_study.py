@@ -22,6 +22,7 @@ from pydrake.systems.analysis import Simulator
 from hydrolek_drake.control.catalogue import build_law, joystick_law
 from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import write_whole
 from hydrolek_drake.kinematics.forward import tool_pose
 from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.kinematics.jacobian import tool_jacobian
@@ -301,9 +302,7 @@ def main() -> None:
         figures["setups"].append(row)
         figures["summary"] = summary(figures["setups"])
         print(json.dumps(row), flush=True)
-        draft = out.with_suffix(".json.part")
-        draft.write_text(json.dumps(figures, indent=1) + "\n")
-        draft.rename(out)  # what is measured is kept, however it ends
+        write_whole(out, json.dumps(figures, indent=1) + "\n")  # what is measured is kept, however it ends
     print(json.dumps(figures["summary"], indent=1), f"\nfigures: {out}")
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from pydrake.systems.analysis import Simulator
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import read_kept, write_whole
 from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.teleop.clicks import Clicks, Task
@@ -86,7 +87,7 @@ def main() -> None:
     logging.getLogger("drake").setLevel(logging.WARNING)
     figures = {"date": datetime.date.today().isoformat(), "seed": arguments.seed, "places": []}
     if arguments.add:
-        before = json.loads(arguments.out.read_text())
+        before = read_kept(arguments.out, "what was measured before")
         if before["seed"] != arguments.seed:
             parser.error(f"{arguments.out} was measured with seed {before['seed']}, not {arguments.seed}")
         figures["places"] = before["places"]
@@ -112,9 +113,9 @@ def main() -> None:
             row["refused"] = str(error)
         figures["places"].append(row)
         print(json.dumps(row), flush=True)
-        draft = arguments.out.with_suffix(".json.part")
-        draft.write_text(json.dumps(figures, indent=1) + "\n")
-        draft.rename(arguments.out)  # what is measured is kept, however it ends
+        write_whole(
+            arguments.out, json.dumps(figures, indent=1) + "\n"
+        )  # what is measured is kept, however it ends
     print(f"figures: {arguments.out}")
 
 

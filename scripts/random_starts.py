@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from hydrolek_drake.files import write_whole
 from hydrolek_drake.identification.fit.report import AT_NOISE
 from hydrolek_drake.identification.least_squares import fit_from_afar
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
@@ -70,9 +71,7 @@ def main() -> None:
                 flush=True,
             )
             content = {"date": date.today().isoformat(), "seed": arguments.seed, "fits": rows}
-            draft = arguments.out.with_suffix(".part")
-            draft.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
-            draft.rename(arguments.out)
+            write_whole(arguments.out, json.dumps(content, indent=1) + "\n")
 
 
 if __name__ == "__main__":

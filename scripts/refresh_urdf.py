@@ -19,6 +19,8 @@ import numpy as np
 from pydrake.math import RigidTransform, RollPitchYaw
 from pydrake.multibody.tree import RotationalInertia, SpatialInertia, UnitInertia
 
+from hydrolek_drake.files import write_whole
+
 URDF = Path(__file__).resolve().parent.parent / "urdf" / "hydrolek.urdf"
 
 
@@ -122,9 +124,7 @@ def main() -> None:
     fresh = refresh(text)
     if check:
         sys.exit(0 if fresh == text else f"{URDF.name} is out of date; run scripts/refresh_urdf.py")
-    temporary = URDF.with_suffix(".tmp")
-    temporary.write_text(fresh)
-    temporary.replace(URDF)
+    write_whole(URDF, fresh)
 
 
 if __name__ == "__main__":

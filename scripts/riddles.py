@@ -21,7 +21,7 @@ from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.diagnosis.diagnosis import diagnose
 from hydrolek_drake.diagnosis.report_json import as_json
 from hydrolek_drake.effects import EFFECTS
-from hydrolek_drake.files import write_whole
+from hydrolek_drake.files import read_kept, write_whole
 from hydrolek_drake.identification.parameter_set import free_of_joints
 from hydrolek_drake.recordings import read_recording, write_signals
 from hydrolek_drake.rigs import Rig, load_rig
@@ -204,7 +204,7 @@ def main() -> None:
                 training, holdout = (read_recording(folder / f"{p}.csv", rig.columns) for p in PARTS)
                 report = as_json(diagnose(rig, [training], [holdout], pool, print))
                 write_whole(kept, json.dumps(report, indent=1))
-            report = json.loads(kept.read_text())
+            report = read_kept(kept, "the report of a riddle diagnosed before")
             print(number, report["verdict"], [e["id"] for e in report["effects"]], solved(riddle, report))
             reports.append(report)
     if arguments.only is None:

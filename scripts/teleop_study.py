@@ -16,6 +16,7 @@ import numpy as np
 from pydrake.systems.analysis import Simulator
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import read_kept, write_whole
 from hydrolek_drake.kinematics.forward import tool_pose
 from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.rigs import load_rig
@@ -193,7 +194,7 @@ def main() -> None:
         "tasks": [],
     }
     if arguments.add:
-        before = json.loads(arguments.out.read_text())
+        before = read_kept(arguments.out, "what was measured before")
         for name in ("seed", "plant", "controller"):
             if before[name] != figures[name]:
                 parser.error(f"{arguments.out} was measured with {name} {before[name]}, not {figures[name]}")
@@ -219,9 +220,9 @@ def main() -> None:
                     continue
                 figures["tasks"].append(measure(name, distance, side, arguments.seed, make_arms))
                 print(figures["tasks"][-1], flush=True)
-                draft = arguments.out.with_suffix(".json.part")
-                draft.write_text(json.dumps(figures, indent=1) + "\n")
-                draft.rename(arguments.out)  # what is measured is kept, however it ends
+                write_whole(
+                    arguments.out, json.dumps(figures, indent=1) + "\n"
+                )  # what is measured is kept, however it ends
     print(f"figures: {arguments.out}")
 
 

@@ -22,7 +22,7 @@ from riddles import PARTS, random_voltage, record, rig_of
 from hydrolek_drake.challenge.build import build_of
 from hydrolek_drake.diagnosis.diagnosis import diagnose
 from hydrolek_drake.diagnosis.report_json import as_json
-from hydrolek_drake.files import write_whole
+from hydrolek_drake.files import read_kept, write_whole
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
@@ -161,7 +161,7 @@ def main() -> None:
                 write_whole(
                     kept, json.dumps(as_json(diagnose(rig, [training], [holdout], pool, _quiet)), indent=1)
                 )
-            lines.append(row(label, json.loads(kept.read_text())))
+            lines.append(row(label, read_kept(kept, "the report of a case diagnosed before")))
             print(lines[-1], flush=True)
             write_whole(arguments.out / "cases.md", "\n".join(lines) + "\n")
 

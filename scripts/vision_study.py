@@ -13,6 +13,7 @@ import cv2
 import numpy as np
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import write_whole
 from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.vision.camera import (
     camera_pose,
@@ -113,9 +114,8 @@ def main() -> None:
     figures["rendered"] = score_rendered(arguments.seed)
     for row in figures["rendered"]:
         print(row)
-    draft = arguments.out.with_suffix(".json.part")
-    draft.write_text(json.dumps(figures, indent=1) + "\n")
-    print(f"figures: {draft.rename(arguments.out)}")
+    write_whole(arguments.out, json.dumps(figures, indent=1) + "\n")
+    print(f"figures: {arguments.out}")
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from hydrolek_drake.benchmark.lanes import measure_lanes
 from hydrolek_drake.benchmark.plain_bench import simulate_plainly
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
@@ -94,6 +95,7 @@ def measure(seed: int, repeats: int, report: Callable[[str], None]) -> dict[str,
 
     rollout()
     speeds.append(_speed(f"rollout, one joint, {step * 1e3:g} ms", times[-1], rollout, 5 * repeats))
+    lanes = measure_lanes(times, command, 5, report)
     report("error of the rollout against its reference")
     reference = rollout(REFERENCE_STEP)
     error = np.degrees(rollout() - reference)
@@ -113,6 +115,7 @@ def measure(seed: int, repeats: int, report: Callable[[str], None]) -> dict[str,
             for s in speeds
             if s is not fast
         },
+        "lanes": [asdict(row) for row in lanes],
         "rollout_error_deg": {
             "rms": float(np.sqrt(np.mean(error**2))),
             "largest": float(np.abs(error).max()),

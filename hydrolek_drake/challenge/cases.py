@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -50,6 +50,10 @@ class Case:
     seed: int
     rig: str = BENCH
     shows: dict[str, float] = field(default_factory=dict)
+
+
+CASE_KEYS = tuple(each.name for each in fields(Case) if each.name not in ("rig", "shows"))
+"""What a label has at least."""
 
 
 def machine_of(build: Build, case: Case) -> Any:

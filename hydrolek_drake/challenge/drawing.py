@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.challenge.build import Build, build_of
-from hydrolek_drake.challenge.cases import TRAIN_S, Case, driven, read_case, with_concealed
-from hydrolek_drake.files import write_whole
+from hydrolek_drake.challenge.cases import CASE_KEYS, TRAIN_S, Case, driven, read_case, with_concealed
+from hydrolek_drake.files import read_kept, write_whole
 from hydrolek_drake.rigs import Rig
 
 INDIVIDUAL = 0.12
@@ -70,7 +70,7 @@ def draw_cases(
     def drawn(number: int, draft: Draft, own: np.random.SeedSequence) -> Case:
         label = kept / f"case_{number:03d}.json" if kept else None
         if label and label.exists():
-            return read_case(json.loads(label.read_text()))
+            return read_case(read_kept(label, "the machine drawn before", CASE_KEYS))
         case = _case(number, *draft, np.random.default_rng(own))
         if label:
             write_whole(label, json.dumps(asdict(case)))

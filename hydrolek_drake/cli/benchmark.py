@@ -17,6 +17,7 @@ def benchmark(
 
     from hydrolek_drake.benchmark.measure import measure
     from hydrolek_drake.cli.output import console, progress
+    from hydrolek_drake.files import write_results
 
     output = console()
     with progress("measuring") as tell:
@@ -32,6 +33,18 @@ def benchmark(
             "" if ratio is None else f"{ratio:.4g}",
         )
     output.print(table)
+    lanes = Table(
+        "machines in lanes", "how many", "rollouts of one", "one by one", "machine-seconds per second"
+    )
+    for row in figures["lanes"]:
+        lanes.add_row(
+            row["machine"],
+            str(row["count"]),
+            f"{row['in_lanes']:.2f}",
+            f"{row['one_by_one']:.2f}",
+            f"{row['machine_seconds']:.4g}",
+        )
+    output.print(lanes)
     error = figures["rollout_error_deg"]
     output.print(
         f"rollout against its 0.01 ms reference: {error['rms']:.4f} deg rms, {error['largest']:.4f} deg at most; "
@@ -40,7 +53,5 @@ def benchmark(
         soft_wrap=True,
     )
     if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
-        draft = out / "benchmark.json.part"
-        draft.write_text(json.dumps(figures, indent=1) + "\n")
-        output.print(f"figures: {draft.rename(out / 'benchmark.json')}")
+        (written,) = write_results(out, {"benchmark.json": json.dumps(figures, indent=1) + "\n"})
+        output.print(f"figures: {written}", markup=False, soft_wrap=True)

@@ -43,6 +43,10 @@ def challenge(
 
     Machines drawn and finished cases are kept and scored: the same command goes on where it was interrupted.
     """
+    for name, value in (("--cases", cases), ("--workers", workers), ("--first", first)):
+        if value is not None and value < 1:
+            raise InputError(f"{name} {value}: at least 1 is needed")
+
     from concurrent.futures import ThreadPoolExecutor
 
     from hydrolek_drake.challenge.build import BENCH, rig_names
@@ -54,14 +58,11 @@ def challenge(
     from hydrolek_drake.diagnosis.diagnosis import diagnose
     from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
     from hydrolek_drake.diagnosis.report_json import as_json
-    from hydrolek_drake.files import write_whole
+    from hydrolek_drake.files import read_kept, write_whole
     from hydrolek_drake.recordings import read_recording
     from hydrolek_drake.rigs import load_rig
     from hydrolek_drake.runs.report import prepare_folder
 
-    for name, value in (("--cases", cases), ("--workers", workers), ("--first", first)):
-        if value is not None and value < 1:
-            raise InputError(f"{name} {value}: at least 1 is needed")
     if kind not in (known := [name for name, _ in KINDS]) and kind != "all":
         raise InputError(f"--kind {kind}: no such cases; choose {', '.join([*known, 'all'])}")
     output = console()
@@ -73,6 +74,7 @@ def challenge(
     sample = sample if kind == "all" else f"{kind}_{sample}"
     kept = out / f"labels_{sample}.json"
     if kept.exists():
+        read_kept(kept, "the list of machines drawn before")
         labels = kept.read_text()
     else:
         drawn_so_far = out / f"labels_{sample}"
@@ -106,7 +108,7 @@ def challenge(
                     if INTERRUPTED in done.reasons:
                         raise KeyboardInterrupt
                     write_whole(report, json.dumps(as_json(done), indent=1))
-                answered = json.loads(report.read_text())
+                answered = read_kept(report, "the report of a case diagnosed before", ("verdict",))
                 tell(f"case {number} of {len(told)}: {answered['verdict']}")
                 scored[label["name"]] = score(label, answered)
     finally:  # interrupted too: what is known by then

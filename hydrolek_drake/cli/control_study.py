@@ -31,6 +31,7 @@ def judge(
     from hydrolek_drake.control.conditions import Condition, conditions_data, judged_conditions
     from hydrolek_drake.control.judged import as_json, as_rows
     from hydrolek_drake.control.judging import judge_all, make_cases
+    from hydrolek_drake.files import write_out
     from hydrolek_drake.rigs import load_rig
 
     names, joints = controller or list(CONTROLLERS), joint or list(_ALL)
@@ -57,7 +58,7 @@ def judge(
 
     console().print(text_table(*as_rows(found)))
     if out is not None:
-        _write(out, json.dumps(as_json(found), indent=1))
+        write_out(out, json.dumps(as_json(found), indent=1) + "\n")
 
 
 def tune(
@@ -81,6 +82,7 @@ def tune(
     from hydrolek_drake.control.judging import make_cases
     from hydrolek_drake.control.rate_map import rig_model_and_rates
     from hydrolek_drake.control.tuning import tune as search
+    from hydrolek_drake.files import write_out
     from hydrolek_drake.rigs import load_rig
 
     joints = joint or list(_ALL[:5])
@@ -107,7 +109,7 @@ def tune(
     for key, value in asdict(best[0]).items():
         output.print(f"{key}: {value:.4g}", markup=False)
     if out is not None:
-        _write(out, json.dumps(asdict(best[0]), indent=1))
+        write_out(out, json.dumps(asdict(best[0]), indent=1) + "\n")
     if interrupted:
         raise KeyboardInterrupt
 
@@ -116,15 +118,3 @@ def _check_joints(joints: list[str]) -> None:
     for name in joints:
         if name not in _ALL:
             raise InputError(f"--joint {name}: choose {', '.join(_ALL)}")
-
-
-def _write(path: Path, text: str) -> None:
-    part = path.with_name(f".{path.name}.part")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part.write_text(text + "\n", encoding="utf-8")
-        part.replace(path)
-    except OSError as error:
-        raise InputError(f"--out {path}: cannot write there: {error.strerror or error}") from None
-    finally:
-        part.unlink(missing_ok=True)

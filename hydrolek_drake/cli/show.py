@@ -1,6 +1,5 @@
 """`hydrolek show`: a saved run in the browser, without simulating it again."""
 
-import os
 from pathlib import Path
 from typing import Annotated
 
@@ -23,6 +22,7 @@ def show(
 ) -> None:
     """Show a saved run of the arms as a 3-D animation with a time slider."""
     from hydrolek_drake.cli.output import console
+    from hydrolek_drake.files import write_out
     from hydrolek_drake.visualization.controls import with_open_controls
     from hydrolek_drake.visualization.loopback_server import loopback_visualizer
     from hydrolek_drake.visualization.saved_run import draw_saved_run, read_saved_run
@@ -34,24 +34,13 @@ def show(
     with loopback_visualizer() as view:
         draw_saved_run(saved, view)
         if out is not None:
-            _write(out, with_open_controls(view.static_html()))
+            write_out(out, with_open_controls(view.static_html()))
             output.print(f"animation: {out}", markup=False, soft_wrap=True)
             return
         output.print(
             f"open {view.url()} in a browser on this machine; Ctrl-C ends it", markup=False, soft_wrap=True
         )
         _stay()
-
-
-def _write(path: Path, page: str) -> None:
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        part.write_text(page, encoding="utf-8")
-        part.replace(path)
-    except OSError as error:
-        raise InputError(f"--out {path}: cannot write there: {error.strerror or error}") from None
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _stay() -> None:

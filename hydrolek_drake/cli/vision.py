@@ -40,6 +40,7 @@ def vision(
     import numpy as np
 
     from hydrolek_drake.cli.output import console
+    from hydrolek_drake.files import write_results
     from hydrolek_drake.vision.edges import default_settings
     from hydrolek_drake.vision.frames import FolderSource
     from hydrolek_drake.vision.selection import Fill, overlay, select_object
@@ -72,12 +73,9 @@ def vision(
         if grasp is not None and cut is not None:
             lines += _targets(snapshot, selected, grasp, cut, taken.camera, pictures["selected"])
     if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
-        for name, picture in pictures.items():
-            draft = out / f"{name}.part.png"
-            if not cv2.imwrite(str(draft), picture):
-                raise InputError(f"vision: cannot write into {out}; choose another folder")
-            draft.rename(out / f"{name}.png")
+        write_results(
+            out, {f"{name}.png": cv2.imencode(".png", each)[1].tobytes() for name, each in pictures.items()}
+        )
         lines.append(f"pictures: {out}")
     for line in lines:
         console().print(line, markup=False, soft_wrap=True)

@@ -3,7 +3,6 @@
 import base64
 import html
 import json
-import os
 from collections.abc import Mapping
 from math import isfinite
 from pathlib import Path
@@ -14,6 +13,7 @@ from hydrolek_drake.control.bench import Bench, Trial
 from hydrolek_drake.control.bench_tables import MEASURES, printed, ranking_rows, rows, sentence, tool_rows
 from hydrolek_drake.control.catalogue import CONTROLLERS
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import write_whole
 from hydrolek_drake.replay.page import STYLE
 from hydrolek_drake.replay.panels import Line, Panel
 from hydrolek_drake.replay.picture import plots_png
@@ -44,9 +44,9 @@ def write_bench(bench: Bench, folder: Path) -> Path:
             for sequence in _sequences(bench)
         }
         for sequence, picture in pictures.items():
-            _write(folder / f"{sequence}.png", picture)
-        _write(folder / "bench.json", json.dumps(as_json(bench), indent=1).encode())
-        _write(folder / "bench.html", page(bench, pictures).encode())
+            write_whole(folder / f"{sequence}.png", picture)
+        write_whole(folder / "bench.json", json.dumps(as_json(bench), indent=1).encode())
+        write_whole(folder / "bench.html", page(bench, pictures).encode())
     except OSError as error:
         raise InputError(f"--out {folder}: cannot write there: {error.strerror or error}") from None
     return folder / "bench.html"
@@ -166,12 +166,3 @@ def as_json(bench: Bench) -> dict[str, Any]:
 
 def _finite(value: float) -> float | None:
     return float(value) if isfinite(value) else None
-
-
-def _write(path: Path, data: bytes) -> None:
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        part.write_bytes(data)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)

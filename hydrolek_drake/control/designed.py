@@ -1,6 +1,5 @@
 """From an SDP model to a ready controller in one step, as a file."""
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,6 +23,7 @@ from hydrolek_drake.control.pip import PipLaw
 from hydrolek_drake.control.sdp_model import SdpModel, thesis_data
 from hydrolek_drake.control.thesis_gains import sample_s, voltage_limit_V
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import write_out
 from hydrolek_drake.yaml_files import read_yaml
 
 
@@ -145,13 +145,13 @@ def read_model(path: Path) -> SdpModel:
     (delay,) = _numbers([inner["delay_samples"]], f"model {path}: delay_samples")
     if len(ends) != 2 or not ends[0] < ends[1]:
         raise InputError(f"model {path}: range_deg must be two numbers that rise")
-    if not 0.0 < interval <= _LONGEST_S:
+    if not _SHORTEST_S <= interval <= _LONGEST_S:
         raise InputError(
-            f"model {path}: sample_s {interval:g} s must be above 0 and at most {_LONGEST_S:g} s"
+            f"model {path}: sample_s {interval:g} s must lie between {_SHORTEST_S:g} and {_LONGEST_S:g} s"
         )
-    if delay != int(delay) or not 0.0 <= delay * interval <= _LONGEST_S:
+    if delay != int(delay) or not 0.0 <= delay * interval <= _LONGEST_DELAY_S:
         raise InputError(
-            f"model {path}: delay_samples {delay:g} must be a whole number of samples, {_LONGEST_S:g} s at most"
+            f"model {path}: delay_samples {delay:g} must be a whole number of samples, {_LONGEST_DELAY_S:g} s at most"
         )
     model = SdpModel(str(tree.get("joint", path.stem)), alpha, beta, interval, int(delay), *ends)
     if wrong := _contradiction(model):
@@ -160,7 +160,8 @@ def read_model(path: Path) -> SdpModel:
 
 
 _LARGEST = 1e6  # of any number of a model, in volts, degrees, or by sample
-_LONGEST_S = 10.0
+_SHORTEST_S, _LONGEST_S = 1e-6, 10.0  # of a sampling interval
+_LONGEST_DELAY_S = 2.0  # a design of an order above 40 takes minutes, and controls nothing
 _NEEDED = "alpha (6 numbers, or 4 with beta of 6), delay_samples and range_deg (2 numbers)"
 
 
@@ -176,8 +177,14 @@ def _numbers(raw: Any, where: str) -> tuple[float, ...]:
     return tuple(values)
 
 
+_LEAST_DEG = 1e-9  # of a rate by sample, below which it is none
+
+
 def _contradiction(model: SdpModel) -> str:
     """What is wrong with numbers that cannot be those of a joint; empty if nothing is."""
+    rates = model.alpha[::3] if model.beta is None else model.beta[0:3:2]
+    if min(map(abs, rates)) < _LEAST_DEG:
+        return f"rates of saturation {rates} deg by sample are too small to be any"
     if model.beta is None:
         a1, a2, a3, a4, a5, a6 = model.alpha
         if not (a1 < 0.0 < a4 and a2 > 0.0 and a5 > 0.0 and a3 < a6):
@@ -189,8 +196,8 @@ def _contradiction(model: SdpModel) -> str:
         b1, b2, b3, b4, b5, b6 = model.beta
         if not (b1 < 0.0 < b3 and b5 < b2 < b4 < b6 and model.alpha[1] > 0.0 and model.alpha[3] > 0.0):
             return (
-                "beta begins with the negative rate, beta3 is the positive one, beta5, beta2, beta4 and beta6 rise, and "
-                "the slopes alpha2 and alpha4 are above 0"
+                "beta begins with the negative rate, beta3 is the positive one, beta5, beta2, beta4 and beta6 rise, "
+                "and the slopes alpha2 and alpha4 are above 0"
             )
     return ""
 
@@ -201,12 +208,4 @@ def write_designed(designed: Designed, path: Path) -> None:
     Raises:
         InputError: the file cannot be written.
     """
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part.write_text(yaml.safe_dump(designed.as_tree(), sort_keys=False), encoding="utf-8")
-        part.replace(path)
-    except OSError as error:
-        raise InputError(f"--out {path}: cannot write there: {error.strerror or error}") from None
-    finally:
-        part.unlink(missing_ok=True)
+    write_out(path, yaml.safe_dump(designed.as_tree(), sort_keys=False))

@@ -1,12 +1,11 @@
 """The coils warm up and draw less current."""
 
-import math
 from typing import Any
 
-from numba import njit
-
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
+from hydrolek_drake.physics.smooth import exponential
 
 EFFECT = Effect(
     id="amplifier.gain_fade",
@@ -39,4 +38,4 @@ def coil_gain(time: float, joint: Any) -> float:
     p = joint.effects.amplifier_gain_fade
     if p.fraction == 0.0:
         return 1.0
-    return 1.0 - p.fraction * (1.0 - math.exp(-time / p.time_constant_s))
+    return 1.0 - p.fraction * (1.0 - exponential(-time / p.time_constant_s))

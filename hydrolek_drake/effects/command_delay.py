@@ -2,8 +2,7 @@
 
 from typing import Any
 
-from numba import njit
-
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 

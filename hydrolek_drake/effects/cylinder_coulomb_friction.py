@@ -1,12 +1,11 @@
 """Dry friction of the seals."""
 
-import math
 from typing import Any
 
-from numba import njit
-
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
+from hydrolek_drake.physics.smooth import hyperbolic_tangent
 
 EFFECT = Effect(
     id="cylinder.coulomb_friction",
@@ -38,5 +37,5 @@ def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, flo
     if coulomb == 0.0:
         return 0.0, 0.0
     smooth = joint.cylinder.friction_velocity
-    share = math.tanh(velocity / smooth)
+    share = hyperbolic_tangent(velocity / smooth)
     return coulomb * share, coulomb * share / velocity if abs(share) > 1e-3 else coulomb / smooth

@@ -1,12 +1,11 @@
 """Seal friction that differs between the two directions."""
 
-import math
 from typing import Any
 
-from numba import njit
-
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
+from hydrolek_drake.physics.smooth import hyperbolic_tangent
 
 EFFECT = Effect(
     id="cylinder.friction_asymmetry",
@@ -39,5 +38,5 @@ def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, flo
     coulomb = joint.effects.cylinder_friction_asymmetry.coulomb_N
     if coulomb == 0.0:
         return 0.0, 0.0
-    share = math.tanh(velocity / joint.cylinder.friction_velocity)
+    share = hyperbolic_tangent(velocity / joint.cylinder.friction_velocity)
     return coulomb * share * share, 0.0

@@ -1,12 +1,11 @@
 """Seal friction that falls as the rod starts to move."""
 
-import math
 from typing import Any
 
-from numba import njit
-
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
+from hydrolek_drake.physics.smooth import exponential, hyperbolic_tangent
 
 EFFECT = Effect(
     id="cylinder.stribeck_friction",
@@ -48,7 +47,7 @@ def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, flo
     if p.coulomb_N == 0.0 and p.stribeck_N == 0.0:
         return 0.0, 0.0
     smooth = joint.cylinder.friction_velocity
-    share = math.tanh(velocity / smooth)
+    share = hyperbolic_tangent(velocity / smooth)
     ratio = velocity / p.stribeck_velocity_m_per_s
-    level = p.coulomb_N + p.stribeck_N * math.exp(-ratio * ratio)
+    level = p.coulomb_N + p.stribeck_N * exponential(-ratio * ratio)
     return level * share, level * share / velocity if abs(share) > 1e-3 else level / smooth

@@ -1,12 +1,11 @@
 """The oil thins as it warms."""
 
-import math
 from typing import Any
 
-from numba import njit
-
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
+from hydrolek_drake.physics.smooth import exponential
 
 EFFECT = Effect(
     id="fluid.warm_up",
@@ -36,7 +35,7 @@ def _share(time: float, joint: Any) -> float:
     p = joint.effects.fluid_warm_up
     if p.fraction == 0.0:
         return 0.0
-    return p.fraction * (1.0 - math.exp(-time / p.time_constant_s))
+    return p.fraction * (1.0 - exponential(-time / p.time_constant_s))
 
 
 @EFFECT.hook("viscous_gain")

@@ -1,12 +1,11 @@
 """Dry friction at the load itself."""
 
-import math
 from typing import Any
 
-from numba import njit
-
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
+from hydrolek_drake.physics.smooth import hyperbolic_tangent
 
 EFFECT = Effect(
     id="load.coulomb_friction",
@@ -33,5 +32,5 @@ def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
     if force == 0.0:
         return 0.0, 0.0
     smooth = joint.load.friction_velocity
-    share = math.tanh(velocity / smooth)
+    share = hyperbolic_tangent(velocity / smooth)
     return force * share, force * share / velocity if abs(share) > 1e-3 else force / smooth

@@ -1,12 +1,11 @@
 """Friction that differs between the two directions."""
 
-import math
 from typing import Any
 
-from numba import njit
-
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
+from hydrolek_drake.physics.smooth import hyperbolic_tangent
 
 EFFECT = Effect(
     id="load.friction_asymmetry",
@@ -43,5 +42,5 @@ def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
     p = joint.effects.load_friction_asymmetry
     if p.coulomb_N == 0.0 and p.damping_N_s_per_m == 0.0:
         return 0.0, 0.0
-    share = math.tanh(velocity / joint.load.friction_velocity)
+    share = hyperbolic_tangent(velocity / joint.load.friction_velocity)
     return (p.coulomb_N + p.damping_N_s_per_m * abs(velocity)) * share * share, 0.0

@@ -1,12 +1,11 @@
 """Coulomb friction on the spool: hysteresis of the opening against the current."""
 
-import math
 from typing import Any
 
-from numba import njit
-
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
+from hydrolek_drake.physics.smooth import hyperbolic_tangent
 
 EFFECT = Effect(
     id="valve.spool_stiction",
@@ -38,7 +37,7 @@ def spool_friction(velocity: float, joint: Any) -> tuple[float, float]:
     if force == 0.0:
         return 0.0, 0.0
     smooth = joint.solenoid.stiction_velocity
-    share = math.tanh(velocity / smooth)
+    share = hyperbolic_tangent(velocity / smooth)
     if abs(share) < 1e-3:  # the secant's limit, equal to 3e-7
         return force * share, force / smooth
     return force * share, force * share / velocity

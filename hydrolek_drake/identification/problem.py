@@ -10,6 +10,7 @@ import numpy as np
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.sharing import shared_map
+from hydrolek_drake.rollout.lane_view import LANES
 
 DIFFERENCE = 1e-6
 """Step of the forward differences, as a fraction of a parameter's range.
@@ -123,6 +124,37 @@ class Problem:
         done = experiment.simulate(records, self.longest_step, pull_time=self.pull_time)
         return experiment.residuals(done.signals)
 
+    def residuals_of_all(self, units: Sequence[np.ndarray]) -> list[np.ndarray]:
+        """Residuals at several places, each as of `residuals`: joints that move alone are rolled out in lanes.
+
+        Args:
+            units: places in the unit cube. # (n,) each
+        """
+        if not self._in_lanes:
+            return [self.residuals(unit) for unit in units]
+        self.evaluations += len(units)
+        machines = [self.parameters.records(unit) for unit in units]
+        parts: list[list[np.ndarray]] = [[] for _ in units]
+        for i, experiment in enumerate(self.experiments):
+            known = None if self._anchor is None else self._anchor[i]
+            own = [records[experiment.index].tobytes() for records in machines]
+            moved = [k for k, record in enumerate(own) if known is None or record != known[0]]
+            chosen = [machines[k] for k in moved]
+            done = experiment.simulate_all(chosen, self.longest_step, self.pull_time) if chosen else []
+            signals = dict(zip(moved, (outcome.signals for outcome in done), strict=True))
+            for k in range(len(units)):
+                if k in signals:
+                    parts[k].append(experiment.residuals(signals[k]))
+                elif known is not None:
+                    parts[k].append(known[1])
+        return [self.bounded(found) for found in parts]
+
+    @property
+    def _in_lanes(self) -> bool:
+        """Whether several places can be rolled out at once: joints that move alone, by `Problem`'s own residuals."""
+        own = type(self).residuals is Problem.residuals
+        return own and all(experiment.others is None for experiment in self.experiments)
+
     def _keep(self, unit: np.ndarray, base: np.ndarray) -> None:
         """Keep the residuals at a place: a column of the Jacobian changes few joints of a machine."""
         records = self.parameters.records(unit)
@@ -182,13 +214,20 @@ class Problem:
     ) -> np.ndarray:
         """Differences of the residuals over the steps of each parameter that moves. # (values, n)."""
 
-        def column(i: int) -> np.ndarray:
-            moved = unit.copy()
-            moved[i] += steps[i]
-            return (self.residuals(moved) - base) / steps[i]
+        def some(indices: list[int]) -> list[np.ndarray]:
+            places = []
+            for i in indices:
+                moved = unit.copy()
+                moved[i] += steps[i]
+                places.append(moved)
+            found = self.residuals_of_all(places)
+            return [(there - base) / steps[i] for i, there in zip(indices, found, strict=True)]
 
         indices = list(range(len(unit))) if moving is None else np.flatnonzero(moving).tolist()
-        columns = list(map(column, indices)) if self.pool is None else shared_map(self.pool, column, indices)
+        batch = LANES if self._in_lanes else 1
+        batches = [indices[k : k + batch] for k in range(0, len(indices), batch)]
+        shared = list(map(some, batches)) if self.pool is None else shared_map(self.pool, some, batches)
+        columns = [column for found in shared for column in found]
         whole = np.zeros((base.size, len(unit)))
         if columns:
             whole[:, indices] = np.stack(columns, axis=1)

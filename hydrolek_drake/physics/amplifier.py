@@ -1,12 +1,11 @@
 """Proportional amplifiers A and B: voltage to coil current, equation (4.4)."""
 
-import math
 from typing import Any, NamedTuple
 
-from numba import njit
-
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.parameters import Parameter, Stage
+from hydrolek_drake.physics.smooth import exponential
 
 STAGE = Stage(
     "amplifier",
@@ -85,7 +84,7 @@ def following(
     if p.variant != PROPORTIONAL or p.coil_time + more <= 0.0:
         return Currents(a, b), Currents(a, b)
     constant = p.coil_time + more
-    left = math.exp(-h / constant)
+    left = exponential(-h / constant)
     mean = constant / h * (1.0 - left)
     off_a, off_b = before.a - a, before.b - b
     return Currents(a + off_a * left, b + off_b * left), Currents(a + off_a * mean, b + off_b * mean)

@@ -8,7 +8,7 @@ with the series of sin d and cos d (Abramowitz, Stegun, Handbook of Mathematical
 import math
 from typing import NamedTuple
 
-from numba import njit
+from hydrolek_drake.compiling import njit
 
 CLOSE = 0.05
 """Within so many radians what the series leave out is below 1e-17, less than rounding."""
@@ -25,6 +25,18 @@ class Angle(NamedTuple):
     cosine: float
 
 
+_PLAIN = len(Angle._fields)
+
+
+class AngleKept(NamedTuple):
+    """An angle that is carried on from step to step, so that none that is asked for is farther from it than `CLOSE`."""
+
+    value: float
+    sine: float
+    cosine: float
+    kept: bool
+
+
 @njit
 def angle(value: float) -> Angle:
     """An angle [rad] with its sine and cosine from the library."""
@@ -32,10 +44,13 @@ def angle(value: float) -> Angle:
 
 
 @njit
-def angle_near(value: float, known: Angle) -> Angle:
-    """The same as `angle`, to rounding, from an angle that is known: by the series where it is close to it."""
+def angle_near(value: float, known: Angle | AngleKept) -> Angle:
+    """The same as `angle`, to rounding, from an angle that is known: by the series where it is close to it.
+
+    Of one that is kept the library's functions are not even compiled in: a call keeps a loop from vector instructions.
+    """
     d = value - known.value
-    if not abs(d) < CLOSE:
+    if len(known) == _PLAIN and not abs(d) < CLOSE:
         return angle(value)
     e = d * d
     sine = d + d * e * (_S3 + e * (_S5 + e * _S7))

@@ -3,8 +3,7 @@
 import math
 from typing import Any
 
-from numba import njit
-
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.parameters import Parameter, Stage
 

@@ -6,8 +6,7 @@ piston area and an angle in place of the stroke.
 
 from typing import Any
 
-from numba import njit
-
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.fluid import effective_bulk_modulus
 from hydrolek_drake.physics.parameters import Parameter, Stage

@@ -7,8 +7,7 @@ returns at once at its neutral value.
 from collections.abc import Callable
 from typing import Any
 
-from numba import njit
-
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.catalogue import EFFECTS
 
 Compiled = Callable[..., Any]

@@ -11,8 +11,8 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics.probes import (
     AMPLIFIER,
     COIL_TIME,
@@ -24,6 +24,7 @@ from hydrolek_drake.physics.probes import (
     Probe,
     added,
 )
+from hydrolek_drake.physics.smooth import hyperbolic_tangent
 
 TIMES = ("1", "t/T", "(t/T)^2")
 NEAR = "near"
@@ -144,7 +145,7 @@ def _speed_factor(law: Any, seen: Seen) -> tuple[float, float]:
         return 1.0, 0.0
     v = seen.v if law.at_rod > 0.0 else seen.w
     if shape == 1.0:
-        sign = math.tanh(v / law.slow)
+        sign = hyperbolic_tangent(v / law.slow)
         return sign, sign / v if abs(v) > 1e-6 * law.slow else 1.0 / law.slow
     relative = v / law.speed
     if shape == 2.0:

@@ -2,8 +2,7 @@
 
 from typing import Any
 
-from numba import njit
-
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.angle import Angle, angle
 from hydrolek_drake.physics.linkage import stroke_and_lever

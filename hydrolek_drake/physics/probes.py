@@ -7,7 +7,8 @@ what other joints do.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+
+from hydrolek_drake.compiling import njit
 
 
 class Probe(NamedTuple):

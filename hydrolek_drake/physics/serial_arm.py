@@ -6,8 +6,8 @@ wrenches of several bodies are simply added (Featherstone, Rigid Body Dynamics A
 """
 
 import numpy as np
-from numba import njit
 
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics.vectors import (
     Matrix,
     Vector,

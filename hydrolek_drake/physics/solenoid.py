@@ -7,8 +7,7 @@ The spool depends on the command, and on pressures only as far as flow forces go
 import math
 from typing import Any
 
-from numba import njit
-
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.valve import openings
@@ -132,19 +131,59 @@ def advance(
 
     A spool with dry friction takes `STEPS_WHERE_STICKING` as many.
     """
+    return advanced(x, v, drive_a, drive_b, h, steps_needed(steps, joint), joint, closing_a, closing_b)
+
+
+@njit
+def steps_needed(steps: int, joint: Any) -> int:
+    """Steps of a spool, where one without dry friction takes `steps`."""
+    _, sticking = hooks.spool_friction(0.0, joint)
+    return steps * STEPS_WHERE_STICKING if sticking > 0.0 else steps
+
+
+@njit
+def advanced(
+    x: float,
+    v: float,
+    drive_a: float,
+    drive_b: float,
+    h: float,
+    steps: int,
+    joint: Any,
+    closing_a: float,
+    closing_b: float,
+) -> tuple[float, float]:
+    """The same as `advance`, in exactly so many steps."""
     if joint.solenoid.variant == NO_SPOOL:
         return 0.0, 0.0
-    _, sticking = hooks.spool_friction(0.0, joint)
-    if sticking > 0.0:
-        steps *= STEPS_WHERE_STICKING
     dt = h / steps
+    if steps == STEPS_WHERE_STICKING:  # written out: within a loop over lanes no other may stand
+        x, v = _step(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
+        x, v = _step(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
+        x, v = _step(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
+        return _step(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
     for _ in range(steps):
-        acceleration, slope = spool_acceleration(x, v, drive_a, drive_b, joint, closing_a, closing_b)
-        scale = 1.0 / (1.0 - GAMMA * dt * slope)
-        x1, v1 = v, acceleration * scale
-        acceleration, _ = spool_acceleration(
-            x + dt * x1, v + dt * v1, drive_a, drive_b, joint, closing_a, closing_b
-        )
-        x2, v2 = v + dt * v1 - 2.0 * x1, (acceleration - 2.0 * v1) * scale
-        x, v = x + dt * (1.5 * x1 + 0.5 * x2), v + dt * (1.5 * v1 + 0.5 * v2)
+        x, v = _step(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
     return x, v
+
+
+@njit
+def _step(
+    x: float,
+    v: float,
+    drive_a: float,
+    drive_b: float,
+    dt: float,
+    joint: Any,
+    closing_a: float,
+    closing_b: float,
+) -> tuple[float, float]:
+    """One Rosenbrock-W step of the spool."""
+    acceleration, slope = spool_acceleration(x, v, drive_a, drive_b, joint, closing_a, closing_b)
+    scale = 1.0 / (1.0 - GAMMA * dt * slope)
+    x1, v1 = v, acceleration * scale
+    acceleration, _ = spool_acceleration(
+        x + dt * x1, v + dt * v1, drive_a, drive_b, joint, closing_a, closing_b
+    )
+    x2, v2 = v + dt * v1 - 2.0 * x1, (acceleration - 2.0 * v1) * scale
+    return x + dt * (1.5 * x1 + 0.5 * x2), v + dt * (1.5 * v1 + 0.5 * v2)

@@ -3,7 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
+
+from hydrolek_drake.compiling import njit
 
 Vector = tuple[float, float, float]
 Matrix = tuple[float, float, float, float, float, float, float, float, float]

@@ -1,6 +1,7 @@
 """Writing signals to CSV and Parquet, with units in the column names."""
 
-import os
+import csv
+import io
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import being_written, disarmed
 from hydrolek_drake.recordings.columns import column_name, default_unit
 from hydrolek_drake.recordings.recording import Recording
 
@@ -47,8 +49,8 @@ def write_signals(
         The path.
 
     Raises:
-        InputError: The extension is another one, a signal has no unit or another length than time, or the
-            file cannot be written.
+        InputError: The extension is another one, a signal has no unit or another length than time, its name is no
+            name for a column, or the file cannot be written.
     """
     import pyarrow
 
@@ -62,6 +64,11 @@ def write_signals(
         raise InputError(f"cannot write {path}; use the extension {' or '.join(writers)}")
     columns = {"time_s": np.asarray(time, dtype=float)}
     for key, values in signals.items():
+        if not key.isprintable() or disarmed(key) != key:
+            raise InputError(
+                f"cannot write {path}: signal '{key}' begins with a sign that a spreadsheet takes for a formula, or "
+                "holds control characters; rename it"
+            )
         unit = (units or {}).get(key) or default_unit(key)
         if unit is None:
             raise InputError(f"cannot write {path}: signal {key} has no unit")
@@ -74,23 +81,22 @@ def write_signals(
         columns[column_name(key, unit)] = values
     table = pyarrow.table({name: pyarrow.array(values, from_pandas=True) for name, values in columns.items()})
 
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        write(table, part)
-        os.replace(part, path)
+        with being_written(path) as part:
+            write(table, part)
     except OSError as error:
         raise InputError(f"cannot write {path}: {error.strerror or error}") from None
-    finally:
-        part.unlink(missing_ok=True)
     return path
 
 
 def _write_csv(table: "pyarrow.Table", path: Path) -> None:
-    from pyarrow import csv
+    from pyarrow import csv as arrow_csv
 
+    header = io.StringIO()
+    csv.writer(header, lineterminator="\n").writerow(table.column_names)
     with path.open("wb") as stream:
-        stream.write((",".join(table.column_names) + "\n").encode())
-        csv.write_csv(table, stream, csv.WriteOptions(include_header=False))
+        stream.write(header.getvalue().encode())
+        arrow_csv.write_csv(table, stream, arrow_csv.WriteOptions(include_header=False))
 
 
 def _write_parquet(table: "pyarrow.Table", path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import copy
 import difflib
+import re
 from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
@@ -20,6 +21,7 @@ _TOP_KEYS = (
 
 SCHEMA = 1
 MOST_JOINTS = 64
+_NAME = re.compile(r"\w[\w -]{0,63}")  # of a joint: it becomes part of columns and file names
 _MOST_FILES = 16  # that are based on each other
 
 
@@ -98,9 +100,9 @@ def _resolve(path: Path, seen: tuple[Path, ...]) -> dict[str, Any]:
     if len(joints) > MOST_JOINTS:
         raise InputError(f"{path}: {len(joints)} joints; a rig has at most {MOST_JOINTS}")
     for name in joints:
-        if not isinstance(name, str) or not name or "." in name:
+        if not isinstance(name, str) or not _NAME.fullmatch(name):
             raise InputError(
-                f"{path}: joints: '{name}' is not a name; use text without dots, such as right_j2"
+                f"{path}: joints: '{name}' is not a name; use letters, digits and _ or -, such as right_j2"
             )
     tree["joints"] = {name: _like(name, joints, path, ()) for name in joints}
     if keep is not None:

@@ -20,8 +20,10 @@ from hydrolek_drake.rigs.entries import Entry, parse_quantity
 from hydrolek_drake.rigs.short_law import LawTerm, law_record
 from hydrolek_drake.rigs.writing import written_tree
 
-LONGEST_STEP = Parameter("longest_step", "s", "upper bound of the rollout's integration step", lowest=1e-9)
-SPOOL_STEPS = Parameter("spool_steps", "1", "steps of the spool within one step of the rest", lowest=1.0)
+LONGEST_STEP = Parameter("longest_step", "s", "upper bound of the rollout's integration step", lowest=1e-6)
+SPOOL_STEPS = Parameter(
+    "spool_steps", "1", "steps of the spool within one step of the rest", lowest=1.0, highest=10_000.0
+)
 
 
 @dataclass(frozen=True)

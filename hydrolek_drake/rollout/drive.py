@@ -3,8 +3,8 @@
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import amplifier, command, solenoid, supply, valve
 from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.law import up_to_the_spool
@@ -45,7 +45,7 @@ def driven_on(
         voltage: of the drive, without what a law adds to the command.
         time: since switching on [s].
         h: [s].
-        spool_steps: steps of the spool within `h`.
+        spool_steps: steps of the spool within `h`, see `solenoid.steps_needed`.
         early: whether a law acts before the spool or on it.
         probe: inputs from outside now.
         probe_next: after the step.
@@ -64,7 +64,7 @@ def driven_on(
     closing_a, closing_b = valve.flow_forces(
         supply.supply_pressure(s.flow, joint) + now.supply, s.p_a, s.p_b, now.flow_force, joint
     )
-    x, xd = solenoid.advance(
+    x, xd = solenoid.advanced(
         d.x, d.xd, gain * driving.a, gain * driving.b, h, spool_steps, joint, closing_a, closing_b
     )
     return Drive(behind, currents, x, xd), drive

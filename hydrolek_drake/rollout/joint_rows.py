@@ -4,8 +4,8 @@ A compiled function takes a tuple of arrays apart at every call, so that a dozen
 """
 
 import numpy as np
-from numba import njit
 
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.angle import Angle
 from hydrolek_drake.rollout.drive import Drive

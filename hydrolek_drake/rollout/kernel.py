@@ -10,14 +10,14 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import command, hooks, load, sensor
 from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.probes import Probe, probe_at
-from hydrolek_drake.physics.solenoid import GAMMA
+from hydrolek_drake.physics.solenoid import GAMMA, steps_needed
 from hydrolek_drake.rollout.drive import Drive, acts_early, driven_on
-from hydrolek_drake.rollout.rates import Slopes, State, Turned, felt_at, rates, turned
+from hydrolek_drake.rollout.rates import Slopes, State, Turned, carried_on, felt_at, kept, rates, turned
 
 SIGNALS = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool", "supply_pressure", "force")
 
@@ -212,6 +212,7 @@ def integrate(
     playing = hooks.linkage_gap(joint) > 0.0
     rocking = hooks.base_stiffness(joint) > 0.0
     early = acts_early(law, joint)
+    spool_steps = steps_needed(spool_steps, joint)
     delay = command.transport_delay(joint)
     rod = load.reflected_rod_inertia(joint)
     begin = times[0]
@@ -222,7 +223,7 @@ def integrate(
     t = begin
     for row in range(len(times)):
         target = times[row]
-        near = turned(s, joint)
+        near = kept(turned(s, joint))
         while t < target:
             while held < last and command_times[held + 1] + delay <= t + 1e-12:
                 held += 1
@@ -247,6 +248,7 @@ def integrate(
                     )
                     inertia = inertia_at(time, rod, joint)
                     s = _step(s, x, d.x, drive, time, h, inertia, probe, probe_next, law, near, joint)
+                    near = carried_on(near, s, joint)
                     probe = probe_next
                     play = sensor.played(play, s.q - s.tilt, joint)
             t = until
@@ -255,7 +257,7 @@ def integrate(
         probe = probe_at(t, begin, probe_spacing, probe_values)
         inertia = inertia_at(t - on, rod, joint)
         volts = arrived(command_values, held, joint)
-        written(d, s, play, volts, t - on, inertia, probe, law, near, joint, out[row])
+        written(d, s, play, volts, t - on, inertia, probe, law, kept(turned(s, joint)), joint, out[row])
         if pull_time > 0.0 and row + 1 < len(times):
             share = 1.0 - math.exp((t - times[row + 1]) / pull_time)
             s, by = _pulled(s, share, out[row, 0], measured[row])

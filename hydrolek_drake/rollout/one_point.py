@@ -6,8 +6,8 @@ A call of an equation alone compiles it anew in every run; these are compiled on
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import linkage, valve
 from hydrolek_drake.physics.law import Seen, law_value
 

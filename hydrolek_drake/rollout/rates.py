@@ -6,10 +6,10 @@ Only the wiring stands here, as in the Diagram; every equation is called from `p
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import base, cylinder, fluid, hooks, linkage, load, supply, valve
-from hydrolek_drake.physics.angle import Angle, angle, angle_near
+from hydrolek_drake.physics.angle import Angle, AngleKept, angle, angle_near
 from hydrolek_drake.physics.law import Seen, felt
 from hydrolek_drake.physics.probes import Probe
 
@@ -41,8 +41,8 @@ class Slopes(NamedTuple):
 class Turned(NamedTuple):
     """How far the joint has turned, for the sines and cosines of places that are near (`physics.angle`)."""
 
-    position: Angle  # of the link
-    included: Angle  # between the mounts of the cylinder
+    position: Angle | AngleKept  # of the link
+    included: Angle | AngleKept  # between the mounts of the cylinder
 
 
 @njit
@@ -50,6 +50,25 @@ def turned(s: State, joint: Any) -> Turned:
     """How far the joint has turned in a state."""
     side, _ = _rod_side(s, joint)
     return Turned(angle(s.q), angle(linkage.included_angle(side, joint)))
+
+
+@njit
+def carried_on(near: Turned, s: State, joint: Any) -> Turned:
+    """How far the joint has turned, a step after it had turned so far: sines and cosines by the series alone."""
+    side, _ = _rod_side(s, joint)
+    position = angle_near(s.q, near.position)
+    included = angle_near(linkage.included_angle(side, joint), near.included)
+    return Turned(
+        AngleKept(position.value, position.sine, position.cosine, True),
+        AngleKept(included.value, included.sine, included.cosine, True),
+    )
+
+
+@njit
+def kept(found: Turned) -> Turned:
+    """The same, to be carried on from step to step."""
+    p, i = found.position, found.included
+    return Turned(AngleKept(p.value, p.sine, p.cosine, True), AngleKept(i.value, i.sine, i.cosine, True))
 
 
 @njit

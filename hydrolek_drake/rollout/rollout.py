@@ -164,7 +164,7 @@ def roll_out(
     Raises:
         InputError: times that do not rise, or not as many command values as command times.
     """
-    _check_times(command_times, command_values, times)
+    check_times(command_times, command_values, times)
     out = np.full((len(times), len(kernel.SIGNALS)), np.nan)
     times = read_only(times)
     start = np.full(STATE_SIZE, np.nan) if state is None else state.copy()
@@ -193,7 +193,9 @@ def roll_out(
                 out,
             )
             if rows < len(times):
-                diverged = f"left all bounds at {times[rows]:.3f} s"
+                diverged = why_diverged(joint, float(times[rows]))
+                if diverged == DIVIDED_BY_ZERO:
+                    out[:] = np.nan
         except ZeroDivisionError:
             out[:] = np.nan
             diverged = DIVIDED_BY_ZERO
@@ -208,7 +210,12 @@ def _with_own(law: np.ndarray | None, joint: np.ndarray) -> np.ndarray | None:
     return np.concatenate([own, law])
 
 
-def _check_times(command_times: np.ndarray, command_values: np.ndarray, times: np.ndarray) -> None:
+def check_times(command_times: np.ndarray, command_values: np.ndarray, times: np.ndarray) -> None:
+    """Refuse what no rollout can be driven with.
+
+    Raises:
+        InputError: times that do not rise, or not as many command values as command times.
+    """
     if len(command_times) == 0 or len(command_times) != len(command_values):
         raise InputError(
             f"rollout: {len(command_times)} command times but {len(command_values)} command values"
@@ -216,6 +223,13 @@ def _check_times(command_times: np.ndarray, command_values: np.ndarray, times: n
     for name, series in (("command times", command_times), ("times", times)):
         if len(series) == 0 or not np.all(np.diff(series) > 0.0):
             raise InputError(f"rollout: the {name} must rise from each to the next")
+
+
+def why_diverged(joint: np.ndarray, time: float) -> str:
+    """What is said of a rollout that left all bounds at a time [s]."""
+    vector = flat(joint)[0]
+    divisors, _ = _used(tuple(vector[_VARIANTS]), divisors=True)
+    return DIVIDED_BY_ZERO if np.any(vector[divisors] == 0.0) else f"left all bounds at {time:.3f} s"
 
 
 _VARIANTS = np.array([position_of(stage, "variant") for stage in STAGES])
@@ -235,12 +249,20 @@ def missing_number(joint: np.ndarray) -> str | None:
 
 
 @cache
-def _used(variants: tuple[float, ...]) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Places in a flat record, and names, of the parameters that count for these variants."""
+def _used(variants: tuple[float, ...], divisors: bool = False) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Places in a flat record, and names, of the parameters that count for these variants.
+
+    Args:
+        variants: of all stages.
+        divisors: only of those by which something is divided, which must be positive.
+    """
     used = {}
     for stage, code in zip(STAGES.values(), variants, strict=True):
         for parameter in stage.parameters(list(stage.variants)[int(code)]):
-            used[position_of(stage.name, parameter.name)] = f"{stage.name}.{parameter.name}"
+            if parameter.positive or not divisors:
+                used[position_of(stage.name, parameter.name)] = f"{stage.name}.{parameter.name}"
+    if divisors:
+        return np.array(list(used)), tuple(used.values())
     for key in EFFECT_RECORD.names or ():
         for name in EFFECT_RECORD[key].names or ():
             used[position_of(key, name)] = f"effects.{key}.{name}"

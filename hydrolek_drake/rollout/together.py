@@ -5,16 +5,16 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numba import njit
 
 from hydrolek_drake.compiled import read_only
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.law import LAW, law_of
 from hydrolek_drake.physics.serial_arm import LINK_SIZE, moments_along, scratch
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.joint_rows import DRIVE, PLAY, RATES, SPOOL, STATE, room
 from hydrolek_drake.rollout.kernel import SIGNALS
-from hydrolek_drake.rollout.rollout import DIVIDED_BY_ZERO, Signals, missing_number, rest_state
+from hydrolek_drake.rollout.rollout import DIVIDED_BY_ZERO, Signals, missing_number, rest_state, why_diverged
 from hydrolek_drake.rollout.together_kernel import TOLD, integrate_together
 
 _NO_LINKS = np.zeros((0, LINK_SIZE))
@@ -101,7 +101,11 @@ class JointsTogether:
                 done = self._integrated(
                     own, carriers, begun, command_times, command_values, times, longest_step, told
                 )
-                diverged = None if done == times.size else f"left all bounds at {times[done]:.3f} s"
+                if done < times.size:
+                    reasons = [why_diverged(own[i : i + 1], float(times[done])) for i in range(len(own))]
+                    diverged = DIVIDED_BY_ZERO if DIVIDED_BY_ZERO in reasons else reasons[0]
+                    if diverged == DIVIDED_BY_ZERO:
+                        told[:] = np.nan
             except ZeroDivisionError:
                 told[:] = np.nan
                 diverged = DIVIDED_BY_ZERO

@@ -7,9 +7,10 @@ Each joint's chain is that of `kernel`, with the same stages of the integrator; 
 import math
 
 import numpy as np
-from numba import njit
 
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import command, load, sensor
+from hydrolek_drake.physics.solenoid import steps_needed
 from hydrolek_drake.rollout.drive import acts_early, driven_on
 from hydrolek_drake.rollout.joint_rows import (
     BIAS,
@@ -86,8 +87,9 @@ def _step(
         voltage = command.drive_voltage(volts, joint)
         s = state_at(r, i, STATE)
         r[i, SPOOL] = d.x
+        steps = steps_needed(spool_steps, joint)
         d, r[i, VOLTS] = driven_on(
-            d, s, volts, voltage, time, h, spool_steps, acts_early(own, joint), outside, outside, own, joint
+            d, s, volts, voltage, time, h, steps, acts_early(own, joint), outside, outside, own, joint
         )
         f = DRIVE
         r[i, f], r[i, f + 1], r[i, f + 2], r[i, f + 3] = d.behind, d.currents.a, d.currents.b, d.x

@@ -6,8 +6,8 @@ its slopes, with the whole mass matrix M: (M + GAMMA h D)^-1 M where a joint alo
 """
 
 import numpy as np
-from numba import njit
 
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks, load, supply
 from hydrolek_drake.physics.angle import angle_near
 from hydrolek_drake.physics.probes import SUPPLY, Probe, added, no_probe

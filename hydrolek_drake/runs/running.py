@@ -80,9 +80,12 @@ def run_scenario(
         on_progress: called with the simulated time now and then.
 
     Raises:
-        InputError: the simulation diverged, which a smaller step cures.
+        InputError: the simulation diverged, which a smaller step cures, or its numbers make no machine.
     """
-    built = scenario_station(scenario, seed, None if view is None else view.add)
+    try:
+        built = scenario_station(scenario, seed, None if view is None else view.add)
+    except RuntimeError as error:  # what Drake raises for masses and inertias that no body has
+        raise InputError(f"scenario {scenario.name}: its numbers make no machine: {error}") from None
     outcome: list[Run] = []
     begun = clock.perf_counter()
 

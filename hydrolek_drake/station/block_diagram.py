@@ -15,6 +15,7 @@ from pathlib import Path
 from pydrake.systems.framework import Diagram, InputPortIndex, OutputPortIndex, System
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import write_whole
 from hydrolek_drake.station.scenario import Scenario, load_scenario, scenario_files
 from hydrolek_drake.station.scenario_station import scenario_station
 
@@ -184,9 +185,7 @@ def main() -> None:
         scenario = load_scenario(name)
         picture = (out or path.parent) / f"{name}.svg"
         svg = as_svg(scenario_diagram(scenario), f"{name}: rig {scenario.rig.name}")
-        part = picture.with_name(f".{picture.name}.part")
-        part.write_text(svg, encoding="utf-8")
-        part.replace(picture)
+        write_whole(picture, svg)
         print(picture)
 
 

@@ -21,12 +21,18 @@ from pydrake.multibody.tree import (
 )
 from pydrake.systems.framework import DiagramBuilder
 
+from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.arms import add_arms, arm_joint_names
 from hydrolek_drake.physics import load
 from hydrolek_drake.rigs import Rig
 
 _AXIS = np.array([0.0, 0.0, 1.0])
 _UPRIGHT = RollPitchYaw(math.pi / 2.0, 0.0, 0.0)  # a joint's plane: X forward, Y up, as the arms' base frames
+
+_REACH, _HEAVIEST = (
+    (1e-9, 1e15),
+    1e15,
+)  # m, kg; a joint that is nearly balanced has its centre of gravity far off
 
 
 @dataclass(frozen=True)
@@ -55,6 +61,9 @@ def add_plant(builder: DiagramBuilder, rig: Rig, joints: np.ndarray, time_step: 
         rig: names the joints.
         joints: their records, shape (n,).
         time_step: of a discrete plant [s]; 0 for a continuous one.
+
+    Raises:
+        InputError: an inertia or gravity moment that no body has.
     """
     payloads: list[Payload] = []
     if rig.variant(rig.joints[0], "load") == "arm":
@@ -112,11 +121,18 @@ def _add_simple_joint(plant: MultibodyPlant, name: str, joint: np.ndarray) -> li
         # same equation of motion, and this one is physically possible.
         arm = 0.5 * inertia * g / moment
         mass = moment / (g * arm)
+        if not (_REACH[0] <= arm <= _REACH[1] and mass <= _HEAVIEST):
+            raise InputError(
+                f"joints.{name}.load: an inertia of {inertia:g} kg m^2 and a gravity moment of {moment:g} N m "
+                f"make no body: {mass:g} kg at {arm:g} m"
+            )
         angle = math.atan2(-p["gravity_sin"], p["gravity_cos"])
         centre = arm * np.array([math.cos(angle), math.sin(angle), 0.0])
         about_centre = UnitInertia.SolidSphere(math.sqrt(2.5 * 0.5 * inertia / mass))
         spatial = SpatialInertia.MakeFromCentralInertia(mass, centre, about_centre * mass)
     else:
+        if not _REACH[0] <= math.sqrt(inertia) <= _REACH[1]:
+            raise InputError(f"joints.{name}.load: an inertia of {inertia:g} kg m^2 is no machine's")
         spatial = SpatialInertia(1.0, np.zeros(3), UnitInertia.SolidSphere(math.sqrt(2.5 * inertia)))
         centre = np.array([0.5, 0.0, 0.0])
     body = plant.AddRigidBody(f"{name}_body", spatial)

@@ -229,7 +229,7 @@ def _rig(tree: dict[str, Any], path: Path, settings: Mapping[str, str]) -> Rig:
             raise InputError(f"{where}: no such joint; choose {', '.join([*rig.joints, *held])}")
     rig = replace(rig, held=copy.deepcopy(held))
     try:
-        rig = rig.with_settings({key: str(value) for key, value in own.items()})
+        rig = rig.with_settings({str(key): str(value) for key, value in own.items()})
     except InputError as error:
         raise InputError(f"{path}: settings: {error}") from None
     rig = rig.with_values(moving).with_settings(settings)
@@ -260,10 +260,16 @@ def _event(events: Mapping[str, Any], key: str, path: Path) -> float | None:
 
 def _check_length(duration: float, sizes: StepSizes, path: Path) -> None:
     """Refuse a run that would not end, or not fit into memory."""
-    for key, most, what in (("log_period", _MOST_ROWS, "rows"), ("step", _MOST_STEPS, "steps")):
-        if duration / getattr(sizes, key) > most:
+    limits = (
+        ("log_period", _MOST_ROWS, "rows"),
+        ("step", _MOST_STEPS, "steps"),
+        ("plant_step", _MOST_STEPS, "steps"),
+    )
+    for key, most, what in limits:
+        each = getattr(sizes, key)
+        if each > 0.0 and duration / each > most:
             raise InputError(
-                f"{path}: duration: {duration:g} s are more than {most} {what} of {getattr(sizes, key):g} s; "
+                f"{path}: duration: {duration:g} s are more than {most} {what} of {each:g} s; "
                 f"shorten it, or lengthen integration.{key}"
             )
 

@@ -48,7 +48,8 @@ def command_source(times: np.ndarray, values: np.ndarray) -> TrajectorySource:
     """
     breaks = np.append(np.asarray(times, float) - _EARLY, times[-1] + 1.0)
     held = np.vstack([values, values[-1:]]).T
-    source = TrajectorySource(PiecewisePolynomial.ZeroOrderHold(breaks, held))
+    last = np.append(np.diff(breaks) > 0.0, True)  # of those that fall on one time
+    source = TrajectorySource(PiecewisePolynomial.ZeroOrderHold(breaks[last], held[:, last]))
     source.set_name("command_player")
     return source
 

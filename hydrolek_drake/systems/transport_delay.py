@@ -4,15 +4,30 @@ import numpy as np
 from numba import njit
 from pydrake.systems.framework import BasicVector, Context, DiscreteValues, LeafSystem
 
+from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.command import drive_voltage, transport_delay
 from hydrolek_drake.physics.probes import COMMAND
 from hydrolek_drake.systems.short_law import Outside
 
+_MOST_STEPS = 10_000
+
 
 def whole_steps_and_rest(joints: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
-    """Each joint's delay as a number of steps and a share of one more, shape (n,) each."""
+    """Each joint's delay as a number of steps and a share of one more, shape (n,) each.
+
+    Raises:
+        InputError: a delay below zero, or of more steps than the diagram can hold as its state.
+    """
     delays = np.empty(len(joints))
     _delays(joints, delays)
+    if not delays.min() >= 0.0:
+        raise InputError(
+            f"command.delay and what effects add to it are {delays.min():g} s; nothing arrives early"
+        )
+    if not delays.max() <= _MOST_STEPS * step:
+        raise InputError(
+            f"command.delay: {delays.max():g} s are more than {_MOST_STEPS} steps of {step:g} s; a dead time is shorter"
+        )
     whole = np.floor(delays / step + 1e-9).astype(int)
     rest = delays / step - whole
     return whole, np.where(rest > 1e-9, rest, 0.0)

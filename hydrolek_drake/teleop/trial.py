@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import disarmed
 
 SCALES = ("mental", "physical", "temporal", "performance", "effort", "frustration")
 CONTROLS = ("assisted", "joystick", "sliders")
@@ -147,7 +148,7 @@ def _append(path: Path, row: list[Any]) -> None:
             writer.writerow(COLUMNS)
         elif os.pread(handle, 1, size - 1) != b"\n":
             text.write("\n")  # someone's editor left the last line open
-        writer.writerow(row)
+        writer.writerow([disarmed(str(cell)) for cell in row])
         data = text.getvalue().encode("utf-8")
         written = os.write(handle, data)
         if written != len(data):

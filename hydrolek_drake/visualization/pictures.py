@@ -1,6 +1,5 @@
 """Still pictures of the arms, drawn without a screen."""
 
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -27,6 +26,7 @@ from pydrake.systems.framework import DiagramBuilder
 from pydrake.systems.sensors import CameraInfo
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import write_whole
 from hydrolek_drake.kinematics.arms import add_arms, arm_joint
 from hydrolek_drake.visualization.cylinders import add_cylinders, arm_cylinder_mounts
 
@@ -133,9 +133,7 @@ def write_picture(path: Path, picture: NDArray[np.uint8]) -> None:
         raise InputError(
             f"picture of shape {picture.shape} cannot be written as PNG; it must be (height, width, 3)"
         )
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    temporary.write_bytes(data.tobytes())
-    temporary.replace(path)
+    write_whole(path, data.tobytes())
 
 
 def _add_floor(scene_graph: SceneGraph) -> None:

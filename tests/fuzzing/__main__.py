@@ -6,8 +6,8 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from fuzzing.runner import HANG_S, Outcome, keep, run
-from fuzzing.targets import TARGETS
+from fuzzing.runner import HANG_S, Outcome, kinds_of_failure, run
+from fuzzing.targets import NAMES, TRAP
 
 _TOLD_EVERY = 10.0  # s
 
@@ -22,7 +22,9 @@ def main() -> int:
     many = parser.add_mutually_exclusive_group()
     many.add_argument("--minutes", type=float, help="how long altogether; 10 if there is no --count")
     many.add_argument("--count", type=int, help="how many inputs for each target")
-    parser.add_argument("--target", action="append", choices=list(TARGETS), help="one of them (repeatable)")
+    parser.add_argument(
+        "--target", action="append", choices=[*NAMES, TRAP], metavar="NAME", help="one of --list (repeatable)"
+    )
     parser.add_argument(
         "--seed", type=int, default=int(time.time()), help="of the inputs; a new one by default"
     )
@@ -32,9 +34,9 @@ def main() -> int:
     parser.add_argument("--list", action="store_true", help="list the targets")
     arguments = parser.parse_args()
     if arguments.list:
-        print("\n".join(TARGETS))
+        print("\n".join(NAMES))
         return 0
-    names = arguments.target or list(TARGETS)
+    names = arguments.target or list(NAMES)
     if (arguments.count or 1) < 1 or arguments.workers < 1 or arguments.first < 0 or arguments.seed < 0:
         parser.error("--count and --workers begin at 1, --first and --seed at 0")
     minutes = arguments.minutes or 10.0
@@ -54,14 +56,20 @@ def main() -> int:
 
     def one(name: str) -> Outcome:
         return run(
-            name, arguments.seed, count=arguments.count, seconds=seconds, first=arguments.first, tell=tell
+            name,
+            arguments.seed,
+            count=arguments.count,
+            seconds=seconds,
+            first=arguments.first,
+            kept_in=arguments.out,
+            tell=tell,
         )
 
     failed = 0
     with ThreadPoolExecutor(arguments.workers) as pool:
         for outcome in pool.map(one, names):
             print(outcome.line(), flush=True)
-            for line in keep(outcome, arguments.out):
+            for line in kinds_of_failure(outcome, arguments.out):
                 print(f"  {line}", flush=True)
             failed += len(outcome.failures)
     return 1 if failed else 0

@@ -16,9 +16,9 @@ import warnings
 from pathlib import Path
 
 from fuzzing.target import judged, put
-from fuzzing.targets import TARGETS
+from fuzzing.targets import target_named
 
-MOST_MEMORY = 3_000_000  # kB resident, beyond which an input is taken to have asked for too much
+MOST_MEMORY = 3_000_000  # kB resident that one input may add; a process that has grown so much ends itself
 
 
 def main() -> None:
@@ -27,7 +27,7 @@ def main() -> None:
     faulthandler.enable()
     faulthandler.register(signal.SIGUSR1, all_threads=True)  # sent before a hanging process is ended
     warnings.simplefilter("ignore")
-    target, place = TARGETS[name], Path(folder)
+    target, place = target_named(name), Path(folder)
     told = sys.stdout
     sys.stdout = sys.stderr
     for each in target.seeds():  # loads and compiles all that is needed
@@ -36,13 +36,17 @@ def main() -> None:
     _tell(told, ready=True)
     for index in itertools.count(int(first), int(step)):
         made = target.input(int(seed), index)
+        before = _memory()
+        if before > MOST_MEMORY:  # what many inputs have left in it
+            _tell(told, renewed=True)
+            return
         _tell(told, at=index)
         with _folder(place, target) as inside:
             try:
                 became = judged(target, put(made, inside))
-                used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-                if used > MOST_MEMORY:
-                    _tell(told, failed=f"{used / 1e6:.1f} GB of memory", where="memory", trace="")
+                added = _memory() - before
+                if added > MOST_MEMORY:
+                    _tell(told, failed=f"{added / 1e6:.1f} GB of memory", where="memory", trace="")
                     return
                 _tell(told, became=became)
             except Exception as error:
@@ -62,6 +66,11 @@ class _folder:
 
     def __exit__(self, *_: object) -> None:
         shutil.rmtree(self.place, ignore_errors=True)
+
+
+def _memory() -> int:
+    """The most that has been resident so far, in kB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
 def _where(error: BaseException) -> str:

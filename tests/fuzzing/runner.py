@@ -15,7 +15,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from fuzzing.targets import TARGETS
+from fuzzing.target import put
+from fuzzing.targets import target_named
 
 HANG_S = 10.0
 """An input that takes longer has made the reader hang."""
@@ -83,7 +84,11 @@ class _Child:
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=self._errors,
-            env=os.environ | {"PYTHONPATH": os.pathsep.join(path for path in paths if path)},
+            env=os.environ
+            | {
+                "PYTHONPATH": os.pathsep.join(path for path in paths if path),
+                "XDG_CACHE_HOME": str(folder.parent),  # units that were tried are not remembered
+            },
             start_new_session=True,
         )
         self._told: queue.Queue[bytes] = queue.Queue()
@@ -127,6 +132,7 @@ def run(
     count: int | None = None,
     seconds: float | None = None,
     first: int = 0,
+    kept_in: Path | None = None,
     tell: Callable[[Outcome], None] = lambda outcome: None,
 ) -> Outcome:
     """Give inputs to a target until so many are done or the time is up.
@@ -137,6 +143,7 @@ def run(
         count: how many.
         seconds: how long, if there is no `count`.
         first: number of the first input.
+        kept_in: folder to which inputs that failed are written as they come, a few of each kind.
         tell: is told now and then how far it is.
 
     Raises:
@@ -148,9 +155,8 @@ def run(
     index, last = first, None if count is None else first + count
     try:
         while (last is None or index < last) and (seconds is None or time.monotonic() - began < seconds):
-            index = _until_it_ends(
-                outcome, index, last, None if seconds is None else began + seconds, place, tell
-            )
+            until = None if seconds is None else began + seconds
+            index = _until_it_ends(outcome, index, last, until, place, kept_in, tell)
     finally:
         shutil.rmtree(place, ignore_errors=True)
         outcome.seconds = time.monotonic() - began
@@ -163,6 +169,7 @@ def _until_it_ends(
     last: int | None,
     until: float | None,
     place: Path,
+    kept_in: Path | None,
     tell: Callable[[Outcome], None],
 ) -> int:
     """Work with one process; returns the number of the input to go on with."""
@@ -172,7 +179,8 @@ def _until_it_ends(
         if "ready" not in told:
             raise RuntimeError(f"{outcome.name}: its good inputs are not read: {told}")
         while (last is None or index < last) and (until is None or time.monotonic() < until):
-            child.next(HANG_S)  # says which input comes
+            if "renewed" in child.next(HANG_S):  # else it says which input comes
+                break
             began = time.monotonic()
             told = child.next(HANG_S)
             taken = time.monotonic() - began
@@ -183,6 +191,8 @@ def _until_it_ends(
                 outcome.slowest_s = max(outcome.slowest_s, taken)
             else:
                 outcome.failures.append(_failure(index - 1, told))
+                if kept_in is not None:
+                    _keep(outcome, outcome.failures[-1], kept_in)
             tell(outcome)
             if "hangs" in told or "ended" in told or told.get("where") == "memory":
                 break
@@ -207,19 +217,25 @@ def _failure(index: int, told: dict) -> Failure:
     return Failure(index, told["where"], told["failed"], told["trace"])
 
 
-def keep(outcome: Outcome, folder: Path) -> list[str]:
-    """Write inputs that failed, a few of each kind, with what makes them again; returns a line for each kind."""
+def _keep(outcome: Outcome, failure: Failure, folder: Path) -> None:
+    """Write an input that failed, with what makes it again, unless there are enough of its kind."""
+    if sum(other.where == failure.where for other in outcome.failures) > _KEPT:
+        return
+    kept = _place_of(outcome, failure, folder)
+    kept.mkdir(parents=True, exist_ok=True)
+    put(target_named(outcome.name).input(outcome.seed, failure.index), kept)
+    again = f"scripts/fuzz --target {outcome.name} --seed {outcome.seed} --first {failure.index} --count 1"
+    (kept / "failure.txt").write_text(f"{again}\n{failure.what}\n\n{failure.trace}\n")
+
+
+def kinds_of_failure(outcome: Outcome, folder: Path) -> list[str]:
+    """A line for each kind of failure, the most frequent first, with the folder of the first input."""
     lines = []
     for where, number in Counter(failure.where for failure in outcome.failures).most_common():
-        alike = [failure for failure in outcome.failures if failure.where == where][:_KEPT]
-        for failure in alike:
-            made = TARGETS[outcome.name].input(outcome.seed, failure.index)
-            kept = folder / f"{outcome.name}_{outcome.seed}_{failure.index}"
-            kept.mkdir(parents=True, exist_ok=True)
-            path = kept / made.name
-            path.parent.mkdir(exist_ok=True)
-            path.write_bytes(made.data)
-            again = f"scripts/fuzz --target {outcome.name} --seed {outcome.seed} --first {failure.index} --count 1"
-            (kept / "failure.txt").write_text(f"{again}\n{failure.what}\n\n{failure.trace}\n")
-        lines.append(f"{outcome.name}: {number} x {where}: {alike[0].what} ({folder / kept.name})")
+        first = next(failure for failure in outcome.failures if failure.where == where)
+        lines.append(f"{number} x {where}: {first.what} ({_place_of(outcome, first, folder)})")
     return lines
+
+
+def _place_of(outcome: Outcome, failure: Failure, folder: Path) -> Path:
+    return folder / f"{outcome.name}_{outcome.seed}_{failure.index}"

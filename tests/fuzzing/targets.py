@@ -1,6 +1,23 @@
-"""All targets."""
+"""Where each target is: only what it needs is loaded."""
+
+import importlib
 
 from fuzzing.target import Target
-from fuzzing.yaml_targets import YAML_TARGETS
 
-TARGETS: dict[str, Target] = {target.name: target for target in (*YAML_TARGETS,)}
+_MODULES = {
+    **dict.fromkeys(("csv", "parquet", "tdms", "mat", "mat73", "mcap", "bag"), "recording_targets"),
+    **dict.fromkeys(("rig", "scenario", "design"), "yaml_targets"),
+    **dict.fromkeys(("link", "answer", "console"), "protocol_targets"),
+}
+
+NAMES = tuple(_MODULES)
+"""Of all targets."""
+
+TRAP = "trap"
+"""Of one that fails on purpose: tests of the runner itself."""
+
+
+def target_named(name: str) -> Target:
+    """A target by its name."""
+    module = importlib.import_module(f"fuzzing.{_MODULES.get(name, 'trap_target')}")
+    return {target.name: target for target in module.TARGETS}[name]

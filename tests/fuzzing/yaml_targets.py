@@ -2,6 +2,7 @@
 
 import functools
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +17,12 @@ from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.records import JOINT_STAGES, SHARED_STAGES
 from hydrolek_drake.rigs import built_in_rigs, load_rig
+from hydrolek_drake.rollout.rollout import roll_out
+from hydrolek_drake.runs.running import run_scenario
 from hydrolek_drake.station.scenario import load_scenario, scenario_files
 
 _NAME = "mine.yaml"
+_STEPS = 5  # that what was read has to bear: values that are possible one by one
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 _RIGS = (
@@ -57,11 +61,12 @@ _SCENARIOS = (
     "command: {kind: controlled, controller: pi, joints: {joint: {recording: run.csv, signal: joint.angle}}}\n",
 )
 _MODELS = (
-    "joint: j2\nalpha: [-0.18, 0.62, -1.09, 0.22, 0.98, 1.05]\nsample_s: 0.01\ndelay_samples: 6\nrange_deg: [-10, 60]\n",
+    "joint: j2\nalpha: [-0.18, 0.62, -1.09, 0.22, 0.98, 1.05]\nsample_s: 0.01\ndelay_samples: 6\n"
+    "range_deg: [-10, 60]\n",
     "alpha: [0.14, 0.13, -0.1, 0.1]\nbeta: [-0.2, -1.1, 0.2, 1.0, -2.6, 3.0]\nsample_s: 0.01\ndelay_samples: 6\n"
     "range_deg: [-60, 60]\n",
-    "schema: 1\njoint: j1\nmodel: {alpha: [-0.2, 0.6, -1.1, 0.2, 1.0, 1.0], beta: null, sample_s: 0.01, delay_samples: 3,\n"
-    "  range_deg: [-20, 20]}\n",
+    "schema: 1\njoint: j1\nmodel: {alpha: [-0.2, 0.6, -1.1, 0.2, 1.0, 1.0], beta: null, sample_s: 0.01,\n"
+    "  delay_samples: 3, range_deg: [-20, 20]}\n",
 )
 
 
@@ -101,7 +106,9 @@ def _made(texts: Callable[[], tuple[str, ...]], rng: np.random.Generator) -> Inp
     number = int(rng.integers(len(everything)))
     kind = rng.random()
     text = everything[number]
-    if kind < 0.75:
+    if texts is _scenario_texts and rng.random() < 0.4:
+        text = yaml.dump(_trees(texts)[number] | {"settings": _settings(rng)})
+    elif kind < 0.75:
         text = damaged_tree(_trees(texts)[number], _words(texts), _trees(texts), rng)
     if kind > 0.65:
         text = damaged_text(text, rng)
@@ -111,9 +118,37 @@ def _made(texts: Callable[[], tuple[str, ...]], rng: np.random.Generator) -> Inp
     return Input(_NAME, data)
 
 
+@functools.cache
+def _parameters() -> list[str]:
+    return list(load_rig("joint_bench").entries)
+
+
+def _settings(rng: np.random.Generator) -> dict[str, Any]:
+    """Values of a rig that are possible one by one, far from usual or not."""
+    rig = load_rig("joint_bench")
+    chosen = rng.choice(_parameters(), int(rng.integers(1, 4)))
+    factors = [0.0, 1e-300, 1e-9, 0.1, 0.9, 1.1, 10.0, 1e9, 1e300, -1.0]
+    return {
+        str(path): float(rng.choice([1.0, rig.entries[str(path)].value])) * float(rng.choice(factors))
+        for path in chosen
+        if np.isfinite(rig.entries[str(path)].value)
+    }
+
+
 def _read_rig(path: Path) -> str:
     rig = load_rig(path)
-    rig.records()
+    records = rig.records()
+    step = rig.value("integration.longest_step")
+    for record in np.split(records, len(records)):
+        neutral = float(record["command"]["neutral"][0])
+        roll_out(
+            record,
+            np.array([0.0, 3.0 * step]),
+            np.array([neutral, neutral + 1.0]),
+            step * np.arange(_STEPS),
+            longest_step=step,
+            spool_steps=int(rig.value("integration.spool_steps")),
+        )
     again = path.with_name("again.yaml")
     again.write_text(yaml.dump(rig.as_tree(), Dumper=getattr(yaml, "CSafeDumper", yaml.SafeDumper)))
     try:
@@ -131,6 +166,10 @@ def _read_scenario(path: Path) -> str:
         return "read"
     times, values = scenario.command_table()
     assert np.isfinite(times).all() and np.isfinite(values).all(), "commands that are no numbers"
+    try:
+        run_scenario(replace(scenario, duration=min(scenario.duration, _STEPS * scenario.sizes.step)))
+    except InputError:
+        return "not run"
     return "read"
 
 
@@ -162,7 +201,7 @@ def _models() -> tuple[str, ...]:
     return _MODELS
 
 
-YAML_TARGETS = (
+TARGETS = (
     Target("rig", functools.partial(_made, _rig_texts), _read_rig, _seeds(_rig_texts)),
     Target(
         "scenario",

@@ -108,7 +108,7 @@ def test_a_constant_command_is_refused(rig, recording, tmp_path):
         (["--method", "annealing"], "choose ga, nsga2, de, cma, least-squares"),
         (["--parameter", "valve.area"], "has no parameter 'valve.area'"),
         (["--parameter", "fluid.density"], "has no range"),
-        (["--norm", "3"], "choose 1, 2 or inf"),
+        (["--norm", "3"], "choose 1, 2, inf"),
         (["--loss", "square"], "choose linear"),
         (["--cluster", "tcp://127.0.0.1:1"], "least-squares runs in threads"),
         (["--overdue", "5"], "least-squares runs in threads"),

@@ -266,14 +266,27 @@ def test_one_damaged_byte_raises_only_input_error(good_files, extension, place, 
             assert path.name in str(error)
 
 
-def test_a_mat_file_that_is_read_for_ever_is_given_up(tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    ("program", "says"),
+    [
+        (  # the parser never ends
+            "import runpy, scipy.io, sys, time\n"
+            "scipy.io.loadmat = lambda *_, **__: time.sleep(100)\n"
+            "runpy.run_path(sys.argv.pop(1), run_name='__main__')",
+            "was not read within 1 s",
+        ),
+        ("import time; time.sleep(100)", "did not end within 2 s"),  # it does not even begin
+    ],
+)
+def test_a_mat_file_that_is_read_for_ever_is_given_up(tmp_path, monkeypatch, program, says):
     """Reading is done in a process of its own, which is ended when its time is up."""
     path = tmp_path / "slow.mat"
     scipy.io.savemat(path, {"time_s": 0.1 * np.arange(50.0), "j": np.arange(50.0)})
     process_id = tmp_path / "id"
-    sleeping = f"import os, time; open({str(process_id)!r}, 'w').write(str(os.getpid())); time.sleep(100)"
-    monkeypatch.setattr(mat_process, "_RUN_ALONE", sleeping)
-    monkeypatch.setattr(mat_process, "LONGEST_S", 1.0)
-    assert "not read within 1 s" in refusal(path)
+    noted = f"import os; open({str(process_id)!r}, 'w').write(str(os.getpid()))\n"
+    monkeypatch.setattr(mat_process, "_RUN_ALONE", noted + program)
+    monkeypatch.setattr(mat_process, "LONGEST_S", 0.5)
+    monkeypatch.setattr(mat_process, "START_S", 1.0 if "scipy" not in program else 60.0)
+    assert says in refusal(path)
     with pytest.raises(ProcessLookupError):
         os.kill(int(process_id.read_text()), 0)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.files import write_results
 from hydrolek_drake.identification.fit.fitting import SIGNALS, RigFit
 from hydrolek_drake.identification.parameter_set import Free
 from hydrolek_drake.identification.problem_together import problem_of
@@ -116,7 +117,6 @@ def profiles_of(
 
 def write_profiles(profiles: Sequence[RigProfile], folder: Path) -> list[Path]:
     """Write `profiles.json` and `profiles.png`, each when complete."""
-    folder.mkdir(parents=True, exist_ok=True)
     rows = [
         {
             "path": one.free.path,
@@ -138,12 +138,7 @@ def write_profiles(profiles: Sequence[RigProfile], folder: Path) -> list[Path]:
         "profiles.json": (json.dumps(rows, indent=1) + "\n").encode(),
         "profiles.png": profiles_picture(profiles),
     }
-    written = []
-    for name, content in contents.items():
-        draft = folder / f"{name}.part"
-        draft.write_bytes(content)
-        written.append(draft.rename(folder / name))
-    return written
+    return write_results(folder, contents)
 
 
 def profiles_picture(profiles: Sequence[RigProfile]) -> bytes:

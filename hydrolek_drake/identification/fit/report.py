@@ -6,6 +6,7 @@ from pathlib import Path
 
 import yaml
 
+from hydrolek_drake.files import write_results
 from hydrolek_drake.identification.fit.fitting import RigFit
 from hydrolek_drake.replay.confirmation import Confirmation
 
@@ -57,7 +58,6 @@ def write_fit(fitted: RigFit, folder: Path, confirmed: Sequence[Confirmation] = 
         folder: where; made if it is missing.
         confirmed: the same on the Drake Diagram, where that was run.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     rows = fitted.intervals()
     content = {
         "method": fitted.method,
@@ -76,9 +76,4 @@ def write_fit(fitted: RigFit, folder: Path, confirmed: Sequence[Confirmation] = 
         "rig_fitted.yaml": yaml.safe_dump(fitted.rig.as_tree(), sort_keys=False, allow_unicode=True),
         "fit.json": json.dumps(content, indent=1) + "\n",
     }
-    written = []
-    for name, text in texts.items():
-        draft = folder / f"{name}.part"
-        draft.write_text(text, encoding="utf-8")
-        written.append(draft.rename(folder / name))
-    return written
+    return write_results(folder, texts)

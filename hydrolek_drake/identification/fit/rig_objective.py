@@ -1,5 +1,6 @@
 """The objectives of section 4.3 for a rig's recordings, over the unit cube of its parameters."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,6 +56,10 @@ class RigObjective:
     def __call__(self, unit: np.ndarray) -> np.ndarray:
         """Value, or values of the segments, at a place of the unit cube. # (size,)."""
         return self.score(self.residuals(unit))
+
+    def of_all(self, units: Sequence[np.ndarray]) -> list[np.ndarray]:
+        """The same at several places, whose machines are rolled out in lanes. # (size,) each."""
+        return [self.score(residuals) for residuals in self.problem.residuals_of_all(units)]
 
     def _counted(self) -> np.ndarray:
         return np.concatenate(

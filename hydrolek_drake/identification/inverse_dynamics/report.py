@@ -6,6 +6,7 @@ from pathlib import Path
 
 import yaml
 
+from hydrolek_drake.files import write_results
 from hydrolek_drake.identification.inverse_dynamics.regression import Regression
 from hydrolek_drake.rigs import Rig
 
@@ -20,7 +21,6 @@ def fitted_rig(rig: Rig, found: Regression) -> Rig:
 
 def write_regression(rig: Rig, found: Regression, folder: Path) -> list[Path]:
     """Write `force.json`, `force.png` and `rig_fitted.yaml`, each when complete."""
-    folder.mkdir(parents=True, exist_ok=True)
     rows = {
         path: {"value": value, "low": low, "high": high}
         for path, (value, low, high) in found.intervals().items()
@@ -33,12 +33,7 @@ def write_regression(rig: Rig, found: Regression, folder: Path) -> list[Path]:
             fitted_rig(rig, found).as_tree(), sort_keys=False, allow_unicode=True
         ).encode(),
     }
-    written = []
-    for name, content_bytes in contents.items():
-        draft = folder / f"{name}.part"
-        draft.write_bytes(content_bytes)
-        written.append(draft.rename(folder / name))
-    return written
+    return write_results(folder, contents)
 
 
 def picture(rig: Rig, found: Regression) -> bytes:

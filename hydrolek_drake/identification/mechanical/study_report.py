@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from hydrolek_drake.files import results_folder, write_results
 from hydrolek_drake.identification.genetic.settings import SIMPLE
 from hydrolek_drake.identification.mechanical.mechanical_model import mechanical_parameters
 from hydrolek_drake.identification.mechanical.study import Run, study_data
@@ -141,8 +142,8 @@ def write_study(
     found: dict[str, list[Run]], folder: Path, seed: int, date: str, seconds: float
 ) -> list[Path]:
     """Write JSON, tables and pictures; each under a temporary name first."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "pictures").mkdir(exist_ok=True)
+    with results_folder(folder / "pictures"):
+        pass
     contents: dict[str, bytes] = {
         "genetic_study.json": (json.dumps(as_json(found, seed, date, seconds), indent=1) + "\n").encode(),
         "genetic_study_tables.md": (
@@ -151,9 +152,4 @@ def write_study(
         ).encode(),
         **{f"pictures/{name}.png": learning_picture(found["sweep"], name) for name in CURVES},
     }
-    written = []
-    for name, content in contents.items():
-        draft = folder / f"{name}.part"
-        draft.write_bytes(content)
-        written.append(draft.rename(folder / name))
-    return written
+    return write_results(folder, contents)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import yaml
 
+from hydrolek_drake.files import write_results
 from hydrolek_drake.identification.sdp.identify import SdpIdentification
 from hydrolek_drake.identification.sdp.step_test import campaign_data
 from hydrolek_drake.identification.sdp.validation import KINDS, ValidationRun
@@ -72,7 +73,6 @@ def write_report(
     results: Sequence[tuple[SdpIdentification, Sequence[ValidationRun]]], folder: Path
 ) -> list[Path]:
     """Write `sdp.json`, `sdp_models.yaml` and a picture for each joint; returns the paths."""
-    folder.mkdir(parents=True, exist_ok=True)
     models = {
         "sample": {"value": results[0][0].model.sample_s, "unit": "s"},
         "joints": {found.joint: as_model_entry(found) for found, _ in results},
@@ -82,12 +82,7 @@ def write_report(
         "sdp_models.yaml": yaml.safe_dump(models, sort_keys=False).encode(),
         **{f"sdp_{found.joint}.png": picture(found, runs) for found, runs in results},
     }
-    written = []
-    for name, content in contents.items():
-        draft = folder / f"{name}.part"
-        draft.write_bytes(content)
-        written.append(draft.rename(folder / name))
-    return written
+    return write_results(folder, contents)
 
 
 def picture(found: SdpIdentification, runs: Sequence[ValidationRun]) -> bytes:

@@ -47,7 +47,7 @@ class Evaluator:
             upper: # (d,)
             budget: evaluations that are allowed.
             size: how many values an evaluation gives.
-            evaluate: evaluates several points, such as over processes; None for here, one by one.
+            evaluate: evaluates several points, such as over processes; None for here.
             journal: keeps what was evaluated.
             progress: told after each batch how many evaluations are done and the best sum of values.
         """
@@ -58,7 +58,7 @@ class Evaluator:
         self.size = size
         self.units: list[np.ndarray] = []
         self.scores: list[np.ndarray] = []
-        self._evaluate = evaluate or (lambda points: [attempt(objective, point) for point in points])
+        self._evaluate = evaluate or (lambda points: attempt_all(objective, points))
         self._journal = journal
         self._progress = progress
         self._best = FAILED
@@ -112,6 +112,16 @@ def attempt(objective: Objective, point: np.ndarray) -> np.ndarray | None:
         return np.asarray(objective(point), dtype=float)
     except Exception:
         return None
+
+
+def attempt_all(objective: Any, points: Sequence[np.ndarray]) -> list[np.ndarray | None]:
+    """Values at several points, None for each that failed; at once where the objective can do that (`of_all`)."""
+    if len(points) > 1 and hasattr(objective, "of_all"):
+        try:
+            return [np.asarray(value, dtype=float) for value in objective.of_all(points)]
+        except Exception:  # one of them; which, and what the others are worth, is found one by one
+            pass
+    return [attempt(objective, point) for point in points]
 
 
 def _score(value: np.ndarray | None, size: int) -> np.ndarray:

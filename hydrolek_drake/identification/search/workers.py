@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.identification.search.evaluation import attempt
+from hydrolek_drake.identification.search.evaluation import attempt_all
 
 CHUNKS_PER_WORKER = 2
 """Two, so that a slow chunk does not leave the others idle; more would only send more messages."""
@@ -24,7 +24,7 @@ def chunks_of(count: int, workers: int) -> list[np.ndarray]:
 
 def evaluate_chunk(objective: Any, points: list[np.ndarray]) -> list[np.ndarray | None]:
     """Values of several points, None for each that failed."""
-    return [attempt(objective, point) for point in points]
+    return attempt_all(objective, points)
 
 
 def _prepare(objective: Any) -> None:

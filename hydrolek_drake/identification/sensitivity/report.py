@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from hydrolek_drake.files import write_results
 from hydrolek_drake.identification.sensitivity.sobol import SobolIndices
 from hydrolek_drake.identification.sensitivity.study import SensitivityStudy
 
@@ -64,7 +65,6 @@ def _sobol_row(study: SensitivityStudy, i: int) -> dict[str, Any]:
 
 def write_study(study: SensitivityStudy, folder: Path) -> list[Path]:
     """Write JSON and pictures, each when complete; returns the paths."""
-    folder.mkdir(parents=True, exist_ok=True)
     contents = {
         f"sensitivity_{study.joint}.json": (json.dumps(as_json(study), indent=1) + "\n").encode(),
         f"sensitivity_{study.joint}.png": ranking_picture(study),
@@ -72,12 +72,7 @@ def write_study(study: SensitivityStudy, folder: Path) -> list[Path]:
     }
     if study.sobol is not None:
         contents[f"sensitivity_{study.joint}_sobol.png"] = sobol_picture(study, study.sobol)
-    written = []
-    for name, content in contents.items():
-        draft = folder / f"{name}.part"
-        draft.write_bytes(content)
-        written.append(draft.rename(folder / name))
-    return written
+    return write_results(folder, contents)
 
 
 def ranking_picture(study: SensitivityStudy) -> bytes:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import yaml
 
+from hydrolek_drake.files import write_results
 from hydrolek_drake.identification.two_step.estimate import STAGES, Stage, TwoStep
 from hydrolek_drake.identification.two_step.settings import two_step_data
 from hydrolek_drake.rigs import Rig
@@ -64,7 +65,6 @@ def relative_errors(stage: Stage, machine: Rig) -> np.ndarray:
 
 def write_report(found: TwoStep, folder: Path, machine: Rig | None = None) -> list[Path]:
     """Write `two_step_<joint>.json`, its picture and the rig that was found, each when complete."""
-    folder.mkdir(parents=True, exist_ok=True)
     contents: dict[str, bytes] = {
         f"two_step_{found.joint}.json": (json.dumps(as_json(found, machine), indent=1) + "\n").encode(),
         f"two_step_{found.joint}.png": picture(found),
@@ -72,12 +72,7 @@ def write_report(found: TwoStep, folder: Path, machine: Rig | None = None) -> li
             found.rig.as_tree(), sort_keys=False, allow_unicode=True
         ).encode(),
     }
-    written = []
-    for name, content in contents.items():
-        draft = folder / f"{name}.part"
-        draft.write_bytes(content)
-        written.append(draft.rename(folder / name))
-    return written
+    return write_results(folder, contents)
 
 
 def picture(found: TwoStep) -> bytes:

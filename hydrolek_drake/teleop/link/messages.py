@@ -84,7 +84,7 @@ def decode(line: bytes) -> Request:
     except ValueError:
         raise _unknown(line) from None
     first, _, rest = text.partition(" ")
-    if text.startswith(Word.RATE.value):
+    if text.partition(",")[0].strip() == Word.RATE.value:
         return Request(Word.RATE, deflection=_deflection(line, text))
     if first == Word.TOKEN.value:
         return Request(Word.TOKEN, text=rest.strip())
@@ -107,7 +107,7 @@ def decode_answer(line: bytes) -> Array:
     if text.startswith((BUSY, ERROR)):
         raise InputError(f"link: the controllers refuse: {text.partition(' ')[2]}")
     try:
-        degrees = np.array([float(word) for word in text.split(",")])
+        degrees = np.array([_number(word) for word in text.split(",")])
     except ValueError:
         degrees = np.zeros(0)
     if degrees.shape != (_JOINTS,) or not np.isfinite(degrees).all():
@@ -140,12 +140,23 @@ def _deflection(line: bytes, text: str) -> Array:
 
 def _numbers(line: bytes, words: list[str], what: str, unit: str) -> Array:
     try:
-        values = np.array([float(word) for word in words])
+        values = np.array([_number(word) for word in words])
     except ValueError:
         raise _unknown(line) from None
     if values.shape != (_JOINTS,):
         raise InputError(f"message has {len(values)} {what}; {_JOINTS} {unit} are needed")
     return values
+
+
+def _number(word: str) -> float:
+    """A number as instruments write it; Python's own 1_0 for 10 would be a slip that moves the arms.
+
+    Raises:
+        ValueError: It is none.
+    """
+    if "_" in word:
+        raise ValueError
+    return float(word)
 
 
 def _unknown(line: bytes) -> InputError:

@@ -1,0 +1,120 @@
+"""Many machines in lanes beside the same machines one by one, in units of one rollout, in one run."""
+
+import statistics
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from hydrolek_drake.physics.records import flat, position_of
+from hydrolek_drake.rigs import Rig, load_rig
+from hydrolek_drake.rollout import roll_out
+from hydrolek_drake.rollout.lanes import roll_out_lanes
+
+COUNTS = (1, 8, 20, 64)
+"""Machines: one, a table of lanes, a Jacobian of twenty parameters, a population."""
+
+RUBBING = {
+    "cylinder.coulomb_friction.coulomb_N": 0.03,
+    "valve.spool_stiction.force_N": 0.02,
+    "linkage.backlash.gap_rad": 0.002,
+}
+"""Effects of the second machine: shares of the largest oil force and of the solenoid's, and radians."""
+
+SPREAD = 0.02
+"""By which the machines' numbers differ."""
+
+
+@dataclass(frozen=True)
+class LanesSpeed:
+    """How long some machines take.
+
+    Attributes:
+        machine: which.
+        count: how many of them.
+        in_lanes: processor time of all over that of one rollout; median.
+        one_by_one: the same, one after the other.
+        machine_seconds: simulated seconds of all of them per second in lanes.
+    """
+
+    machine: str
+    count: int
+    in_lanes: float
+    one_by_one: float
+    machine_seconds: float
+
+
+def measure_lanes(
+    times: np.ndarray, volts: np.ndarray, repeats: int, report: Callable[[str], None]
+) -> list[LanesSpeed]:
+    """Rows of the benchmark: the bench without effects, and an arm joint that rubs, sticks and plays.
+
+    Args:
+        times: of the command [s]. # (n,)
+        volts: held from then on. # (n,)
+        repeats: runs of each; the median counts.
+        report: told what is measured next.
+    """
+    rows = []
+    for label, rig in (
+        ("joint_bench", load_rig("joint_bench")),
+        (
+            "hydrolek_right_j2 with Coulomb friction, sticking spool and play",
+            rubbing(load_rig("hydrolek_right_j2")),
+        ),
+    ):
+        report(f"machines in lanes: {label}")
+        records, step = _varied(rig, max(COUNTS)), rig.value("integration.longest_step")
+
+        def alone(i: int, records: np.ndarray = records, step: float = step) -> Any:
+            return roll_out(records[i : i + 1], times, volts, times, longest_step=step)
+
+        def together(count: int, records: np.ndarray = records, step: float = step) -> Any:
+            return roll_out_lanes(records[:count], times, volts, times, longest_step=step, at_once=True)
+
+        def every(count: int, alone: Callable[[int], Any] = alone) -> None:
+            for i in range(count):
+                alone(i)
+
+        alone(0)  # both are compiled before anything is measured
+        together(1)
+        one = _median_seconds(every, 1, repeats)
+        for count in COUNTS:
+            used, scalar = _median_seconds(together, count, repeats), _median_seconds(every, count, repeats)
+            rows.append(LanesSpeed(label, count, used / one, scalar / one, count * float(times[-1]) / used))
+    return rows
+
+
+def rubbing(rig: Rig) -> Rig:
+    """The rig with `RUBBING`."""
+    record = rig.records()[0]
+    scales: Mapping[str, float] = {
+        "coulomb_N": float(record["cylinder"]["area_a"] * record["supply"]["pressure"]),
+        "force_N": float(record["solenoid"]["spring"] * record["valve"]["full_opening_a"]),
+        "gap_rad": 1.0,
+    }
+    where = f"joints.{rig.joints[0]}.effects"
+    return rig.with_values(
+        {f"{where}.{name}": share * scales[name.rpartition(".")[2]] for name, share in RUBBING.items()}
+    )
+
+
+def _varied(rig: Rig, count: int) -> np.ndarray:
+    records = np.repeat(rig.records()[:1], count)
+    generator = np.random.default_rng(1)
+    for name in ("supply.pressure", "fluid.bulk_modulus", "command.delay", "load.inertia", "valve.discharge"):
+        factors = generator.uniform(1.0 - SPREAD, 1.0 + SPREAD, size=count)
+        flat(records)[:, position_of(*name.split("."))] *= factors
+    return records
+
+
+def _median_seconds(work: Callable[[int], Any], count: int, repeats: int) -> float:
+    """Processor time of a piece of work."""
+    taken = []
+    for _ in range(repeats):
+        begin = time.process_time()
+        work(count)
+        taken.append(time.process_time() - begin)
+    return statistics.median(taken)

@@ -1,0 +1,94 @@
+"""When a loop over lanes is compiled: beside the work, in a process of its own, once it would have been worth it.
+
+A loop for another kind of machine takes some 15 s of processor time to compile, as long as a thousand rollouts; it
+then lies on disk for all runs to come. Nobody waits for it: until it is there, machines are rolled out one by one,
+which gives the same numbers to the last bit (`tests/rollout/test_lanes.py`).
+"""
+
+import contextlib
+import os
+import subprocess
+import sys
+import threading
+from collections import Counter
+from pathlib import Path
+
+import numba
+import numpy as np
+
+from hydrolek_drake.physics.records import JOINT, flat
+from hydrolek_drake.rollout.lane_view import Kind
+
+WORTH = 200
+"""Machines of a kind that have been asked for before its loop is compiled: a fit of some steps, and no single look."""
+
+_lock = threading.Lock()
+_ready: set[str] = set()
+_asked: Counter[str] = Counter()
+_running: list[subprocess.Popen[bytes]] = []
+
+
+def ready(kind: Kind, joint: np.ndarray, count: int, spool_steps: int) -> bool:
+    """Whether the loop of a kind is there; if it is not and has become worth it, a process begins to compile it.
+
+    Args:
+        kind: of the machines.
+        joint: record of one of them, shape (1,).
+        count: how many are to be rolled out now.
+        spool_steps: as of `roll_out`.
+    """
+    with _lock:
+        if kind.name in _ready or _mark(kind).exists():
+            _ready.add(kind.name)
+            return True
+        _asked[kind.name] += count
+        _running[:] = [process for process in _running if process.poll() is None]
+        if _asked[kind.name] >= WORTH and not _running:
+            _asked[kind.name] = 0  # should it fail, it is tried again after as many
+            with contextlib.suppress(OSError):
+                _running.append(_begin(joint, spool_steps))
+        return False
+
+
+def compiled(kind: Kind) -> None:
+    """Take note that the loop of a kind has been compiled, and is kept on disk."""
+    with _lock:
+        _ready.add(kind.name)
+        with contextlib.suppress(OSError):
+            _mark(kind).touch()
+
+
+def _mark(kind: Kind) -> Path:
+    return Path(numba.config.CACHE_DIR or ".") / f"lanes_{kind.name}"
+
+
+def _begin(joint: np.ndarray, spool_steps: int) -> "subprocess.Popen[bytes]":
+    """A process that compiles the loop for machines of a joint's kind, and outlives this one if need be."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "hydrolek_drake.rollout.lane_compiling", str(spool_steps)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,  # Ctrl-C is for the work, not for what it leaves for later
+    )
+    assert process.stdin is not None  # it is a pipe
+    with contextlib.suppress(BrokenPipeError), process.stdin as to:
+        to.write(flat(joint).tobytes())
+    return process
+
+
+def main() -> None:
+    """Compile the loop for the joint whose numbers are on standard input."""
+    from hydrolek_drake.rollout.lanes import roll_out_lanes
+
+    with contextlib.suppress(OSError, AttributeError):
+        os.nice(10)
+    joint = np.frombuffer(sys.stdin.buffer.read(), dtype=JOINT)
+    step = 1e-3
+    times = np.array([0.0, step])
+    volts = np.zeros(2)
+    roll_out_lanes(joint, times, volts, times, longest_step=step, spool_steps=int(sys.argv[1]), at_once=True)
+
+
+if __name__ == "__main__":
+    main()

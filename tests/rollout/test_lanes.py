@@ -1,0 +1,229 @@
+"""Machines in lanes: each does what it does alone, whatever its neighbours are or do."""
+
+import json
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.physics.records import flat, position_of
+from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.rollout import lane_compiling
+from hydrolek_drake.rollout.kernel import SIGNALS
+from hydrolek_drake.rollout.lane_view import LANES
+from hydrolek_drake.rollout.lanes import kind_of, roll_out_lanes
+from hydrolek_drake.rollout.rollout import rest_state_at_reading, roll_out
+
+SIZES = json.loads((Path(__file__).parents[2] / "scripts" / "agreement_effects.json").read_text())
+STEP = 5e-4
+
+
+def _driven(seconds, seed=3):
+    times = np.arange(0.0, seconds, 0.01)
+    levels = np.random.default_rng(seed).uniform(-4.0, 4.0, size=times.size // 23 + 1)
+    return times, np.repeat(levels, 23)[: times.size]
+
+
+def _with(rig, effect):
+    record = rig.records()[0]
+    scale = {
+        "force": float(record["cylinder"]["area_a"] * record["supply"]["pressure"]),
+        "inertia": float(record["load"]["inertia"]),
+        "friction": float(record["cylinder"]["viscous_friction"]),
+        "stroke": float(record["cylinder"]["stroke"]),
+    }
+    where = f"joints.{rig.joints[0]}.effects.{effect}"
+    return rig.with_values(
+        {f"{where}.{name}": v * scale.get(of, 1.0) for name, (v, of) in SIZES[effect].items()}
+    )
+
+
+def _varied(record, rng, count):
+    """Machines whose numbers, delays among them, are 2 % off."""
+    records = np.repeat(record, count)
+    names = ("supply.pressure", "fluid.bulk_modulus", "command.delay", "load.inertia", "valve.discharge")
+    for name in names:
+        flat(records)[:, position_of(*name.split("."))] *= rng.uniform(0.98, 1.02, size=count)
+    return records
+
+
+def _alike(done, alone):
+    """To the last bit."""
+    assert done.diverged == alone.diverged
+    for name in SIGNALS:
+        np.testing.assert_array_equal(getattr(done.signals, name), getattr(alone.signals, name), err_msg=name)
+    if done.diverged is None:
+        np.testing.assert_array_equal(done.state, alone.state)
+
+
+def _one_by_one(records, times, volts, **named):
+    return [roll_out(records[i : i + 1], times, volts, times, **named) for i in range(len(records))]
+
+
+def test_every_lane_does_what_it_does_alone_and_goes_on_from_where_it_ended():
+    rig, rng = load_rig("hydrolek_right_j2"), np.random.default_rng(1)
+    records = _varied(rig.records()[:1], rng, LANES + 3)  # more than one table's
+    times, volts = _driven(8.0)
+    found = roll_out_lanes(records, times, volts, times, longest_step=STEP, at_once=True)
+    alone = _one_by_one(records, times, volts, longest_step=STEP)
+    for one, other in zip(found, alone, strict=True):
+        _alike(one, other)
+    later = times + 8.0
+    onward = roll_out_lanes(
+        records, later, volts, later, states=[one.state for one in found], longest_step=STEP, at_once=True
+    )
+    for i, one in enumerate(onward):
+        _alike(
+            one, roll_out(records[i : i + 1], later, volts, later, state=alone[i].state, longest_step=STEP)
+        )
+
+
+MIXED = (
+    "cylinder.coulomb_friction",
+    "valve.spool_stiction",
+    "linkage.backlash",
+    "fluid.warm_up",
+    "base.compliance",
+)
+
+
+def test_a_batch_of_machines_with_other_effects():
+    """Each effect that is a program of its own, and some that are not, side by side; the rest: `--long`."""
+    rig = load_rig("hydrolek_right_j2")
+    effects = (
+        *MIXED,
+        "supply.pressure_droop",
+        "cylinder.cross_port_leakage",
+        "sensor.hysteresis",
+        "command.delay",
+    )
+    records = np.concatenate([rig.records()[:1], *(_with(rig, effect).records()[:1] for effect in effects)])
+    times, volts = _driven(5.0)
+    for one, other in zip(
+        roll_out_lanes(records, times, volts, times, longest_step=STEP, at_once=True),
+        _one_by_one(records, times, volts, longest_step=STEP),
+        strict=True,
+    ):
+        _alike(one, other)
+
+
+@pytest.mark.long("five minutes: every effect on every joint, the programs of all kinds compiled")
+@pytest.mark.parametrize(
+    "name",
+    ["joint_bench", "emps", "festo_tp511", "patu_lift"]
+    + [f"hydrolek_{side}_j{n}" for side in ("right", "left") for n in range(1, 6)],
+)
+def test_every_effect_on_every_machine_for_40_seconds(name):
+    rig = load_rig(name)
+    machines = [rig]
+    for effect in SIZES:
+        try:
+            machines.append(_with(rig, effect))
+        except InputError:
+            continue  # it does not act on this machine
+    records = np.concatenate([machine.records()[:1] for machine in machines])
+    times, volts = _driven(40.0)
+    step = rig.value("integration.longest_step")
+    for one, other in zip(
+        roll_out_lanes(records, times, volts, times, longest_step=step, at_once=True),
+        _one_by_one(records, times, volts, longest_step=step),
+        strict=True,
+    ):
+        _alike(one, other)
+
+
+def test_a_lane_that_diverges_or_has_no_number_disturbs_no_other_by_a_bit():
+    rig, rng = load_rig("joint_bench"), np.random.default_rng(2)
+    records = _varied(rig.records()[:1], rng, LANES)
+    times, volts = _driven(4.0)
+    good = roll_out_lanes(records, times, volts, times, longest_step=STEP, at_once=True)
+    spoiled = records.copy()
+    spoiled[2]["fluid"]["bulk_modulus"] = 1e16
+    spoiled[5]["load"]["inertia"] = np.nan
+    spoiled[6]["fluid"]["density"] = 0.0
+    found = roll_out_lanes(spoiled, times, volts, times, longest_step=STEP, at_once=True)
+    assert "left all bounds at" in found[2].diverged
+    assert found[5].diverged == "load.inertia is not a number (NaN)"
+    assert found[6].diverged == "a parameter by which something is divided is zero"
+    for i in (0, 1, 3, 4, 7):
+        for name in SIGNALS:
+            np.testing.assert_array_equal(getattr(found[i].signals, name), getattr(good[i].signals, name))
+
+
+def test_pulled_rollouts_and_starts_of_their_own():
+    rig, rng = load_rig("joint_bench"), np.random.default_rng(4)
+    records = _varied(rig.records()[:1], rng, 5)
+    times, volts = _driven(4.0)
+    measured = np.column_stack([0.02 * rng.standard_normal(times.size), *(np.full((2, times.size), 5e6))])
+    measured[10:20, 0] = np.nan
+    states = [rest_state_at_reading(records[i : i + 1], 0.01 * i) for i in range(5)]
+    found = roll_out_lanes(
+        records, times, volts, times, states=states, longest_step=STEP, pull=(0.1, measured), at_once=True
+    )
+    for i, one in enumerate(found):
+        alone = roll_out(
+            records[i : i + 1], times, volts, times, state=states[i], longest_step=STEP, pull=(0.1, measured)
+        )
+        _alike(one, alone)
+
+
+def test_rows_that_are_far_and_unevenly_apart():
+    rig = load_rig("joint_bench")
+    records = _varied(rig.records()[:1], np.random.default_rng(6), 4)
+    command_times, volts = _driven(6.0)
+    times = np.array([0.0, 0.003, 0.5, 0.51, 2.0, 2.0001, 5.0])
+    for i, one in enumerate(
+        roll_out_lanes(records, command_times, volts, times, longest_step=STEP, at_once=True)
+    ):
+        _alike(one, roll_out(records[i : i + 1], command_times, volts, times, longest_step=STEP))
+
+
+def test_few_kinds_are_compiled():
+    rig = load_rig("joint_bench")
+    kinds = {kind_of(_with(rig, effect).records()[:1], 1) for effect in SIZES if effect != "linkage.backlash"}
+    assert len(kinds) <= 6  # without any, rubbing, warming, sticking, rocking, driven otherwise
+
+
+def test_times_that_do_not_rise_are_refused():
+    rig = load_rig("joint_bench")
+    with pytest.raises(InputError, match="must rise"):
+        roll_out_lanes(rig.records()[:1], np.zeros(1), np.zeros(1), np.array([1.0, 0.5]), longest_step=STEP)
+
+
+def test_until_a_loop_is_compiled_machines_go_one_by_one_and_nobody_waits(monkeypatch, tmp_path):
+    monkeypatch.setattr(lane_compiling, "_mark", lambda kind: tmp_path / kind.name)
+    begun = []
+    monkeypatch.setattr(lane_compiling, "_begin", lambda *given: begun.append(given) or _Running())
+    rig = load_rig("joint_bench")
+    records = _varied(rig.records()[:1], np.random.default_rng(7), 60)
+    records["fluid"]["floor_time"] = 0.0  # a kind is told by its variants and effects alone
+    kind = kind_of(records[:1], 1)
+    monkeypatch.setattr(lane_compiling, "_ready", set())
+    monkeypatch.setattr(lane_compiling, "_asked", Counter())
+    asked = [lane_compiling.ready(kind, records[:1], 60, 1) for _ in range(8)]
+    assert not any(asked) and len(begun) == 1  # after 240 of them; not again while that runs
+    (tmp_path / kind.name).touch()  # as the other process does when it is done
+    assert lane_compiling.ready(kind, records[:1], 60, 1)
+
+
+class _Running:
+    def poll(self):
+        return None
+
+
+def test_another_process_compiles_a_loop_for_all():
+    rig = load_rig("joint_bench")
+    kind = kind_of(rig.records()[:1], 1)
+    roll_out_lanes(
+        rig.records()[:1],
+        np.array([0.0, 1e-3]),
+        np.zeros(2),
+        np.array([0.0, 1e-3]),
+        longest_step=STEP,
+        at_once=True,
+    )
+    lane_compiling._mark(kind).unlink()
+    process = lane_compiling._begin(rig.records()[:1], 1)
+    assert process.wait(300.0) == 0 and lane_compiling._mark(kind).exists()
