@@ -38,6 +38,7 @@ from hydrolek_drake.station.step_sizes import StepSizes, sizes_for
 
 JOINTS = [f"hydrolek_{side}_j{number}" for side in ("right", "left") for number in range(1, 6)]
 GRAVITY = UniformGravityFieldElement.kDefaultStrength  # m/s^2, of Drake and of the arms
+ROUNDING = 1e-9  # N m per kg m^2, of a gravity moment
 SIZES = Path(__file__).parent / "agreement_effects.json"
 BLOWS = "linkage.backlash"
 """Each closing of a play is a blow of a small inertia on a stiff spring, which takes 0.2 ms."""
@@ -152,6 +153,9 @@ def bodies(cases: list[Case]) -> Rig:
             for p in load.STAGE.parameters("rotating")
             if p.name in FROM_ARM
         }
+        if np.hypot(values["gravity_cos"], values["gravity_sin"]) < ROUNDING * values["inertia"]:
+            for key in ("gravity_cos", "gravity_sin"):  # of an upright axis: no body has so small a moment
+                turning[key]["value"] = 0.0
         sections["load"] = {**sections["load"], **turning, "variant": "rotating"}
         joints[f"case_{number}"] = sections
     return rig_from_tree({**common, "name": "agreement", "joints": joints}, Path("agreement"))
