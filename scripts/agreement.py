@@ -7,7 +7,8 @@ held is one rigid body on a fixed axis, so each case is a body of its own with t
 every joint runs on the arms' own plant, one of each arm at a time. Finished rows are kept, so an interrupted
 study goes on where it was.
 
-With `--closed` it is controllers that drive both executions, and the section about closed loops is written anew.
+With `--own` the diagram takes the step that it takes where none is given, with `--closed` controllers drive both
+executions; either writes its own table anew.
 """
 
 import argparse
@@ -37,6 +38,7 @@ from hydrolek_drake.station.step_sizes import StepSizes, sizes_for
 
 JOINTS = [f"hydrolek_{side}_j{number}" for side in ("right", "left") for number in range(1, 6)]
 GRAVITY = UniformGravityFieldElement.kDefaultStrength  # m/s^2, of Drake and of the arms
+ROUNDING = 1e-9  # N m per kg m^2, of a gravity moment
 SIZES = Path(__file__).parent / "agreement_effects.json"
 BLOWS = "linkage.backlash"
 """Each closing of a play is a blow of a small inertia on a stiff spring, which takes 0.2 ms."""
@@ -51,7 +53,8 @@ until a hair's breadth decides."""
 CONTROLLERS = ("feedforward", "pip_idz_c", "pip_forward_c")
 """The project's own, and what the thesis recommends of feedback and of forward path for steps (section 6.3)."""
 
-CLOSED_BEGINS, CLOSED_ENDS = "<!-- in closed loop -->\n", "<!-- end of closed loop -->"
+CLOSED, OWN = "in closed loop", "at the diagram's own step"
+"""Tables that are written by themselves."""
 
 BOUNCES = ("hydrolek_left_j4", BLOWS)
 """A light joint, a vane: it bounces where a hair's breadth decides, and both executions are of first order there."""
@@ -150,6 +153,9 @@ def bodies(cases: list[Case]) -> Rig:
             for p in load.STAGE.parameters("rotating")
             if p.name in FROM_ARM
         }
+        if np.hypot(values["gravity_cos"], values["gravity_sin"]) < ROUNDING * values["inertia"]:
+            for key in ("gravity_cos", "gravity_sin"):  # of an upright axis: no body has so small a moment
+                turning[key]["value"] = 0.0
         sections["load"] = {**sections["load"], **turning, "variant": "rotating"}
         joints[f"case_{number}"] = sections
     return rig_from_tree({**common, "name": "agreement", "joints": joints}, Path("agreement"))
@@ -217,23 +223,42 @@ def closed_table() -> str:
     return "\n".join(lines)
 
 
+def own_table(duration: float) -> str:
+    """The table of all joints at the step of `sizes_for`, without an effect and with a play that closes."""
+    lines = ["| joint | effect on | step [ms] | rms [deg] | largest [deg] |", "|---|---|---|---|---|"]
+    for effect in (None, BLOWS):
+        rig = bodies([(joint, effect) for joint in JOINTS])
+        step = sizes_for(rig).step
+        figures = compare(rig, duration, step, *range(len(JOINTS)))
+        lines += [
+            f"| {joint} | {effect or '-'} | {1e3 * step:g} | {rms:.4f} | {largest:.4f} |"
+            for joint, (rms, largest) in zip(JOINTS, figures, strict=True)
+        ]
+    return "\n".join(lines)
+
+
+def write_table(out: Path, name: str, table: str) -> None:
+    """Put a table between its two marks."""
+    begins, ends = f"<!-- {name} -->\n", f"\n<!-- end: {name} -->"
+    text = out.read_text()
+    out.write_text(f"{text.partition(begins)[0]}{begins}{table}{ends}{text.partition(ends)[2]}")
+
+
 def main() -> None:
     """Run the study and write docs/agreement.md, anew after each diagram."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--duration", type=float, default=60.0, help="seconds of random voltage per case")
     parser.add_argument("--step", type=float, default=0.4e-3, help="step of the diagram [s]")
     parser.add_argument("--all", action="store_true", help="then each effect on every other joint")
+    parser.add_argument("--own", action="store_true", help="at the step that is taken where none is given")
     parser.add_argument("--closed", action="store_true", help="controllers in both executions")
     parser.add_argument("--out", type=Path, default=Path("docs/agreement.md"))
     arguments = parser.parse_args()
     if arguments.closed:
-        text = arguments.out.read_text()
-        before, table, after = (
-            text.partition(CLOSED_BEGINS)[0],
-            closed_table(),
-            text.partition(CLOSED_ENDS)[2],
-        )
-        arguments.out.write_text(f"{before}{CLOSED_BEGINS}{table}\n{CLOSED_ENDS}{after}")
+        write_table(arguments.out, CLOSED, closed_table())
+        return
+    if arguments.own:
+        write_table(arguments.out, OWN, own_table(arguments.duration))
         return
     effects = list(json.loads(SIZES.read_text()))
     cases: list[Case] = [(joint, None) for joint in JOINTS]
