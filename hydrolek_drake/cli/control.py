@@ -50,7 +50,7 @@ def bench(
     set_: SetOption = None,
     seed: Annotated[int, typer.Option(help="of the sensors' noise on the full machine")] = 1,
 ) -> None:
-    """Every controller on step, sine and grasp, measured as in appendix G, beside the thesis's tables."""
+    """Every controller on step, sine and grasp, measured as in appendix G, beside the thesis's models or machine."""
     from hydrolek_drake.cli.output import console, progress
     from hydrolek_drake.control.bench import bench_on_machine, bench_on_models, check_names
     from hydrolek_drake.control.bench_tables import ranking_rows, sentence

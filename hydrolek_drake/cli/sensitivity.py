@@ -31,6 +31,12 @@ def sensitivity(
         int | None,
         typer.Option(metavar="N", help="also Sobol indices, from N (parameters + 2) runs; a power of two"),
     ] = None,
+    surface: Annotated[
+        tuple[str, str] | None,
+        typer.Option(
+            metavar="PATH PATH", help="draw the largest error over these two parameters instead (figure 4.11)"
+        ),
+    ] = None,
     top: Annotated[int, typer.Option(min=1, help="rows of the table")] = 20,
     set_: SetOption = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="folder for numbers and pictures")] = None,
@@ -50,11 +56,32 @@ def sensitivity(
     loaded, (reads,) = rig_and_recordings(rig, set_, [] if recording is None else [recording])
     read = reads[0] if reads else None
 
+    present = [name for name in loaded.joints if read is None or f"{name}.command" in read.signals]
+    names = joint or present or list(loaded.joints)
+    if surface is not None:
+        from hydrolek_drake.identification.sensitivity.surface import performance_surface, write_surface
+
+        for name in names:
+            with progress.status(name) as status:
+                found = performance_surface(
+                    loaded,
+                    name,
+                    surface,
+                    np.random.default_rng(seed),
+                    recording=read,
+                    spread=spread,
+                    progress=lambda done, of, name=name: status.update(f"{name}: {done} of {of}"),  # type: ignore[misc]
+                )
+            output.print(found.sentence(), soft_wrap=True)
+            if out is not None:
+                for written in write_surface(found, out):
+                    output.print(f"wrote {written}", markup=False, soft_wrap=True)
+        return
+
     from hydrolek_drake.identification.sensitivity.report import short, write_study
     from hydrolek_drake.identification.sensitivity.study import study_sensitivity
 
-    present = [name for name in loaded.joints if read is None or f"{name}.command" in read.signals]
-    for name in joint or present or list(loaded.joints):
+    for name in names:
         with progress.status(name) as status:
             study = study_sensitivity(
                 loaded,

@@ -23,14 +23,16 @@ from hydrolek_drake.control.metrics import (
     switching,
     tool_error,
 )
-from hydrolek_drake.control.sequences import SetPoints, sequence_data, set_points
+from hydrolek_drake.control.sequences import SetPoints, arm_and_number, sequence_data, set_points
 from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.forward import wrist_position
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.station.step_sizes import StepSizes
 
-MODEL_JOINTS = ("j1", "j2", "j3", "j4")
+MODEL_JOINTS = ("j1", "j2", "j3", "j4", "j4_linear")
+"""Joint 4 twice, as in Tables G.1 and G.3: with the exponential law of Table 6.1, and with the linear one of 6.7."""
+
 MACHINE_JOINTS = tuple(f"{arm}_j{number}" for arm in ("right", "left") for number in range(1, 6))
 MACHINE_STEP_S = 1e-3
 """Step of the full machine's diagram in comparisons; at 2 ms the stops are not stable for every controller."""
@@ -65,8 +67,10 @@ class Trial:
         controller: name in the catalogue.
         sequence: step, sine or grasp.
         joints: measures by joint.
-        euclidean_mm: mean length of the end effector's error, by arm ("arm" on the models).
+        euclidean_mm: mean length of the end effector's error, by arm ("arm" on the models, "arm_linear"
+            with the linear model of joint 4).
         tool_variance_mm2: variance of its components X, Y, Z, by arm.
+        wrist_m: path of the wrist by arm, and where its set points lie, each of shape (n, 3), for plots.
         time_s: of the signals, for plots.
         set_point_deg: shape (n, joints).
         angle_deg: shape (n, joints).
@@ -78,6 +82,7 @@ class Trial:
     joints: dict[str, JointMeasures]
     euclidean_mm: dict[str, float]
     tool_variance_mm2: dict[str, tuple[float, ...]]
+    wrist_m: dict[str, tuple[NDArray[np.floating], NDArray[np.floating]]] = field(repr=False)
     time_s: NDArray[np.floating] = field(repr=False)
     set_point_deg: NDArray[np.floating] = field(repr=False)
     angle_deg: NDArray[np.floating] = field(repr=False)
@@ -122,7 +127,7 @@ def check_names(controllers: Sequence[str]) -> None:
 def bench_on_models(
     controllers: Sequence[str], sequences: Sequence[str], *, progress: Progress | None = None
 ) -> Bench:
-    """Controllers on the SDP models of Table 6.1, joints 1 to 4, as chapter 6 simulates them.
+    """Controllers on the SDP models of Tables 6.1 and 6.7, joints 1 to 4, as chapter 6 simulates them.
 
     Raises:
         InputError: unknown controller or sequence.
@@ -263,22 +268,31 @@ def _measured(
             spread(voltage[::ratio, i]),
             switching(voltage[::ratio, i]),
         )
-    euclidean, variance = {}, {}
+    euclidean, variance, wrist = {}, {}, {}
     for arm, columns in _arms(points.joints).items():
-        length, parts = tool_error(_wrist(wanted, columns), _wrist(angle, columns))
+        reached, asked = _wrist(angle, columns), _wrist(wanted, columns)
+        length, parts = tool_error(asked, reached)
         euclidean[arm], variance[arm] = length, tuple(map(float, parts))
+        wrist[arm] = (reached[::ratio], asked[::ratio])
     return Trial(
-        name, points.name, by_joint, euclidean, variance, time[::ratio], wanted[::ratio], angle[::ratio],
+        name, points.name, by_joint, euclidean, variance, wrist, time[::ratio], wanted[::ratio], angle[::ratio],
         voltage[::ratio],
     )  # fmt: skip
 
 
 def _arms(joints: Sequence[str]) -> dict[str, list[tuple[int, int]]]:
-    """Arm -> pairs of column and joint index 0 to 5."""
+    """Arm -> pairs of column and joint index 0 to 5; a joint with two models makes two arms of it."""
     arms: dict[str, list[tuple[int, int]]] = {}
     for column, joint in enumerate(joints):
-        arm, _, number = joint.rpartition("_")
-        arms.setdefault(arm or "arm", []).append((column, int(number[1:]) - 1))
+        arm, number = arm_and_number(joint)
+        if not joint.endswith("_linear"):
+            arms.setdefault(arm or "arm", []).append((column, int(number[1:]) - 1))
+    for column, joint in enumerate(joints):
+        if joint.endswith("_linear"):
+            index = int(arm_and_number(joint)[1][1:]) - 1
+            arms["arm_linear"] = [pair for pair in arms.get("arm", []) if pair[1] != index] + [
+                (column, index)
+            ]
     return arms
 
 

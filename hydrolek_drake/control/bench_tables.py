@@ -3,13 +3,10 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import isnan
-from typing import Any
 
 from hydrolek_drake.control.bench import Bench, JointMeasures, Trial
 from hydrolek_drake.control.catalogue import CONTROLLERS
-from hydrolek_drake.control.thesis_tables import SINE_TABLES, STEP_TABLES
-
-_TABLES = {"step": STEP_TABLES, "sine": SINE_TABLES}
+from hydrolek_drake.control.thesis_tables import printed
 
 
 @dataclass(frozen=True)
@@ -58,19 +55,26 @@ MEASURES = (
 )  # fmt: skip
 
 
-def printed(sequence: str, controller: str, key: str, joint: str) -> float:
-    """What the thesis prints for its SDP models, NaN where nothing."""
-    found: Any = _TABLES.get(sequence, {}).get(controller, {}).get(key, {})
-    return float(found.get(joint, "nan")) if isinstance(found, dict) else float("nan")
-
-
 def text(value: float, digits: int) -> str:
     """A number, or "na" for none: the joint has not come to rest, or never reached 90 %."""
     return "na" if isnan(value) else f"{value:.{digits}f}"
 
 
+def beside(plant: str, sequence: str, controller: str, measure: Measure, joint: str) -> str:
+    """What the thesis prints, in brackets with a space before; empty where it prints nothing.
+
+    On the full machine joint 4 may have been measured with the controller for the linear model, too or only.
+    """
+    theirs = text(printed(plant, sequence, controller, measure.key, joint), measure.digits)
+    linear = "na"
+    if plant == "full":
+        linear = text(printed(plant, sequence, controller, measure.key, f"{joint}_linear"), measure.digits)
+    said = [part for part in (theirs, f"linear {linear}") if not part.endswith("na")]
+    return f" ({'; '.join(said)})" if said else ""
+
+
 def rows(bench: Bench, sequence: str, measure: Measure) -> tuple[list[str], list[list[str]]]:
-    """Header and one row per controller: ours, and on the models the thesis's in brackets."""
+    """Header and one row per controller: ours, and the thesis's in brackets."""
     trials = [trial for trial in bench.trials if trial.sequence == sequence]
     if not trials:
         return [], []
@@ -80,10 +84,7 @@ def rows(bench: Bench, sequence: str, measure: Measure) -> tuple[list[str], list
         cells = [CONTROLLERS[trial.controller][0]]
         for joint in joints:
             cell = text(measure.value(trial.joints[joint]), measure.digits)
-            theirs = printed(sequence, trial.controller, measure.key, joint)
-            if bench.plant == "sdp" and not isnan(theirs):
-                cell += f" ({text(theirs, measure.digits)})"
-            cells.append(cell)
+            cells.append(cell + beside(bench.plant, sequence, trial.controller, measure, joint))
         body.append(cells)
     return ["controller", *(joint.replace("_", " ") for joint in joints)], body
 
@@ -99,9 +100,10 @@ def tool_rows(bench: Bench, sequence: str) -> tuple[list[str], list[list[str]]]:
         cells = [CONTROLLERS[trial.controller][0]]
         for arm in arms:
             cell = text(trial.euclidean_mm[arm], 1)
-            theirs = _TABLES.get(sequence, {}).get(trial.controller, {}).get("euclidean_mm")
-            if bench.plant == "sdp" and theirs is not None:
-                cell += f" ({text(float(theirs), 1)})"
+            key = "euclidean_linear_mm" if arm == "arm_linear" else "euclidean_mm"
+            theirs = printed(bench.plant, sequence, trial.controller, key, arm)
+            if not isnan(theirs):
+                cell += f" ({text(theirs, 1)})"
             cells += [cell, " ".join(f"{value:.0f}" for value in trial.tool_variance_mm2[arm])]
         body.append(cells)
     head = ["controller"]
@@ -136,22 +138,23 @@ RISE_S, OVERSHOOT_PERCENT, ERROR_DEG = 2.0, 10.0, 0.5
 
 
 def ranking(bench: Bench, sequence: str = "step") -> list[Ranked]:
-    """Controllers by joints that meet the objectives, then by the mean squared error."""
+    """Controllers by joints that meet the objectives, then by the mean squared error; each joint once."""
     ranked = []
     for trial in bench.trials:
         if trial.sequence != sequence:
             continue
-        triples = [_triple(m) for m in trial.joints.values() if m.step is not None]
+        joints = {joint: m for joint, m in trial.joints.items() if not joint.endswith("_linear")}
+        triples = [_triple(m) for m in joints.values() if m.step is not None]
         met = sum(r < RISE_S and o < OVERSHOOT_PERCENT and e < ERROR_DEG for r, o, e in triples)
-        count = len(trial.joints)
+        count = len(joints)
         ranked.append(
             Ranked(
                 trial.controller,
                 met,
                 len(triples),
                 (max(t[0] for t in triples), max(t[1] for t in triples), max(t[2] for t in triples)),
-                sum(m.switching for m in trial.joints.values()) / count,
-                sum(m.mse_deg2 for m in trial.joints.values()) / count,
+                sum(m.switching for m in joints.values()) / count,
+                sum(m.mse_deg2 for m in joints.values()) / count,
             )
         )
     return sorted(ranked, key=lambda r: (-r.met, r.mse))

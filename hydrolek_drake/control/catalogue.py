@@ -9,7 +9,12 @@ from hydrolek_drake.control.design import integrator, lq_gains
 from hydrolek_drake.control.feedforward import FeedforwardLaw
 from hydrolek_drake.control.feedforward_tuning import tuning
 from hydrolek_drake.control.forward_path import ForwardPathLaw
-from hydrolek_drake.control.fuzzy import SingleInputFuzzyLaw, TwoInputFuzzyLaw
+from hydrolek_drake.control.fuzzy import (
+    SingleInputFuzzyLaw,
+    TwoInputFuzzyLaw,
+    appendix_f_surface,
+    printed_surface,
+)
 from hydrolek_drake.control.guard import GuardedLaw, guarded
 from hydrolek_drake.control.inverse_dead_zone import InverseDeadZone, inverse_dead_zone
 from hydrolek_drake.control.law import ControlLaw
@@ -167,6 +172,14 @@ def _fuzzy_double(s: JointSetting) -> ControlLaw:
     return TwoInputFuzzyLaw(_inverse(s))
 
 
+def _fuzzy_double_printed(s: JointSetting) -> ControlLaw:
+    return TwoInputFuzzyLaw(_inverse(s), *printed_surface())
+
+
+def _fuzzy_appendix_f(s: JointSetting) -> ControlLaw:
+    return TwoInputFuzzyLaw(DirectInput(voltage_limit_V()), *appendix_f_surface(s.scaling, s.gains_of))
+
+
 CONTROLLERS: dict[str, tuple[str, Callable[[JointSetting], ControlLaw]]] = {
     "pi": ("PI, scaled input", _pi),
     "pid": ("PID, scaled input", _pid),
@@ -180,6 +193,8 @@ CONTROLLERS: dict[str, tuple[str, Callable[[JointSetting], ControlLaw]]] = {
     "pip_forward_c": ("PIP IDZ FP c", _forward("c")),
     "fuzzy_single": ("fuzzy, error", _fuzzy_single),
     "fuzzy_double": ("fuzzy, error and change", _fuzzy_double),
+    "fuzzy_double_printed": ("fuzzy, Table 7.1", _fuzzy_double_printed),
+    "fuzzy_appendix_f": ("fuzzy, appendix F", _fuzzy_appendix_f),
     "feedforward": ("feedforward, learning", _feedforward),
 }
 """Name -> how tables call it, and what builds it."""

@@ -1,4 +1,4 @@
-"""Fuzzy control with one and with two inputs, section 7.1, evaluated as a precomputed surface."""
+"""Fuzzy control with one and with two inputs, section 7.1 and appendix F, evaluated as a precomputed surface."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.control.law import Array, InputElement
+from hydrolek_drake.control.scaled_input import ScaledInput
 from hydrolek_drake.yaml_files import package_yaml
 
 SETS = ("NB", "N", "Z", "P", "PB")
@@ -38,7 +39,8 @@ def infer(strengths: Mapping[str, Array], outputs: Mapping[str, Sequence[float]]
     Returns:
         Shape (n,); 0 where no rule fires.
     """
-    universe = np.linspace(outputs["NB"][0], outputs["PB"][3], _POINTS)
+    farthest = max(-outputs["NB"][0], outputs["PB"][3])
+    universe = np.linspace(-farthest, farthest, _POINTS)  # even about 0, so that Z alone gives 0 exactly
     shape = np.zeros((len(next(iter(strengths.values()))), _POINTS))
     for name, strength in strengths.items():
         cut = np.minimum(membership(universe, outputs[name]), np.asarray(strength)[:, np.newaxis])
@@ -55,24 +57,29 @@ def single_input_surface(data: Mapping[str, Any]) -> tuple[Array, Array]:
 
 
 def two_input_surface(
-    data: Mapping[str, Any], rules: Mapping[str, Sequence[str]]
+    sets: Mapping[str, Any], rules: Mapping[str, Sequence[str]], *, error_sign: float = 1.0
 ) -> tuple[Array, Array, Array]:
     """Errors [deg], changes [deg per sample] and outputs (errors, changes) of 25 rules.
 
     A rule fires as strongly as the weaker of its two conditions.
+
+    Args:
+        sets: "error", "change", "output" and "grid", as in `fuzzy.yaml`.
+        rules: error set -> output set for each set of the change.
+        error_sign: -1 for rules that are written for angle less set point; the grid is set point less angle.
     """
-    errors = _axis(data["error"], data["grid"]["error"])
-    changes = _axis(data["change"], data["grid"]["change"])
-    of_change = {name: membership(changes, data["change"][name]) for name in SETS}
+    errors = _axis(sets["error"], sets["grid"]["error"])
+    changes = _axis(sets["change"], sets["grid"]["change"])
+    of_change = {name: membership(error_sign * changes, sets["change"][name]) for name in SETS}
     surface = np.empty((len(errors), len(changes)))
-    for i, error in enumerate(errors):
+    for i, error in enumerate(error_sign * errors):
         strengths = {name: np.zeros(len(changes)) for name in SETS}
         for row in SETS:
-            of_error = float(membership(np.array(error), data["error"][row]))
+            of_error = float(membership(np.array(error), sets["error"][row]))
             for column, consequence in zip(SETS, rules[row], strict=True):
                 fired = np.minimum(of_error, of_change[column])
                 strengths[consequence] = np.maximum(strengths[consequence], fired)
-        surface[i] = infer(strengths, data["output"])
+        surface[i] = infer(strengths, sets["output"])
     return errors, changes, surface
 
 
@@ -88,6 +95,47 @@ def _single() -> tuple[Array, Array]:
 @cache
 def _double() -> tuple[Array, Array, Array]:
     return two_input_surface(fuzzy_data(), fuzzy_data()["two_input"])
+
+
+@cache
+def printed_surface() -> tuple[Array, Array, Array]:
+    """Table 7.1's rules with the sets of `fuzzy_double`, in the sign that closes the loop."""
+    return two_input_surface(fuzzy_data(), fuzzy_data()["table_7_1"], error_sign=-1.0)
+
+
+def appendix_f_sets(scaling: ScaledInput, joint: str) -> dict[str, Any]:
+    """Sets of one joint in the form of appendix F: its output sets are voltages, placed by the joint's own scaling.
+
+    The thesis shows its sets as pictures only. Here an output set's corners are parts of the way from the edge of
+    the dead-zone to the highest voltage of Table 6.3, D + part (S - D); Z reaches to a part of D.
+
+    Args:
+        scaling: of the joint.
+        joint: "j1" to "j4", whose parts are taken.
+    """
+    form = fuzzy_data()["appendix_f"]
+    below, above = scaling.dead_negative_V, scaling.dead_positive_V
+    lowest, highest = scaling.lowest_V, scaling.highest_V
+    slow, fast = form["slow"][joint], form["fast"]
+    shut = form["shut"] * min(-below, above)
+    return {
+        "grid": fuzzy_data()["grid"],
+        "error": form["error"],
+        "change": form["change"],
+        "output": {
+            "NB": [below + part * (lowest - below) for part in reversed(fast)],
+            "N": [below + part * (lowest - below) for part in reversed(slow)],
+            "Z": [-shut, 0.0, 0.0, shut],
+            "P": [above + part * (highest - above) for part in slow],
+            "PB": [above + part * (highest - above) for part in fast],
+        },
+    }
+
+
+@cache
+def appendix_f_surface(scaling: ScaledInput, joint: str) -> tuple[Array, Array, Array]:
+    """Table 7.1's rules with a joint's sets of `appendix_f_sets`; outputs are voltages."""
+    return two_input_surface(appendix_f_sets(scaling, joint), fuzzy_data()["table_7_1"], error_sign=-1.0)
 
 
 @dataclass(frozen=True)
@@ -127,13 +175,14 @@ class TwoInputFuzzyLaw:
     positive error with a negative voltage. With e = angle - set point it closes the loop, but does not brake:
     its middle row is Z whatever the change, and joint and set point may pass each other at full speed. It is
     also lopsided: (P, P) gives NB where its mirror image (N, N) gives P. The rules used here have the same
-    sets, are symmetric, and brake (docs/control.md).
+    sets, are symmetric, and brake (docs/control.md). `printed_surface` and `appendix_f_surface` give the table
+    as it is printed.
 
     Attributes:
-        element: output [deg per sample] to voltage.
+        element: output to voltage.
         errors: grid of the precomputed surface [deg].
         changes: grid [deg per sample].
-        surface: outputs, shape (errors, changes).
+        surface: outputs [deg per sample, or V in the form of appendix F], shape (errors, changes).
     """
 
     element: InputElement

@@ -39,12 +39,18 @@ class SetPoints:
     first_step: slice
 
 
+def arm_and_number(joint: str) -> tuple[str, str]:
+    """Arm ("" on the thesis's models) and number of a joint; "j4_linear" is another model of joint 4."""
+    arm, _, number = joint.removesuffix("_linear").rpartition("_")
+    return arm, number
+
+
 def set_points(name: str, joints: Sequence[str], sample_s: float, *, machine: bool) -> SetPoints:
     """A sequence by name.
 
     Args:
         name: of `NAMES`.
-        joints: "j1" ... "j5", or with the arm, "left_j1".
+        joints: "j1" ... "j5", "j4_linear", or with the arm, "left_j1".
         sample_s: control sample [s].
         machine: the form for the full machine: shorter holds, and sines about a working posture.
 
@@ -58,7 +64,7 @@ def set_points(name: str, joints: Sequence[str], sample_s: float, *, machine: bo
     def rows(key: str) -> Array:
         values = []
         for joint in joints:
-            arm, _, number = joint.rpartition("_")
+            arm, number = arm_and_number(joint)
             if number not in data[key]:
                 raise InputError(f"sequence {name} has no joint '{joint}'; choose {', '.join(data[key])}")
             sign = -1.0 if arm == "left" and number in sequence_data()["mirrored"] else 1.0
@@ -68,7 +74,7 @@ def set_points(name: str, joints: Sequence[str], sample_s: float, *, machine: bo
     if name == "sine":
         start = rows("from_machine" if machine else "from")
         count = round(float(data["duration"]["value"]) / sample_s)
-        cycles = np.array([float(data["cycles"][joint.rpartition("_")[2]]) for joint in joints])
+        cycles = np.array([float(data["cycles"][arm_and_number(joint)[1]]) for joint in joints])
         phase = 2.0 * np.pi * np.outer(np.arange(count) / count, cycles)
         return SetPoints(name, tuple(joints), start, start + rows("amplitude") * np.sin(phase), slice(0, 0))
     hold = data["hold_machine"] if machine and "hold_machine" in data else data["hold"]

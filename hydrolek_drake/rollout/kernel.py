@@ -68,7 +68,7 @@ def second_stage(s: State, k: State, m: State, slope: Slopes, h: float) -> State
 
 
 @njit(inline="always")  # as `driven_on`
-def _step(
+def one_step(
     s: State,
     x: float,
     x_next: float,
@@ -156,7 +156,7 @@ def written(
 
 
 @njit
-def _pulled(s: State, share: float, reading: float, measured: np.ndarray) -> tuple[State, float]:
+def pulled(s: State, share: float, reading: float, measured: np.ndarray) -> tuple[State, float]:
     """The state with a share of what was measured beyond it, and by how much its position was moved."""
     by = share * (measured[0] - reading) if math.isfinite(measured[0]) else 0.0
     p_a = s.p_a + share * (measured[1] - s.p_a) if math.isfinite(measured[1]) else s.p_a
@@ -247,7 +247,7 @@ def integrate(
                         d, s, volts, voltage, time, h, spool_steps, early, probe, probe_next, law, joint
                     )
                     inertia = inertia_at(time, rod, joint)
-                    s = _step(s, x, d.x, drive, time, h, inertia, probe, probe_next, law, near, joint)
+                    s = one_step(s, x, d.x, drive, time, h, inertia, probe, probe_next, law, near, joint)
                     near = carried_on(near, s, joint)
                     probe = probe_next
                     play = sensor.played(play, s.q - s.tilt, joint)
@@ -257,10 +257,10 @@ def integrate(
         probe = probe_at(t, begin, probe_spacing, probe_values)
         inertia = inertia_at(t - on, rod, joint)
         volts = arrived(command_values, held, joint)
-        written(d, s, play, volts, t - on, inertia, probe, law, kept(turned(s, joint)), joint, out[row])
+        written(d, s, play, volts, t - on, inertia, probe, law, near, joint, out[row])
         if pull_time > 0.0 and row + 1 < len(times):
             share = 1.0 - math.exp((t - times[row + 1]) / pull_time)
-            s, by = _pulled(s, share, out[row, 0], measured[row])
+            s, by = pulled(s, share, out[row, 0], measured[row])
             play += by
     if not playing:
         s = State(s.p_a, s.p_b, s.q, s.w, s.flow, s.tilt, s.tilt_rate, s.q, s.w)

@@ -12,84 +12,38 @@ import numpy as np
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import command, hooks, load, sensor
 from hydrolek_drake.physics.amplifier import Currents
-from hydrolek_drake.physics.angle import AngleKept
 from hydrolek_drake.physics.probes import no_probe
 from hydrolek_drake.rollout.drive import Drive, driven_on
 from hydrolek_drake.rollout.kernel import (
-    _pulled,
-    _step,
     arrived,
     inertia_at,
+    one_step,
     out_of_bounds,
+    pulled,
     written,
 )
+from hydrolek_drake.rollout.lane_table import (
+    KEPT,
+    NEAR,
+    NEAR_NEXT,
+    NEXT,
+    NUMBERS_OF_JOINT,
+    ROD,
+    ROWS,
+    STATE,
+    TIME,
+    VOLTS,
+    H,
+    drive_in,
+    near_in,
+    put,
+    put_near,
+    state_in,
+)
 from hydrolek_drake.rollout.lane_view import LANES, NUMBERS, lane_joint, spool_steps_of
-from hydrolek_drake.rollout.rates import State, Turned, carried_on, kept, turned
+from hydrolek_drake.rollout.rates import State, carried_on, turned
 
 _L = LANES
-
-# Rows of the one table that the loop over the lanes works in. With several arrays the compiler would have to suppose
-# that what it writes to one is what it reads from another.
-_STATE, _NEXT = (
-    0,
-    16,
-)  # p_a, p_b, q, w, flow, tilt, tilt_rate, lead_q, lead_w, x, xd, behind, current a, b, play
-_NEAR, _NEAR_NEXT = 32, 38  # value, sine, cosine of the link's angle and of the one between the mounts
-_H, _VOLTS, _TIME, _ROD = 44, 45, 46, 47
-_KEPT = 15  # rows of `_STATE`
-_JOINT = 48
-_ROWS = _JOINT + NUMBERS
-
-
-@njit
-def _state_in(b: np.ndarray, first: int, lane: int) -> State:
-    f = first * _L + lane
-    return State(
-        b[f],
-        b[f + _L],
-        b[f + 2 * _L],
-        b[f + 3 * _L],
-        b[f + 4 * _L],
-        b[f + 5 * _L],
-        b[f + 6 * _L],
-        b[f + 7 * _L],
-        b[f + 8 * _L],
-    )
-
-
-@njit
-def _drive_in(b: np.ndarray, first: int, lane: int) -> Drive:
-    f = (first + 9) * _L + lane
-    return Drive(b[f + 2 * _L], Currents(b[f + 3 * _L], b[f + 4 * _L]), b[f], b[f + _L])
-
-
-@njit
-def _put(b: np.ndarray, first: int, lane: int, s: State, d: Drive, play: float) -> None:
-    f = first * _L + lane
-    b[f], b[f + _L], b[f + 2 * _L], b[f + 3 * _L], b[f + 4 * _L] = s.p_a, s.p_b, s.q, s.w, s.flow
-    b[f + 5 * _L], b[f + 6 * _L], b[f + 7 * _L], b[f + 8 * _L] = s.tilt, s.tilt_rate, s.lead_q, s.lead_w
-    b[f + 9 * _L], b[f + 10 * _L], b[f + 11 * _L] = d.x, d.xd, d.behind
-    b[f + 12 * _L], b[f + 13 * _L], b[f + 14 * _L] = d.currents.a, d.currents.b, play
-
-
-@njit
-def _near_in(b: np.ndarray, first: int, lane: int) -> Turned:
-    f = first * _L + lane
-    return Turned(
-        AngleKept(b[f], b[f + _L], b[f + 2 * _L], True),
-        AngleKept(b[f + 3 * _L], b[f + 4 * _L], b[f + 5 * _L], True),
-    )
-
-
-@njit
-def _put_near(b: np.ndarray, first: int, lane: int, near: Turned) -> None:
-    f = first * _L + lane
-    b[f], b[f + _L], b[f + 2 * _L] = near.position.value, near.position.sine, near.position.cosine
-    b[f + 3 * _L], b[f + 4 * _L], b[f + 5 * _L] = (
-        near.included.value,
-        near.included.sine,
-        near.included.cosine,
-    )
 
 
 @njit
@@ -146,7 +100,7 @@ def planned(
 
 @njit
 def _all_lanes(kind: Any, b: np.ndarray) -> None:
-    """One step of every machine, from the rows of `_STATE` to those of `_NEXT`."""
+    """One step of every machine, from the rows of `STATE` to those of `NEXT`."""
     _loop(kind, b)  # inlined here alone, so that it is not optimised again with all that calls this
 
 
@@ -156,20 +110,20 @@ def _all_lanes(kind: Any, b: np.ndarray) -> None:
 def _loop(kind: Any, b: np.ndarray) -> None:
     probe = no_probe()
     for lane in range(_L):
-        joint = lane_joint(kind, b, _JOINT * _L + lane)
-        s, d, play = _state_in(b, _STATE, lane), _drive_in(b, _STATE, lane), b[(_STATE + 14) * _L + lane]
-        near = _near_in(b, _NEAR, lane)
-        h, volts, time = b[_H * _L + lane], b[_VOLTS * _L + lane], b[_TIME * _L + lane]
+        joint = lane_joint(kind, b, NUMBERS_OF_JOINT * _L + lane)
+        s, d, play = state_in(b, STATE, lane), drive_in(b, STATE, lane), b[(STATE + 14) * _L + lane]
+        near = near_in(b, NEAR, lane)
+        h, volts, time = b[H * _L + lane], b[VOLTS * _L + lane], b[TIME * _L + lane]
         voltage = command.drive_voltage(volts, joint)
         e, drive = driven_on(
             d, s, volts, voltage, time, h, spool_steps_of(kind), False, probe, probe, None, joint
         )
-        inertia = inertia_at(time, b[_ROD * _L + lane], joint)
-        n = _step(s, d.x, e.x, drive, time, h, inertia, probe, probe, None, near, joint)
+        inertia = inertia_at(time, b[ROD * _L + lane], joint)
+        n = one_step(s, d.x, e.x, drive, time, h, inertia, probe, probe, None, near, joint)
         played = sensor.played(play, n.q - n.tilt, joint)
         after = carried_on(near, n, joint)
         position, included = after.position, after.included
-        f, g, go = _NEXT * _L + lane, _NEAR_NEXT * _L + lane, h > 0.0
+        f, g, go = NEXT * _L + lane, NEAR_NEXT * _L + lane, h > 0.0
         b[f] = n.p_a if go else s.p_a
         b[f + _L] = n.p_b if go else s.p_b
         b[f + 2 * _L] = n.q if go else s.q
@@ -226,7 +180,7 @@ def integrate_lanes(
         out: signals, shape (lanes, k, 8).
         done: rows written of each machine, shape (lanes,); fewer than k where one diverged at that row.
     """
-    b, machines = np.zeros(_ROWS * _L), np.zeros((_L, 2))
+    b, machines = np.zeros(ROWS * _L), np.zeros((_L, 2))
     held, steps = np.full(_L, -1), np.zeros((most_steps, 3, _L))
     _enter(joints, numbers, states, times[0], b, machines)
     done[:] = len(times)
@@ -236,10 +190,10 @@ def integrate_lanes(
             joints, t, times[row], machines, command_times, command_values, longest_step, b, held, steps
         )
         for i in range(most):
-            b[_H * _L : (_H + 3) * _L] = steps[i].ravel()
+            b[H * _L : (H + 3) * _L] = steps[i].ravel()
             _all_lanes(kind, b)
-            b[_STATE * _L : (_STATE + _KEPT) * _L] = b[_NEXT * _L : (_NEXT + _KEPT) * _L]
-            b[_NEAR * _L : (_NEAR + 6) * _L] = b[_NEAR_NEXT * _L : (_NEAR_NEXT + 6) * _L]
+            b[STATE * _L : (STATE + KEPT) * _L] = b[NEXT * _L : (NEXT + KEPT) * _L]
+            b[NEAR * _L : (NEAR + 6) * _L] = b[NEAR_NEXT * _L : (NEAR_NEXT + 6) * _L]
         t = times[row]
         until = times[row + 1] - t if row + 1 < len(times) else 0.0
         share = 1.0 - math.exp(-until / pull_time) if pull_time > 0.0 and until > 0.0 else 0.0
@@ -260,10 +214,10 @@ def _enter(
     for lane in range(_L):
         joint, v = joints[lane], states[lane]
         for i in range(NUMBERS):
-            b[(_JOINT + i) * _L + lane] = numbers[lane, i]
+            b[(NUMBERS_OF_JOINT + i) * _L + lane] = numbers[lane, i]
         s = State(v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10])
-        _put(b, _STATE, lane, s, Drive(v[13], Currents(v[14], v[15]), v[0], v[1]), v[11])
-        b[_ROD * _L + lane] = load.reflected_rod_inertia(joint)
+        put(b, STATE, lane, s, Drive(v[13], Currents(v[14], v[15]), v[0], v[1]), v[11])
+        b[ROD * _L + lane] = load.reflected_rod_inertia(joint)
         machines[lane, 0], machines[lane, 1] = begin - v[12], command.transport_delay(joint)
 
 
@@ -284,7 +238,7 @@ def _plan(
     most, count = 0, np.zeros(_L, np.int64)
     for lane in range(_L):
         joint = joints[lane]
-        _put_near(b, _NEAR, lane, turned(_state_in(b, _STATE, lane), joint))
+        put_near(b, NEAR, lane, turned(state_in(b, STATE, lane), joint))
         count[lane], held[lane] = planned(
             target,
             begin,
@@ -324,7 +278,7 @@ def _write(
     """Write a row of every machine that has not diverged, and pull them to what was measured by a share."""
     for lane in range(_L):
         joint = joints[lane]
-        s, d, play = _state_in(b, _STATE, lane), _drive_in(b, _STATE, lane), b[(_STATE + 14) * _L + lane]
+        s, d, play = state_in(b, STATE, lane), drive_in(b, STATE, lane), b[(STATE + 14) * _L + lane]
         if done[lane] < rows:
             continue
         if out_of_bounds(d.x, s):
@@ -332,13 +286,13 @@ def _write(
             continue
         time = t - machines[lane, 0]
         volts = arrived(command_values, held[lane], joint)
-        inertia = inertia_at(time, b[_ROD * _L + lane], joint)
+        inertia = inertia_at(time, b[ROD * _L + lane], joint)
         written(
-            d, s, play, volts, time, inertia, no_probe(), None, kept(turned(s, joint)), joint, out[lane, row]
+            d, s, play, volts, time, inertia, no_probe(), None, near_in(b, NEAR, lane), joint, out[lane, row]
         )
         if share > 0.0:
-            s, by = _pulled(s, share, out[lane, row, 0], measured[row])
-            _put(b, _STATE, lane, s, d, play + by)
+            s, by = pulled(s, share, out[lane, row, 0], measured[row])
+            put(b, STATE, lane, s, d, play + by)
 
 
 @njit(cache=True)
@@ -346,10 +300,10 @@ def _leave(joints: np.ndarray, end: float, machines: np.ndarray, b: np.ndarray, 
     """The machines' final states."""
     for lane in range(_L):
         joint = joints[lane]
-        s, d, v = _state_in(b, _STATE, lane), _drive_in(b, _STATE, lane), states[lane]
+        s, d, v = state_in(b, STATE, lane), drive_in(b, STATE, lane), states[lane]
         playing, rocking = hooks.linkage_gap(joint) > 0.0, hooks.base_stiffness(joint) > 0.0
         v[0], v[1], v[2], v[3], v[4], v[5], v[6] = d.x, d.xd, s.p_a, s.p_b, s.q, s.w, s.flow
         v[7], v[8] = (s.tilt, s.tilt_rate) if rocking else (0.0, 0.0)
         v[9], v[10] = (s.lead_q, s.lead_w) if playing else (s.q, s.w)
-        v[11], v[12] = b[(_STATE + 14) * _L + lane], end - machines[lane, 0]
+        v[11], v[12] = b[(STATE + 14) * _L + lane], end - machines[lane, 0]
         v[13], v[14], v[15] = d.behind, d.currents.a, d.currents.b

@@ -135,7 +135,7 @@ def test_the_report_holds_every_number(step, tmp_path):
     assert rise["value"] == pytest.approx(1.2117, abs=0.03)
     assert (tmp_path / "step.png").read_bytes().startswith(b"\x89PNG")
     head, body = rows(step, "step", MEASURES[0])
-    assert head == ["controller", *JOINTS] and "(1.212)" in body[0][2]
+    assert head == ["controller", *JOINTS, "j4 linear"] and "(1.212)" in body[0][2]
 
 
 def test_the_ranking_puts_first_who_meets_the_objectives_on_most_joints(step):
@@ -155,3 +155,15 @@ def test_the_full_machine_two_joints_at_once():
 def test_unknown_controllers_are_refused():
     with pytest.raises(InputError, match="no controller 'magic'; choose pi, pid"):
         bench_on_models(["magic"], ["step"])
+
+
+def test_the_report_draws_the_wrists_path_and_the_fuzzy_sets(tmp_path):
+    """Figures 5.9, 7.11 and appendix F: pictures beside the page, and in it."""
+    done = bench_on_models(["fuzzy_appendix_f", "pip_forward_c"], ["grasp"])
+    reached, asked = done.trials[1].wrist_m["arm"]
+    assert np.linalg.norm(reached[0] - asked[0]) > 0.5  # the set point jumps, the arm does not
+    assert np.linalg.norm(reached[-1] - asked[-1]) < 0.05
+    text = write_bench(done, tmp_path).read_text()
+    for name in ("grasp_path.png", *(f"fuzzy_appendix_f_{joint}.png" for joint in JOINTS)):
+        assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
+        assert f"alt='{name}'" in text

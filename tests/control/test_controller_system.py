@@ -174,8 +174,13 @@ def _run(laws, d, y):
 
 
 @pytest.mark.parametrize(
-    "name", [name for name in CONTROLLERS if name != "feedforward"]
-)  # test_feedforward.py
+    "name",
+    [
+        name
+        for name in CONTROLLERS
+        if name not in ("feedforward", "fuzzy_double_printed", "fuzzy_appendix_f")  # tests of their own
+    ],
+)
 def test_system_and_difference_equation_agree_at_every_sample(name):
     rng = np.random.default_rng(5)
     joints = ("j2", "j4")

@@ -1,5 +1,7 @@
 """Elementary effects and identifiability on functions that can be solved by hand, and a study of the bench."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.sensitivity.morris import elementary_effects, trajectory
 from hydrolek_drake.identification.sensitivity.response import response_of
 from hydrolek_drake.identification.sensitivity.study import study_sensitivity
+from hydrolek_drake.identification.sensitivity.surface import performance_surface, write_surface
 from hydrolek_drake.identification.sensitivity.varied import varied_parameters
 from hydrolek_drake.rigs import load_rig
 
@@ -90,3 +93,28 @@ def test_bad_requests_are_refused():
     varied = varied_parameters(rig, "joint", 0.2, ["command.delay"])
     with pytest.raises(InputError, match="--segments 0"):
         response_of(rig, "joint", ParameterSet(rig, varied.free), 0, None, np.random.default_rng(0))
+
+
+def test_a_performance_surface_has_its_valley_where_area_and_flow_trade(tmp_path):
+    """Figure 4.11: zero at the rig's own values, and lowest along equal flow per area, since that sets the rate."""
+    rig = load_rig("hydrolek_right_j2")
+    paths = ("cylinder.area_a", "valve.discharge")
+    found = performance_surface(rig, "right_j2", paths, np.random.default_rng(1), places=5)
+    assert found.error.shape == (5, 5) and found.error_unit == "deg" and not found.measured
+    area, flow = (found.own[i] / found.values[i] for i in (0, 1))
+    mixed = np.add.outer(np.log(area), -np.log(flow))  # 0 where discharge per area is the rig's
+    along = np.abs(mixed) < 0.25
+    assert found.error[along].mean() < 0.5 * found.error[~along].mean()
+    pictures = write_surface(found, tmp_path)
+    assert pictures[1].read_bytes().startswith(b"\x89PNG")
+    assert np.shape(json.loads(pictures[0].read_text())["largest_error"]) == (5, 5)
+
+
+def test_a_performance_surface_needs_two_parameters():
+    rig = load_rig("hydrolek_right_j2")
+    with pytest.raises(InputError, match="give two different parameters"):
+        performance_surface(rig, "right_j2", ("valve.discharge",) * 2, np.random.default_rng(1))
+    with pytest.raises(InputError, match="zero, and the rig gives no range"):
+        performance_surface(
+            rig, "right_j2", ("valve.discharge", "valve.flow_force"), np.random.default_rng(1)
+        )
