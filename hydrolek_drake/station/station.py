@@ -1,7 +1,7 @@
 """A rig as a Drake Diagram: every stage a system, wired from command to sensor."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from hydrolek_drake.physics.probes import RAMP
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.station.mechanics import Add, Mechanics, wire_mechanics
 from hydrolek_drake.station.plant import Payload, RigPlant, add_plant
-from hydrolek_drake.station.step_sizes import StepSizes
+from hydrolek_drake.station.step_sizes import StepSizes, sizes_for
 from hydrolek_drake.systems.actuator import Actuator
 from hydrolek_drake.systems.command_ramp import CommandRamp
 from hydrolek_drake.systems.electric_motor import ElectricMotor
@@ -68,7 +68,7 @@ def make_station(
 
     Args:
         rig: the machine.
-        sizes: step sizes; the defaults run the whole machine several times faster than real time.
+        sizes: step sizes; `sizes_for` the rig, logged every 10 ms, if not given.
         command: system whose first output are n voltages (or signals, with `operator`); one that has an input
             `position_measured` is a controller, and sees what the sensors measure. None leaves the diagram's input
             `command` (or `signal_commanded`) open.
@@ -79,7 +79,7 @@ def make_station(
     Raises:
         InputError: electric and hydraulic joints in one rig, or no calibration where `operator` asks for it.
     """
-    sizes = sizes or StepSizes()
+    sizes = sizes or replace(sizes_for(rig), log_period=StepSizes.log_period)
     joints = rig.records()
     builder = DiagramBuilder()
     body = add_plant(builder, rig, joints, sizes.plant_step)

@@ -11,6 +11,7 @@ from pydrake.systems.primitives import Adder, MatrixGain
 from hydrolek_drake.control.bench import MACHINE_STEP_S
 from hydrolek_drake.control.catalogue import CONTROLLERS, JointSetting, build_law, joystick_law, rig_setting
 from hydrolek_drake.control.controller import Controller
+from hydrolek_drake.control.grip_force import grip_force_law
 from hydrolek_drake.control.operator_path import through_operator_computer
 from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.errors import InputError
@@ -127,14 +128,21 @@ class HydraulicArms:
             sample_s(),
             joystick=True,
         )
-        self._diagram = _wired(self._station, self._controller, self._joystick, signal_per_volt)
+        self._force: Controller | None = None
+        if self._contact is not None:
+            jaws = [settings[f"{side}_j7"].scaling for side in SIDES]
+            laws = [
+                grip_force_law(scaling, closing=-1.0) for scaling in jaws
+            ]  # a jaw opens in its positive direction
+            self._force = Controller(laws, sample_s(), force=True)
+        self._diagram = _wired(self._station, self._controller, self._joystick, self._force, signal_per_volt)
         context = self._diagram.CreateDefaultContext()
         self._inner = self._station.diagram.GetMyMutableContextFromRoot(context)
         self._inner.SetContinuousState(rest.get_continuous_state_vector().CopyToVector())
         for group in range(rest.num_discrete_state_groups()):
             self._inner.SetDiscreteState(group, rest.get_discrete_state(group).get_value())
         self._places = [self.rig.joints.index(joint) for joint in JOINTS]
-        self._fix(context, None, None)
+        self._fix(context, None, None, None)
         self._diagram.GetInputPort("pressure_available").FixValue(context, [1.0])
         self._simulator = Simulator(self._diagram, context)
         config = SimulatorConfig(
@@ -154,19 +162,26 @@ class HydraulicArms:
         """The machine in it."""
         return self._station
 
-    def advance(self, set_point: ArrayLike | None = None, deflection: ArrayLike | None = None) -> Array:
+    def advance(
+        self,
+        set_point: ArrayLike | None = None,
+        deflection: ArrayLike | None = None,
+        grip: ArrayLike | None = None,
+    ) -> Array:
         """Simulate one control sample.
 
         Args:
             set_point: Wanted joints in rad, shape (14,); None withdraws it.
             deflection: Of the joysticks in percent, shape (14,), instead; None lets them go. With neither, the
                 valves close.
+            grip: Wanted forces of the right and the left gripper in N, shape (2,), NaN for none; a jaw with one
+                follows neither set point nor joystick. It needs a pipe, whose contact is what is measured.
 
         Returns:
             Measured joints in rad, shape (14,).
         """
         context = self._simulator.get_mutable_context()
-        self._fix(context, set_point, deflection)
+        self._fix(context, set_point, deflection, grip)
         self._samples += 1
         self._simulator.AdvanceTo(self._samples * sample_s())
         if self._samples % round(teleop_entries("plant")["forget_after"] / sample_s()) == 0:
@@ -193,6 +208,9 @@ class HydraulicArms:
         voltage = np.zeros(n)
         for system in (self._controller, self._joystick):
             voltage += np.asarray(system.command.Eval(system.GetMyContextFromRoot(self._root)))
+        if self._force is not None:
+            jaws = np.asarray(self._force.command.Eval(self._force.GetMyContextFromRoot(self._root)))
+            voltage += _of_jaws(self._station) @ jaws
         return Signals(
             time=float(self._root.get_time()),
             voltage=voltage[self._places],
@@ -234,11 +252,24 @@ class HydraulicArms:
         value = np.asarray(self._station.diagram.GetOutputPort(port).Eval(self._inner))
         return np.array(value[self._places])
 
-    def _fix(self, context: object, set_point: ArrayLike | None, deflection: ArrayLike | None) -> None:
+    def _fix(
+        self,
+        context: object,
+        set_point: ArrayLike | None,
+        deflection: ArrayLike | None,
+        grip: ArrayLike | None,
+    ) -> None:
+        forces = np.full(len(SIDES), np.nan) if grip is None else np.asarray(grip, dtype=float)
+        if self._force is not None:
+            self._diagram.GetInputPort("force_wanted").FixValue(context, forces)
+        elif grip is not None:
+            raise InputError("there is no pipe whose grip could be measured; build the arms with one")
+        gripping = [f"{side}_j7" for side, force in zip(SIDES, forces, strict=True) if np.isfinite(force)]
         for name, values in (("set_point", set_point), ("deflection", deflection)):
             wanted = np.full(len(JOINTS), np.nan)
             if values is not None:
                 wanted[self._places] = np.asarray(values, dtype=float)
+                wanted[[self.rig.joints.index(joint) for joint in gripping]] = np.nan
             self._diagram.GetInputPort(name).FixValue(context, wanted)
 
 
@@ -247,19 +278,40 @@ def _add_contact(builder: DiagramBuilder, body: RigPlant, pipe: Pipe, table: Tab
     contact = builder.AddSystem(GripContact(body.plant, pipe, table))
     builder.Connect(body.plant.get_state_output_port(), contact.plant_state)
     builder.Connect(contact.contact_force, body.plant.get_applied_spatial_force_input_port())
+    builder.ExportOutput(contact.grip_force, "grip_force")
     return contact
 
 
-def _wired(station: Station, controller: Controller, joystick: Controller, signal_per_volt: Array) -> Diagram:
+def _of_jaws(station: Station) -> Array:
+    """Which joint each gripper's jaw is, shape (14, 2)."""
+    spread = np.zeros((len(station.rig.joints), len(SIDES)))
+    spread[[station.rig.joints.index(f"{side}_j7") for side in SIDES], np.arange(len(SIDES))] = 1.0
+    return spread
+
+
+def _wired(
+    station: Station,
+    controller: Controller,
+    joystick: Controller,
+    force: Controller | None,
+    signal_per_volt: Array,
+) -> Diagram:
     builder = DiagramBuilder()
     builder.AddSystem(station.diagram)
     builder.AddSystem(controller)
     builder.AddSystem(joystick)
-    total = builder.AddNamedSystem("sum", Adder(2, len(station.rig.joints)))
+    total = builder.AddNamedSystem("sum", Adder(2 if force is None else 3, len(station.rig.joints)))
     measured = station.diagram.GetOutputPort("position_measured")
     for index, system in enumerate((controller, joystick)):
         builder.Connect(measured, system.measured)
         builder.Connect(system.command, total.get_input_port(index))
+    if force is not None:
+        builder.AddSystem(force)
+        jaws = builder.AddNamedSystem("to_jaws", MatrixGain(_of_jaws(station)))
+        builder.Connect(station.diagram.GetOutputPort("grip_force"), force.measured)
+        builder.Connect(force.command, jaws.get_input_port())
+        builder.Connect(jaws.get_output_port(), total.get_input_port(2))
+        builder.ExportInput(force.set_point, "force_wanted")
     signal = builder.AddNamedSystem("signal_of_voltage", MatrixGain(np.diag(signal_per_volt)))
     builder.Connect(total.get_output_port(), signal.get_input_port())
     builder.Connect(signal.get_output_port(), station.diagram.GetInputPort("signal_commanded"))
