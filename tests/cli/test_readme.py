@@ -33,8 +33,15 @@ def test_programs_of_the_readme_exist():
 def test_links_and_pictures_of_the_readme_exist():
     targets = [target for target in re.findall(r"\]\(([^)]+)\)", README) if "://" not in target]
     assert targets
-    for target in targets:
+    for link in targets:
+        target, _, place = link.partition("#")
         assert (ROOT / target).exists(), target
+        if place:  # a heading, as it is turned into an anchor
+            headings = re.findall(
+                r"^#+ (.+)$", (ROOT / target).read_text(encoding="utf-8"), flags=re.MULTILINE
+            )
+            anchors = [re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-") for heading in headings]
+            assert place in anchors, link
         if target.endswith(".png"):
             assert (ROOT / target).stat().st_size < 300_000
 
