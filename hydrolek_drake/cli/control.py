@@ -52,14 +52,11 @@ def bench(
 ) -> None:
     """Every controller on step, sine and grasp, measured as in appendix G, beside the thesis's models or machine."""
     from hydrolek_drake.cli.output import console, progress
-    from hydrolek_drake.control.bench import bench_on_machine, bench_on_models, check_names
-    from hydrolek_drake.control.bench_tables import ranking_rows, sentence
-    from hydrolek_drake.control.catalogue import CONTROLLERS
+    from hydrolek_drake.control.names import TITLES, check_names
     from hydrolek_drake.control.sequences import NAMES
     from hydrolek_drake.rigs import load_rig
-    from hydrolek_drake.runs.report import prepare_folder
 
-    names, sequences = controller or list(CONTROLLERS), sequence or list(NAMES)
+    names, sequences = controller or list(TITLES), sequence or list(NAMES)
     check_names(names)
     for name in sequences:
         if name not in NAMES:
@@ -67,6 +64,11 @@ def bench(
     if plant is Plant.sdp and (set_ or rig != "hydrolek"):
         raise InputError("--plant sdp: the SDP models read no rig; --set and --rig belong to --plant full")
     machine = load_rig(rig, parse_settings(set_)) if plant is Plant.full else None
+
+    from hydrolek_drake.control.bench import bench_on_machine, bench_on_models
+    from hydrolek_drake.control.bench_tables import ranking_rows, sentence
+    from hydrolek_drake.runs.report import prepare_folder
+
     if out is not None:
         prepare_folder(out)
     output = console()
@@ -117,21 +119,25 @@ def design(
     import yaml
 
     from hydrolek_drake.cli.output import console
-    from hydrolek_drake.control.designed import design_controller, is_model_file, read_model, write_designed
-    from hydrolek_drake.control.rig_model import rig_model
-    from hydrolek_drake.control.sdp_model import thesis_model
-    from hydrolek_drake.control.thesis_gains import entry
     from hydrolek_drake.files import is_file
     from hydrolek_drake.rigs import load_rig
 
     if weights is not None and pole:
         raise InputError("give either --weights or --pole, not both")
+    # A file may hold a model or a rig; a name that is neither is told before what designs is loaded.
+    machine = None if rig == "thesis" or is_file(Path(rig)) else load_rig(rig, parse_settings(set_))
+
+    from hydrolek_drake.control.designed import design_controller, is_model_file, read_model, write_designed
+    from hydrolek_drake.control.rig_model import rig_model
+    from hydrolek_drake.control.sdp_model import thesis_model
+    from hydrolek_drake.control.thesis_gains import entry
+
     if rig == "thesis":
         model = thesis_model(joint or "")
-    elif is_file(Path(rig)) and is_model_file(Path(rig)):
+    elif machine is None and is_model_file(Path(rig)):
         model = read_model(Path(rig))
     else:
-        machine = load_rig(rig, parse_settings(set_))
+        machine = machine or load_rig(rig, parse_settings(set_))
         if joint is None and len(machine.joints) > 1:
             raise InputError(f"rig {rig} has several joints; name one of {', '.join(machine.joints)}")
         model = rig_model(machine, joint or machine.joints[0])

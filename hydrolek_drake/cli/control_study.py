@@ -23,20 +23,22 @@ def judge(
     seed: Annotated[int, typer.Option(help="of noise and deviations")] = 1,
 ) -> None:
     """30 deg steps in both directions with other postures, loads, dead-zones, and on deviating machines."""
+    from hydrolek_drake.control.names import TITLES, check_names
+
+    names, joints = controller or list(TITLES), joint or list(_ALL)
+    check_names(names)
+    _check_joints(joints)
+
     import numpy as np
 
     from hydrolek_drake.cli.output import console, progress
-    from hydrolek_drake.control.bench import check_names
-    from hydrolek_drake.control.catalogue import CONTROLLERS, build_law, rig_setting
+    from hydrolek_drake.control.catalogue import build_law, rig_setting
     from hydrolek_drake.control.conditions import Condition, conditions_data, judged_conditions
     from hydrolek_drake.control.judged import as_json, as_rows
     from hydrolek_drake.control.judging import judge_all, make_cases
     from hydrolek_drake.files import write_out
     from hydrolek_drake.rigs import load_rig
 
-    names, joints = controller or list(CONTROLLERS), joint or list(_ALL)
-    check_names(names)
-    _check_joints(joints)
     generator = np.random.default_rng(seed)
     half = Condition(load_kg=0.5 * float(conditions_data()["load"]["value"]))
     with progress("step tests of every joint") as tell:

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hydrolek_drake.control.catalogue import (
-    CONTROLLERS,
     JointSetting,
     build_law,
     rig_setting,
@@ -23,6 +22,7 @@ from hydrolek_drake.control.metrics import (
     switching,
     tool_error,
 )
+from hydrolek_drake.control.names import check_names
 from hydrolek_drake.control.sequences import SetPoints, arm_and_number, sequence_data, set_points
 from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.errors import InputError
@@ -111,17 +111,6 @@ class Bench:
             if (trial.controller, trial.sequence) == (controller, sequence):
                 return trial
         return None
-
-
-def check_names(controllers: Sequence[str]) -> None:
-    """Refuse unknown controllers.
-
-    Raises:
-        InputError: names the choices.
-    """
-    for name in controllers:
-        if name not in CONTROLLERS:
-            raise InputError(f"no controller '{name}'; choose {', '.join(CONTROLLERS)}")
 
 
 def bench_on_models(

@@ -18,6 +18,7 @@ from hydrolek_drake.control.fuzzy import (
 from hydrolek_drake.control.guard import GuardedLaw, guarded
 from hydrolek_drake.control.inverse_dead_zone import InverseDeadZone, inverse_dead_zone
 from hydrolek_drake.control.law import ControlLaw
+from hydrolek_drake.control.names import TITLES, check_names
 from hydrolek_drake.control.pi import PiLaw
 from hydrolek_drake.control.pid import PidLaw
 from hydrolek_drake.control.pip import PipLaw
@@ -33,7 +34,6 @@ from hydrolek_drake.control.thesis_gains import (
     signal_limit,
     voltage_limit_V,
 )
-from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.yaml_files import package_yaml
 
@@ -180,23 +180,25 @@ def _fuzzy_appendix_f(s: JointSetting) -> ControlLaw:
     return TwoInputFuzzyLaw(DirectInput(voltage_limit_V()), *appendix_f_surface(s.scaling, s.gains_of))
 
 
-CONTROLLERS: dict[str, tuple[str, Callable[[JointSetting], ControlLaw]]] = {
-    "pi": ("PI, scaled input", _pi),
-    "pid": ("PID, scaled input", _pid),
-    "pip_no_scaling": ("PIP, no scaling", _pip("pip_no_scaling")),
-    "pip_scaled": ("PIP, scaled input", _pip("pip_scaled")),
-    "pip_idz_a": ("PIP IDZ a", _pip("pip_idz.a")),
-    "pip_idz_b": ("PIP IDZ b", _pip("pip_idz.b")),
-    "pip_idz_c": ("PIP IDZ c", _pip("pip_idz.c")),
-    "pip_forward_a": ("PIP IDZ FP a", _forward("a")),
-    "pip_forward_b": ("PIP IDZ FP b", _forward("b")),
-    "pip_forward_c": ("PIP IDZ FP c", _forward("c")),
-    "fuzzy_single": ("fuzzy, error", _fuzzy_single),
-    "fuzzy_double": ("fuzzy, error and change", _fuzzy_double),
-    "fuzzy_double_printed": ("fuzzy, Table 7.1", _fuzzy_double_printed),
-    "fuzzy_appendix_f": ("fuzzy, appendix F", _fuzzy_appendix_f),
-    "feedforward": ("feedforward, learning", _feedforward),
+_BUILDERS: dict[str, Callable[[JointSetting], ControlLaw]] = {
+    "pi": _pi,
+    "pid": _pid,
+    "pip_no_scaling": _pip("pip_no_scaling"),
+    "pip_scaled": _pip("pip_scaled"),
+    "pip_idz_a": _pip("pip_idz.a"),
+    "pip_idz_b": _pip("pip_idz.b"),
+    "pip_idz_c": _pip("pip_idz.c"),
+    "pip_forward_a": _forward("a"),
+    "pip_forward_b": _forward("b"),
+    "pip_forward_c": _forward("c"),
+    "fuzzy_single": _fuzzy_single,
+    "fuzzy_double": _fuzzy_double,
+    "fuzzy_double_printed": _fuzzy_double_printed,
+    "fuzzy_appendix_f": _fuzzy_appendix_f,
+    "feedforward": _feedforward,
 }
+
+CONTROLLERS = {name: (title, _BUILDERS[name]) for name, title in TITLES.items()}
 """Name -> how tables call it, and what builds it."""
 
 
@@ -211,8 +213,7 @@ def build_law(name: str, setting: JointSetting, *, noisy: bool) -> GuardedLaw:
     Raises:
         InputError: no such controller.
     """
-    if name not in CONTROLLERS:
-        raise InputError(f"no controller '{name}'; choose {', '.join(CONTROLLERS)}")
+    check_names([name])
     model = setting.model
     return guarded(
         CONTROLLERS[name][1](setting),
