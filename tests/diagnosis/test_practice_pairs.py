@@ -27,6 +27,10 @@ ALLOWED = 1.2
 """Held-out error over the noise that issue and contract demand."""
 
 
+CONFIRMED = "practice_04"
+"""The pair whose fitted rig is run through the Drake diagram, too, which takes ten seconds."""
+
+
 @pytest.fixture(scope="session")  # of a module it would end wherever a test of another one comes between
 def diagnosed(tmp_path_factory):
     """A function: pair -> folder of its report, made once."""
@@ -42,6 +46,7 @@ def diagnosed(tmp_path_factory):
                 str(folder / "holdout.csv"),
                 "--out",
                 str(out),
+                *(() if pair == CONFIRMED else ("--no-confirm",)),
             ]
             assert run(["diagnose", "joint_bench", *arguments]) == 0
             known[pair] = out
@@ -148,3 +153,11 @@ def test_the_drake_diagram_reproduces_the_improvement(diagnosed) -> None:
     noise = json.loads((diagnosed("practice_04") / "report.json").read_text())["fit"]["noise_floor"]
     assert error["fitted"] <= ALLOWED * noise
     assert error["nominal"] > 2.0 * error["fitted"]
+
+
+def test_the_fitted_rig_runs_in_the_drake_diagram(diagnosed) -> None:
+    report = json.loads((diagnosed(CONFIRMED) / "report.json").read_text())
+    [told] = report["diagram"]
+    assert told["key"] == "joint.angle" and told["diverged"] is None
+    assert told["diagram_rms"] == pytest.approx(told["rollout_rms"], rel=0.05)
+    assert "Drake diagram" in (diagnosed(CONFIRMED) / "report.html").read_text()

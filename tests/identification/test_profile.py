@@ -133,7 +133,7 @@ def test_profile_on_the_bench_by_command_agrees_with_its_standard_error(tmp_path
     arguments = [
         *(text for path in searched for text in ("--parameter", path)),
         *(text for path, key in known.items() for text in ("--set", f"{path}={machine[key]}")),
-        *("--profile", "command.delay", "--out", str(tmp_path)),
+        *("--profile", "command.delay", "--no-confirm", "--out", str(tmp_path)),
     ]
     assert run(["fit", "joint_bench", str(BENCH / "train.csv"), *arguments]) == 0
     assert "profile likelihood, 95 %" in capsys.readouterr().out

@@ -138,7 +138,19 @@ def test_both_steps_by_command_on_a_recording_of_a_changed_bench(tmp_path, capsy
     )
     arguments = [str(train), "--holdout", str(holdout), "--starts", "1"]
     assert (
-        run(["identify", "two-step", "joint_bench", *arguments, "--no-polish", "--out", str(tmp_path)]) == 0
+        run(
+            [
+                "identify",
+                "two-step",
+                "joint_bench",
+                *arguments,
+                "--no-polish",
+                "--no-confirm",
+                "--out",
+                str(tmp_path),
+            ]
+        )
+        == 0
     )
     content = json.loads((tmp_path / "two_step_joint.json").read_text())
     stages = {stage["name"]: stage for stage in content["stages"]}
