@@ -38,6 +38,15 @@ def _until(condition, limit=5.0):
         time.sleep(0.005)
 
 
+def _answered(ask):
+    """Whether a question is answered and not refused."""
+    try:
+        ask()
+    except InputError:
+        return False
+    return True
+
+
 def _connection(server):
     return socket.create_connection(("127.0.0.1", server.port), timeout=5.0)
 
@@ -96,15 +105,7 @@ def test_a_mute_client_loses_control_and_its_connection(server):
     with pytest.raises(InputError, match="another client is in control"):
         client.control()
     began = time.monotonic()
-
-    def taken():
-        try:
-            client.control()
-        except InputError:
-            return False
-        return True
-
-    _until(taken)
+    _until(lambda: _answered(client.control))
     assert time.monotonic() - began < MUTE + 1.0
     client.send(home_posture())
     assert server.command()[1]
@@ -131,13 +132,12 @@ def test_a_stopped_process_loses_control(server):
         client = SetpointClient(server.port)
         with pytest.raises(InputError, match="in control"):
             client.control()
-        time.sleep(MUTE)
+        _until(lambda: _answered(client.control))  # asked all the while, so that it is not mute itself
         client.send(home_posture())
         assert server.command()[1]
         os.kill(process.pid, signal.SIGCONT)  # it wakes, and is refused
-        assert process.wait(10.0) != 0
-        client.send(home_posture())
-        assert server.command()[1]
+        _until(lambda: _answered(lambda: client.send(home_posture())) and process.poll() is not None, 10.0)
+        assert process.returncode != 0 and server.command()[1]
         client.close()
     finally:
         process.kill()
