@@ -20,6 +20,8 @@ from hydrolek_drake.replay.confirmation import confirm
 from hydrolek_drake.rigs import load_rig
 
 BENCH = Path(__file__).parents[1] / "data" / "bench"
+SHORT = ("ga", "least-squares")
+
 WITHIN_DEG = 0.02
 """What the executions may be apart (docs/agreement.md)."""
 
@@ -73,7 +75,10 @@ def test_a_genetic_search_ranks_its_population_alike_on_both(rig, recording, sea
     np.testing.assert_allclose(scores[0], scores[1], rtol=0.02)
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(
+    "method",
+    [m if m in SHORT else pytest.param(m, marks=pytest.mark.long("3 s each")) for m in METHODS],
+)
 def test_every_method_runs_on_the_diagram(rig, recording, searched, method):
     short = recording.between(recording.time[0], recording.time[0] + 1.5)
     wrong = rig.with_values({"supply.pressure": 1.1 * rig.value("supply.pressure")})

@@ -80,11 +80,11 @@ def test_every_lane_does_what_it_does_alone_and_goes_on_from_where_it_ended():
         )
 
 
-MIXED = ("cylinder.coulomb_friction", "valve.spool_stiction", "linkage.backlash")
+MIXED = ("cylinder.coulomb_friction",)
 
 
 def test_a_batch_of_machines_with_other_effects():
-    """Effects that are programs of their own, and some that are not, side by side; all of them: `--long`."""
+    """An effect that is a program of its own, and some that are not, side by side; all of them: `--long`."""
     rig = load_rig("hydrolek_right_j2")
     effects = (
         *MIXED,
