@@ -89,6 +89,7 @@ def _arms_with_a_pipe_in_the_right_gripper():
     return HydraulicArms(posture, pipe=make_pipe(point, tip - point))
 
 
+@pytest.mark.long("8 s: the full plant")
 def test_the_force_settles_at_the_set_point_up_and_down_and_the_oil_holds_it():
     arms = _arms_with_a_pipe_in_the_right_gripper()
     peak = 0.0

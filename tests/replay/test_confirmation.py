@@ -20,7 +20,7 @@ from hydrolek_drake.replay.confirmation import confirm
 from hydrolek_drake.rigs import load_rig
 
 BENCH = Path(__file__).parents[1] / "data" / "bench"
-SHORT = ("ga", "least-squares")
+SHORT = ("ga",)
 
 WITHIN_DEG = 0.02
 """What the executions may be apart (docs/agreement.md)."""
@@ -51,6 +51,7 @@ def test_the_diagram_follows_the_rollout_and_leaves_the_same_of_the_recording(ri
     assert "Drake diagram" in found.sentence() and json.dumps(found.as_json())
 
 
+@pytest.mark.long("7 s")
 def test_a_play_is_given_the_steps_that_its_blows_need(rig, recording):
     playing = rig.with_values({"joints.joint.effects.linkage.backlash.gap_rad": 0.01})
     [found] = confirm(playing, [recording])

@@ -83,6 +83,7 @@ def test_every_lane_does_what_it_does_alone_and_goes_on_from_where_it_ended():
 MIXED = ("cylinder.coulomb_friction",)
 
 
+@pytest.mark.long("half a minute: loops of two kinds are compiled")
 def test_a_batch_of_machines_with_other_effects():
     """An effect that is a program of its own, and some that are not, side by side; all of them: `--long`."""
     rig = load_rig("hydrolek_right_j2")
