@@ -1,7 +1,9 @@
 """The object that the operator clicks on: thesis section 5.2.4, and the same from surfaces."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from enum import Enum
+from typing import Any
 
 import cv2
 import numpy as np
@@ -9,16 +11,14 @@ from numpy.typing import NDArray
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.vision.configuration import kinect_entries
-from hydrolek_drake.vision.edges import dilated
-from hydrolek_drake.vision.surfaces import Surfaces
+from hydrolek_drake.vision.edges import EdgeSettings, dilated, edge_picture
+from hydrolek_drake.vision.surfaces import Pieces, Surfaces, cut_into_pieces
+from hydrolek_drake.vision.wholes import whole_object
 
 Mask = NDArray[np.bool_]
 
 _RED = (0, 0, 255)  # blue, green, red
-_BESIDE = 9  # px: pieces this near to each other may belong together
-_FLUSH = 0.004  # m: noise of the step from one piece to the next
-_SPLINTER = 0.05  # of the other's area: a piece this small is part of it
-_LESS = 0.02  # of convexity that joining a piece may cost
+_MOST = 0.99  # of the sensitivity, which stays below 1
 
 
 class Fill(Enum):
@@ -39,16 +39,81 @@ class Snapshot:
         mask: What is within reach, shape (h, w).
         edges: The edge picture, 255 on lines, shape (h, w).
         surfaces: What the depth says.
+        settings: The sliders.
     """
 
     colour: NDArray[np.uint8]
     mask: Mask
     edges: NDArray[np.uint8]
     surfaces: Surfaces
+    settings: EdgeSettings
+    _kept: dict[tuple[str, float, int], Any] = field(default_factory=dict, repr=False, compare=False)
+
+    def pieces(self, scale: float) -> Pieces:
+        """The pieces of surface with all thresholds times `scale`; kept."""
+        return self._keep(("pieces", scale, 0), lambda: cut_into_pieces(self.surfaces, scale))
+
+    def whole(self, scale: float, piece: int) -> Mask:
+        """The object that a piece of these belongs to; kept."""
+        make = lambda: whole_object(self.surfaces, self.pieces(scale), piece, scale)  # noqa: E731
+        return self._keep(("whole", scale, piece), make)
+
+    def lines(self, scale: float) -> NDArray[np.uint8]:
+        """The edge picture with the sensitivity times `scale`; kept."""
+        if scale == 1.0:
+            return self.edges
+        changed = replace(self.settings, sensitivity=min(scale * self.settings.sensitivity, _MOST))
+        return self._keep(("lines", scale, 0), lambda: edge_picture(self.colour, self.mask, changed))
+
+    def _keep(self, key: tuple[str, float, int], make: Callable[[], Any]) -> Any:
+        if key not in self._kept:
+            self._kept[key] = make()
+        return self._kept[key]
 
 
-def select_object(snapshot: Snapshot, pixel: tuple[float, float], fill: Fill = Fill.SURFACES) -> Mask:
-    """The object around a click.
+@dataclass(frozen=True)
+class Selection:
+    """The object under a click, and how far that is certain.
+
+    The same click is tried a little beside, and with every threshold a little lower and higher. What most of these
+    agree on is the object; what some of them find instead are the alternatives.
+
+    Attributes:
+        mask: The object, shape (h, w).
+        agreement: Share of the tries that find the same outline.
+        alternatives: Other outlines, the most frequent first; each of shape (h, w).
+    """
+
+    mask: Mask
+    agreement: float
+    alternatives: tuple[Mask, ...]
+
+    @property
+    def unsure(self) -> bool:
+        """Whether too few tries agree."""
+        return bool(self.alternatives) and self.agreement < kinect_entries("selection")["agreement"]
+
+    @property
+    def warning(self) -> str:
+        """What an operator should know, in a sentence; empty where it is certain."""
+        if not self.unsure:
+            return ""
+        count = len(self.alternatives)
+        return (
+            f"Unsure of this outline ({100 * self.agreement:.0f} % of the tries agree): check it; another click at "
+            f"the same place shows {'the other' if count == 1 else f'the next of {count} others'}."
+        )
+
+    def next(self) -> "Selection":
+        """With the first alternative as the object; the object so far becomes the last alternative."""
+        if not self.alternatives:
+            return self
+        first, *rest = self.alternatives
+        return replace(self, mask=first, alternatives=(*rest, self.mask))
+
+
+def select_object(snapshot: Snapshot, pixel: tuple[float, float], fill: Fill = Fill.SURFACES) -> Selection:
+    """The object around a click, and what else it might be.
 
     Args:
         snapshot: The frame.
@@ -66,20 +131,66 @@ def select_object(snapshot: Snapshot, pixel: tuple[float, float], fill: Fill = F
         )
     if not snapshot.mask[v, u] and fill is Fill.EDGES:
         raise InputError(_nothing(u, v))
+    as_set = _filled(snapshot, (u, v), fill, 1.0)
+    return _agreed(as_set, _tries(snapshot, (u, v), fill))
+
+
+def _filled(snapshot: Snapshot, pixel: tuple[int, int], fill: Fill, scale: float) -> Mask:
+    """The object around a click with all thresholds times `scale`."""
     if fill is Fill.EDGES:
-        return fill_between_lines(snapshot.edges, snapshot.mask, (u, v))
-    piece = _piece_at(snapshot.surfaces.pieces, u, v)
+        return fill_between_lines(snapshot.lines(scale), snapshot.mask, pixel)
+    u, v = pixel
+    pieces = snapshot.pieces(scale)
+    piece = _piece_at(pieces.numbers, u, v)
     if piece == 0:
         if not snapshot.mask[v, u]:
             raise InputError(_nothing(u, v))
-        if not snapshot.surfaces.standing_out[v, u]:
+        if not pieces.standing_out[v, u]:
             raise InputError(
                 f"the click at ({u}, {v}) is on a wall, floor or table, not on an object that stands out of it"
             )
         raise InputError(
             f"the click at ({u}, {v}) is between objects; click further inside, or fill up to the lines instead"
         )
-    return _joined(snapshot.surfaces, piece)
+    return snapshot.whole(scale, piece)
+
+
+def _tries(snapshot: Snapshot, pixel: tuple[int, int], fill: Fill) -> list[Mask | None]:
+    """What the click and those beside it give at several scales of the thresholds; None where refused."""
+    values = kinect_entries("selection")
+    (u, v), beside, spread = pixel, int(values["beside"]), values["spread"]
+    height, width = snapshot.mask.shape
+    found: list[Mask | None] = []
+    for scale in np.geomspace(1.0 / spread, spread, int(values["scales"])):
+        for right, down in ((0, 0), (beside, 0), (-beside, 0), (0, beside), (0, -beside)):
+            at = (min(max(u + right, 0), width - 1), min(max(v + down, 0), height - 1))
+            try:
+                found.append(_filled(snapshot, at, fill, float(scale)))
+            except InputError:
+                found.append(None)
+    return found
+
+
+def _agreed(as_set: Mask, tries: list[Mask | None]) -> Selection:
+    """The outline that most tries agree with, and the others."""
+    values = kinect_entries("selection")
+    kinds: list[tuple[Mask, int]] = [(as_set, 0)]
+    for mask in tries:
+        if mask is None:
+            continue
+        for index, (kind, count) in enumerate(kinds):
+            if mask is kind or _overlap(mask, kind) >= values["same"]:
+                kinds[index] = (kind, count + 1)
+                break
+        else:
+            kinds.append((mask, 1))
+    kinds.sort(key=lambda kind: -kind[1])
+    first, count = kinds[0]
+    return Selection(first, count / len(tries), tuple(mask for mask, _ in kinds[1:]))
+
+
+def _overlap(a: Mask, b: Mask) -> float:
+    return float(np.count_nonzero(a & b) / max(1, np.count_nonzero(a | b)))
 
 
 def _nothing(u: int, v: int) -> str:
@@ -130,63 +241,3 @@ def _piece_at(pieces: NDArray[np.int32], u: int, v: int) -> int:
         return 0
     far = (rows - min(v, 3)) ** 2 + (columns - min(u, 3)) ** 2
     return int(window[rows[far.argmin()], columns[far.argmin()]])
-
-
-def _joined(surfaces: Surfaces, piece: int) -> Mask:
-    """A piece with those around it that make one convex object with it, such as a cup's inside.
-
-    Two pieces belong together if together they fill their hull as well as each alone, unless the one in front
-    bites into the other: then it stands before it or on it.
-    """
-    values = kinect_entries("surfaces")
-    selected = surfaces.pieces == piece
-    tried = {0, piece}
-    while True:
-        near = cv2.dilate(selected.astype(np.uint8), np.ones((_BESIDE, _BESIDE), np.uint8)).astype(bool)
-        numbers, counts = np.unique(surfaces.pieces[near], return_counts=True)
-        others = [int(n) for n in numbers[np.argsort(-counts)] if int(n) not in tried]
-        if not others:
-            return _without_holes(selected)
-        for other in others:
-            tried.add(other)
-            candidate = surfaces.pieces == other
-            if _one_object(surfaces.depth, selected, candidate, values["convexity"]):
-                selected = selected | candidate
-                tried = {0, *np.unique(surfaces.pieces[selected]).tolist()}
-                break
-
-
-def _one_object(depth: NDArray[np.float32], a: Mask, b: Mask, least: float) -> bool:
-    area_a, area_b = int(a.sum()), int(b.sum())
-    convex_a, convex_b, together = _convexity(a), _convexity(b), _convexity(a | b)
-    mean = (area_a * convex_a + area_b * convex_b) / (area_a + area_b)
-    if together < min(least, max(convex_a, convex_b)) - _LESS or together < mean - _LESS:
-        return False
-    rounder, bitten = (a, b) if convex_a >= convex_b else (b, a)
-    return _step(depth, rounder, bitten) > -_FLUSH or min(area_a, area_b) < _SPLINTER * max(area_a, area_b)
-
-
-def _step(depth: NDArray[np.float32], a: Mask, b: Mask) -> float:
-    """Median depth of `a` less that of `b` where they border, in m."""
-    kernel = np.ones((_BESIDE, _BESIDE), np.uint8)
-    at_a = a & cv2.dilate(b.astype(np.uint8), kernel).astype(bool) & (depth > 0)
-    at_b = b & cv2.dilate(a.astype(np.uint8), kernel).astype(bool) & (depth > 0)
-    if not at_a.any() or not at_b.any():
-        return 0.0
-    return float(np.median(depth[at_a]) - np.median(depth[at_b]))
-
-
-def _convexity(mask: Mask) -> float:
-    """Share of its convex hull that a region fills, holes counted as filled."""
-    closed = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((7, 7), np.uint8))
-    outlines, _ = cv2.findContours(closed, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-    hull = cv2.contourArea(cv2.convexHull(np.vstack(outlines)))
-    return sum(cv2.contourArea(outline) for outline in outlines) / hull if hull > 0.0 else 1.0
-
-
-def _without_holes(mask: Mask) -> Mask:
-    closed = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
-    outlines, _ = cv2.findContours(closed, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-    filled = np.zeros_like(closed)
-    cv2.drawContours(filled, outlines, -1, 1, cv2.FILLED)
-    return filled.astype(bool)

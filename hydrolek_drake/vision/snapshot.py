@@ -35,4 +35,4 @@ def take_snapshot(
     with ThreadPoolExecutor(1) as beside:  # OpenCV and the compiled parts run outside Python's lock
         edges = beside.submit(edge_picture, colour, mask, settings)
         surfaces = find_surfaces(depth, mask, camera, np.random.default_rng(_SEED))
-        return Snapshot(colour, mask, edges.result(), surfaces)
+        return Snapshot(colour, mask, edges.result(), surfaces, settings)

@@ -29,21 +29,39 @@ _PLANES = 3
 
 @dataclass(frozen=True)
 class Surfaces:
-    """What the depth picture says about objects.
+    """What the depth picture says about objects, before anything is decided.
+
+    Each strength is a quantity over its threshold in `kinect.yaml`, so that 1 decides at the threshold as it stands, and
+    another number at all thresholds that many times as high.
 
     Attributes:
         depth: In m, 0 for no reading or out of reach, median filtered; shape (h, w).
-        pieces: Number of the piece of surface that each pixel belongs to, 0 for none; shape (h, w).
-        standing_out: Whether a pixel stands out of every large plane; shape (h, w).
-        edges: 255 where the depth jumps or has a concave crease, or at a plane's end; shape (h, w).
+        height: Strength of standing out of every large plane, shape (h, w).
+        jump: Strength of the step of depth to the neighbours, shape (h, w).
+        crease: Strength of a concave crease, shape (h, w).
         planes: a, b, c of each large plane, a X + b Y + c Z = 1 in the camera frame; shape (n, 3).
+        camera: That took the picture.
     """
 
     depth: Floats
-    pieces: NDArray[np.int32]
-    standing_out: NDArray[np.bool_]
-    edges: NDArray[np.uint8]
+    height: Floats
+    jump: Floats
+    crease: Floats
     planes: Array
+    camera: CameraModel
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """A depth picture cut where it jumps, creases or meets a plane.
+
+    Attributes:
+        numbers: Number of the piece of surface that each pixel belongs to, 0 for none; shape (h, w).
+        standing_out: Whether a pixel stands out of every large plane; shape (h, w).
+    """
+
+    numbers: NDArray[np.int32]
+    standing_out: NDArray[np.bool_]
 
 
 def find_surfaces(
@@ -52,7 +70,7 @@ def find_surfaces(
     camera: CameraModel,
     generator: np.random.Generator,
 ) -> Surfaces:
-    """Cut a depth picture into pieces of surface that an object consists of.
+    """Planes of a depth picture, and how strongly it stands out of them, jumps and creases.
 
     Args:
         depth: In mm, 0 for no reading, shape (h, w).
@@ -67,25 +85,37 @@ def find_surfaces(
     height = np.empty_like(metres)
     least_height(metres, _ray_slopes(camera), planes, height)
     within = metres > 0.0
-    noise = values["height"] * np.maximum(metres, 0.7) ** 2  # nearer, the sensor's noise falls no further
-    standing_out = (within & (height > noise)).astype(np.uint8)
-    standing_out = cv2.morphologyEx(standing_out, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
-
+    # nearer than 0.7 m the sensor's noise falls no further
+    height /= np.float32(values["height"]) * np.maximum(metres, np.float32(0.7)) ** 2
     square = np.ones((3, 3), np.uint8)
     far = cv2.dilate(metres, square)
     near = cv2.erode(np.where(within, metres, np.float32(np.inf)), square)
-    jump = within & (far - near > values["jump"] * np.maximum(metres, 0.5))
+    jump = np.where(within, far - near, np.float32(0.0))
+    jump /= np.float32(values["jump"]) * np.maximum(metres, np.float32(0.5))
+    crease = _creases(metres, camera) / np.float32(values["crease"])
+    return Surfaces(metres, height, jump, crease, planes, camera)
+
+
+def cut_into_pieces(surfaces: Surfaces, scale: float) -> Pieces:
+    """Pieces of surface that an object consists of.
+
+    Args:
+        surfaces: Of the frame.
+        scale: What all thresholds are multiplied by: below 1 it is cut more finely.
+    """
+    values = kinect_entries("surfaces")
+    square = np.ones((3, 3), np.uint8)
+    standing_out = ((surfaces.depth > 0.0) & (surfaces.height > scale)).astype(np.uint8)
+    standing_out = cv2.morphologyEx(standing_out, cv2.MORPH_OPEN, square)
     crease = cv2.resize(
-        (_creases(metres, camera) > values["crease"]).astype(np.uint8),
-        (camera.width, camera.height),
+        (surfaces.crease > scale).astype(np.uint8),
+        standing_out.shape[::-1],
         interpolation=cv2.INTER_NEAREST,
     )
-    core = standing_out & ~crease & ~jump.astype(np.uint8) & 1
+    core = standing_out & ~crease & ~(surfaces.jump > scale).astype(np.uint8) & 1
     core = cv2.morphologyEx(core, cv2.MORPH_OPEN, square)
-    pieces = _grown(core, standing_out, int(values["smallest"]), values["reach"])
-    outline = cv2.morphologyEx(standing_out, cv2.MORPH_GRADIENT, square)
-    edges = ((outline | ((crease | jump.astype(np.uint8)) & standing_out)) * 255).astype(np.uint8)
-    return Surfaces(metres, pieces, standing_out.astype(bool), edges, planes)
+    numbers = _grown(core, standing_out, int(values["smallest"]), values["reach"])
+    return Pieces(numbers, standing_out.astype(bool))
 
 
 @cache
