@@ -1,6 +1,7 @@
 """The object that the operator clicks on: thesis section 5.2.4, and the same from surfaces."""
 
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Any
@@ -13,7 +14,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.vision.configuration import kinect_entries
 from hydrolek_drake.vision.edges import EdgeSettings, dilated, edge_picture
 from hydrolek_drake.vision.surfaces import Pieces, Surfaces, cut_into_pieces
-from hydrolek_drake.vision.wholes import whole_object
+from hydrolek_drake.vision.wholes import Wholes
 
 Mask = NDArray[np.bool_]
 
@@ -47,28 +48,35 @@ class Snapshot:
     edges: NDArray[np.uint8]
     surfaces: Surfaces
     settings: EdgeSettings
-    _kept: dict[tuple[str, float, int], Any] = field(default_factory=dict, repr=False, compare=False)
+    _kept: dict[tuple[str, float], Any] = field(default_factory=dict, repr=False, compare=False)
 
     def pieces(self, scale: float) -> Pieces:
         """The pieces of surface with all thresholds times `scale`; kept."""
-        return self._keep(("pieces", scale, 0), lambda: cut_into_pieces(self.surfaces, scale))
+        return self._keep(("pieces", scale), lambda: cut_into_pieces(self.surfaces, scale))
 
-    def whole(self, scale: float, piece: int) -> Mask:
-        """The object that a piece of these belongs to; kept."""
-        make = lambda: whole_object(self.surfaces, self.pieces(scale), piece, scale)  # noqa: E731
-        return self._keep(("whole", scale, piece), make)
+    def wholes(self, scale: float) -> Wholes:
+        """What objects these pieces make; kept."""
+        return self._keep(("wholes", scale), lambda: Wholes(self.surfaces, self.pieces(scale)))
 
     def lines(self, scale: float) -> NDArray[np.uint8]:
         """The edge picture with the sensitivity times `scale`; kept."""
         if scale == 1.0:
             return self.edges
         changed = replace(self.settings, sensitivity=min(scale * self.settings.sensitivity, _MOST))
-        return self._keep(("lines", scale, 0), lambda: edge_picture(self.colour, self.mask, changed))
+        return self._keep(("lines", scale), lambda: edge_picture(self.colour, self.mask, changed))
 
-    def _keep(self, key: tuple[str, float, int], make: Callable[[], Any]) -> Any:
+    def _keep(self, key: tuple[str, float], make: Callable[[], Any]) -> Any:
         if key not in self._kept:
             self._kept[key] = make()
         return self._kept[key]
+
+
+@dataclass(frozen=True)
+class _Outline:
+    """What one try finds; tries of the same key find the same."""
+
+    key: Hashable
+    make: Callable[[], Mask]
 
 
 @dataclass(frozen=True)
@@ -131,14 +139,15 @@ def select_object(snapshot: Snapshot, pixel: tuple[float, float], fill: Fill = F
         )
     if not snapshot.mask[v, u] and fill is Fill.EDGES:
         raise InputError(_nothing(u, v))
-    as_set = _filled(snapshot, (u, v), fill, 1.0)
-    return _agreed(as_set, _tries(snapshot, (u, v), fill))
+    found = _tries(snapshot, (u, v), fill)
+    return _agreed(_filled(snapshot, (u, v), fill, 1.0, 1.0), found)
 
 
-def _filled(snapshot: Snapshot, pixel: tuple[int, int], fill: Fill, scale: float) -> Mask:
-    """The object around a click with all thresholds times `scale`."""
+def _filled(snapshot: Snapshot, pixel: tuple[int, int], fill: Fill, scale: float, leniency: float) -> _Outline:
+    """The object around a click with all thresholds for cutting times `scale`, and for joining times `leniency`."""
     if fill is Fill.EDGES:
-        return fill_between_lines(snapshot.lines(scale), snapshot.mask, pixel)
+        mask = fill_between_lines(snapshot.lines(scale), snapshot.mask, pixel)
+        return _Outline((scale, int(mask.argmax())), lambda: mask)
     u, v = pixel
     pieces = snapshot.pieces(scale)
     piece = _piece_at(pieces.numbers, u, v)
@@ -152,38 +161,47 @@ def _filled(snapshot: Snapshot, pixel: tuple[int, int], fill: Fill, scale: float
         raise InputError(
             f"the click at ({u}, {v}) is between objects; click further inside, or fill up to the lines instead"
         )
-    return snapshot.whole(scale, piece)
+    wholes = snapshot.wholes(scale)
+    members = wholes.members(piece, leniency)
+    return _Outline((scale, members), lambda: wholes.mask(members))
 
 
-def _tries(snapshot: Snapshot, pixel: tuple[int, int], fill: Fill) -> list[Mask | None]:
-    """What the click and those beside it give at several scales of the thresholds; None where refused."""
+def _tries(snapshot: Snapshot, pixel: tuple[int, int], fill: Fill) -> list[_Outline | None]:
+    """What the click and those beside it give with thresholds around those that stand; None where refused."""
     values = kinect_entries("selection")
-    (u, v), beside, spread = pixel, int(values["beside"]), values["spread"]
+    (u, v), beside = pixel, int(values["beside"])
     height, width = snapshot.mask.shape
-    found: list[Mask | None] = []
-    for scale in np.geomspace(1.0 / spread, spread, int(values["scales"])):
-        for right, down in ((0, 0), (beside, 0), (-beside, 0), (0, beside), (0, -beside)):
-            at = (min(max(u + right, 0), width - 1), min(max(v + down, 0), height - 1))
-            try:
-                found.append(_filled(snapshot, at, fill, float(scale)))
-            except InputError:
-                found.append(None)
+    leniencies = _around_one(values["join_spread"], values["joins"]) if fill is Fill.SURFACES else [1.0]
+    found: list[_Outline | None] = []
+    for scale in _around_one(values["cut_spread"], values["cuts"]):
+        for leniency in leniencies:
+            for right, down in ((0, 0), (beside, 0), (-beside, 0), (0, beside), (0, -beside)):
+                at = (min(max(u + right, 0), width - 1), min(max(v + down, 0), height - 1))
+                try:
+                    found.append(_filled(snapshot, at, fill, scale, leniency))
+                except InputError:
+                    found.append(None)
     return found
 
 
-def _agreed(as_set: Mask, tries: list[Mask | None]) -> Selection:
+def _around_one(spread: float, count: float) -> list[float]:
+    return [float(factor) for factor in np.geomspace(1.0 / spread, spread, int(count))]
+
+
+def _agreed(as_set: _Outline, tries: list[_Outline | None]) -> Selection:
     """The outline that most tries agree with, and the others."""
     values = kinect_entries("selection")
-    kinds: list[tuple[Mask, int]] = [(as_set, 0)]
-    for mask in tries:
-        if mask is None:
-            continue
+    counts = Counter(outline.key for outline in tries if outline is not None)
+    outlines = {outline.key: outline.make for outline in (as_set, *tries) if outline is not None}
+    kinds: list[tuple[Mask, int]] = []
+    for key, make in outlines.items():
+        mask = make()
         for index, (kind, count) in enumerate(kinds):
-            if mask is kind or _overlap(mask, kind) >= values["same"]:
-                kinds[index] = (kind, count + 1)
+            if _overlap(mask, kind) >= values["same"]:
+                kinds[index] = (kind, count + counts[key])
                 break
         else:
-            kinds.append((mask, 1))
+            kinds.append((mask, counts[key]))
     kinds.sort(key=lambda kind: -kind[1])
     first, count = kinds[0]
     return Selection(first, count / len(tries), tuple(mask for mask, _ in kinds[1:]))

@@ -1,106 +1,187 @@
 """From pieces of surface to whole objects: which pieces belong together."""
 
+from collections.abc import Iterable
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
+from scipy.ndimage import find_objects
 from scipy.spatial import cKDTree
 
 from hydrolek_drake.vision.configuration import kinect_entries
 from hydrolek_drake.vision.surfaces import Pieces, Surfaces
 
+Array = NDArray[np.float64]
+Floats = NDArray[np.float32]
 Mask = NDArray[np.bool_]
+Window = tuple[slice, slice]
 
 _BESIDE = 9  # px across: pieces this near to each other may belong together
 _BEHIND = 41  # px across: a thing hides its neighbours, and the shadow of a thing at 0.8 m on one at 1.3 m some 20 px more
+_CLOSED = 4  # px around a region, for closing its gaps
 _FITTED = 400  # points of a piece
+_FEWEST = 30  # points that a quadric is fitted to
+_FAR_APART = 10.0  # thresholds: farther is not looked at
 _BORDER = 15  # nearest pairs of these
 _REGULAR = 1e-12  # of the eigenvalue problem
 _AS_DEVIATION = 1.4826  # of a median of absolute values of a normal distribution
 
 
-def whole_object(surfaces: Surfaces, pieces: Pieces, piece: int, scale: float = 1.0) -> Mask:
-    """A piece with those that make one object with it, such as a cup's inside or what is beyond a bar before it.
+class Wholes:
+    """The objects that the pieces of one cut make up.
 
     Two pieces, side by side or on both sides of something nearer, belong together if they are one surface: a quadric
     (plane, cylinder, ball, two faces of a box ...) fits both as well as each, the depth goes on from one to the other,
     and they fill their hull but for what is hidden. Side by side they do, too, if they fill their hull as well as each
     alone, unless the one in front bites into the other: then it stands before it or on it.
 
+    How far two pieces are from belonging together is one number, the largest of these quantities over their thresholds
+    in `kinect.yaml`: below 1 they do, as the thresholds stand.
+
     Args:
         surfaces: Of the frame.
         pieces: Of the same.
-        piece: Number of one.
-        scale: What the thresholds are multiplied by: above 1 more is joined.
     """
-    selected = pieces.numbers == piece
-    tried = {0, piece}
-    while True:
-        joined = False
-        for other, beside in _neighbours(surfaces.depth, pieces.numbers, selected, tried):
-            tried.add(other)
-            candidate = pieces.numbers == other
-            joined = _one_surface(surfaces, selected, candidate, scale) or (
-                beside and _one_shape(surfaces.depth, selected, candidate)
+
+    def __init__(self, surfaces: Surfaces, pieces: Pieces) -> None:
+        self._depth, self._surfaces, self._numbers = surfaces.depth, surfaces, pieces.numbers
+        self._boxes = find_objects(pieces.numbers)
+        self._near: dict[tuple[int, int], dict[int, int]] = {}
+        self._before: dict[tuple[int, int], bool] = {}
+        self._apart: dict[tuple[frozenset[int], int, bool], float] = {}
+        self._points: dict[int, Array] = {}
+
+    def members(self, piece: int, leniency: float) -> frozenset[int]:
+        """The pieces that make one object with a piece, and itself.
+
+        Args:
+            piece: Its number.
+            leniency: What the thresholds are multiplied by: above 1 more is joined.
+        """
+        members = frozenset({piece})
+        tried = set(members)
+        while True:
+            for other, beside in self._candidates(members, tried):
+                tried.add(other)
+                if self._apartness(members, other, beside) < leniency:
+                    members |= {other}
+                    tried = set(members)
+                    break
+            else:
+                return members
+
+    def mask(self, members: frozenset[int]) -> Mask:
+        """The outline of an object that consists of these pieces, filled; shape (h, w)."""
+        window = self._window(members, _CLOSED)
+        mask = np.zeros(self._numbers.shape, bool)
+        mask[window] = without_holes(self._within(window, members))
+        return mask
+
+    def _window(self, members: Iterable[int], margin: int) -> Window:
+        """Rows and columns of these pieces with a margin in px around them."""
+        boxes = [self._boxes[number - 1] for number in members]
+        edges = []
+        for axis, end in enumerate(self._numbers.shape):
+            first, last = min(box[axis].start for box in boxes), max(box[axis].stop for box in boxes)
+            edges.append(slice(max(0, first - margin), min(end, last + margin)))
+        return edges[0], edges[1]
+
+    def _within(self, window: Window, members: Iterable[int]) -> Mask:
+        numbers = self._numbers[window]
+        return np.logical_or.reduce([numbers == number for number in members])
+
+    def _nearby(self, piece: int, size: int) -> dict[int, int]:
+        """Pieces within so many px across of a piece, and how many pixels of them are."""
+        if (piece, size) not in self._near:
+            window = self._window({piece}, size // 2 + 1)
+            widened = cv2.dilate(self._within(window, {piece}).astype(np.uint8), np.ones((size, size), np.uint8))
+            counts = np.bincount(self._numbers[window][widened > 0])
+            found = {int(number): int(counts[number]) for number in np.flatnonzero(counts)}
+            self._near[piece, size] = {n: count for n, count in found.items() if n not in (0, piece)}
+        return self._near[piece, size]
+
+    def _is_before(self, piece: int, other: int) -> bool:
+        """Whether a piece near another is nearer to the camera where they border."""
+        if (piece, other) not in self._before:
+            window = self._window({piece, other}, 1)
+            a, b = self._within(window, {other}), self._within(window, {piece})
+            self._before[piece, other] = (
+                _step(self._depth[window], a, b, _BEHIND) > kinect_entries("wholes")["flush"]
             )
-            if joined:
-                selected = selected | candidate
-                tried = {0, *np.unique(pieces.numbers[selected]).tolist()}
-                break
-        if not joined:
-            return without_holes(selected)
+        return self._before[piece, other]
+
+    def _candidates(self, members: frozenset[int], tried: set[int]) -> list[tuple[int, bool]]:
+        """Pieces that may belong to these, and whether they are beside them or beyond something that is nearer."""
+        common: dict[int, int] = {}
+        for member in members:
+            for number, count in self._nearby(member, _BESIDE).items():
+                common[number] = common.get(number, 0) + count
+        beside = [n for n in sorted(common, key=lambda n: -common[n]) if n not in tried]
+        around = {n for member in members for n in self._nearby(member, _BEHIND)} - members
+        before = [n for n in around if any(self._hides(n, member) for member in members)]
+        beyond = dict.fromkeys(m for n in before for m in self._nearby(n, _BEHIND))
+        others = [n for n in beyond if n not in tried and n not in common]
+        return [(n, True) for n in beside] + [(n, False) for n in others]
+
+    def _hides(self, piece: int, member: int) -> bool:
+        return piece in self._nearby(member, _BEHIND) and self._is_before(piece, member)
+
+    def _apartness(self, members: frozenset[int], other: int, beside: bool) -> float:
+        """How far pieces are from belonging together: below 1 they do, as the thresholds stand."""
+        key = (members, other, beside)
+        if key not in self._apart:
+            window = self._window(members | {other}, _CLOSED)
+            a, b = self._within(window, members), self._within(window, {other})
+            apart = self._off_one_surface(window, members, other, a, b)
+            if beside and apart > 0.0:
+                apart = min(apart, _off_one_shape(self._depth[window], a, b))
+            self._apart[key] = apart
+        return self._apart[key]
+
+    def _off_one_surface(self, window: Window, members: frozenset[int], other: int, a: Mask, b: Mask) -> float:
+        values = kinect_entries("wholes")
+        both = [self._some_points(members), self._some_points({other})]
+        if min(len(each) for each in both) < _FEWEST:
+            return np.inf
+        receding, aside = _gap(*both)
+        apart = receding / (values["receding"] * aside + values["gap"])
+        if apart > _FAR_APART:
+            return apart
+        noise = values["noise"] * float(np.mean(np.vstack(both)[:, 2])) ** 2
+        alone = max(noise, *(_roughness(each) for each in both))
+        apart = max(apart, _roughness(np.vstack(both)) / (values["rougher"] * alone))
+        if apart > _FAR_APART:
+            return apart
+        filled = _convexity(a | b | _hidden(self._depth[window], a, b))
+        return max(apart, (1.0 - filled) / values["unfilled"])
+
+    def _some_points(self, members: Iterable[int]) -> Array:
+        """Some of the points of pieces, in the camera frame in m, shape (n, 3)."""
+        chosen = []
+        for number in members:
+            if number not in self._points:
+                window = self._window({number}, 0)
+                rows, columns = np.nonzero(self._within(window, {number}) & (self._depth[window] > 0))
+                rows, columns = rows + window[0].start, columns + window[1].start
+                pixels = np.column_stack([columns, rows])
+                self._points[number] = self._surfaces.camera.point(pixels, self._depth[rows, columns])
+            chosen.append(self._points[number])
+        points = np.vstack(chosen)
+        return points[:: max(1, len(points) // _FITTED)]
 
 
-def _neighbours(
-    depth: NDArray[np.float32], numbers: NDArray[np.int32], selected: Mask, tried: set[int]
-) -> list[tuple[int, bool]]:
-    """Pieces that may belong to it, and whether they are beside it or beyond something that is nearer."""
-    beside, common = np.unique(numbers[_widened(selected, _BESIDE)], return_counts=True)
-    found = [int(n) for n in beside[np.argsort(-common)] if int(n) not in tried]
-    before = [
-        int(n)
-        for n in np.unique(numbers[_widened(selected, _BEHIND)])
-        if n > 0
-        and not selected[numbers == n].any()
-        and _step(depth, selected, numbers == n, _BEHIND) > kinect_entries("wholes")["flush"]
-    ]
-    beyond: list[int] = []
-    for n in before:
-        beyond += [int(m) for m in np.unique(numbers[_widened(numbers == n, _BEHIND)])]
-    others = [n for n in dict.fromkeys(beyond) if n not in tried and n not in found and n not in before]
-    return [(n, True) for n in found] + [(n, False) for n in others]
-
-
-def _widened(mask: Mask, size: int) -> Mask:
-    return cv2.dilate(mask.astype(np.uint8), np.ones((size, size), np.uint8)).astype(bool)
-
-
-def _one_shape(depth: NDArray[np.float32], a: Mask, b: Mask) -> bool:
+def _off_one_shape(depth: Floats, a: Mask, b: Mask) -> float:
+    """How far two regions side by side are from filling their hull as well together as alone; below 1 they do."""
     values = kinect_entries("wholes")
     convex_a, convex_b, together = _convexity(a), _convexity(b), _convexity(a | b)
     mean = float(np.average([convex_a, convex_b], weights=[a.sum(), b.sum()]))
-    if together < min(values["convexity"], max(convex_a, convex_b)) - values["less"]:
-        return False
+    wanted = max(mean, min(values["convexity"], max(convex_a, convex_b)))
     rounder, bitten = (a, b) if convex_a >= convex_b else (b, a)
-    return together >= mean - values["less"] and _step(depth, rounder, bitten, _BESIDE) > -values["flush"]
+    return max((wanted - together) / values["less"], -_step(depth, rounder, bitten, _BESIDE) / values["flush"])
 
 
-def _one_surface(surfaces: Surfaces, a: Mask, b: Mask, scale: float) -> bool:
-    values = kinect_entries("wholes")
-    both = [_points(surfaces, mask) for mask in (a, b)]
-    if min(len(each) for each in both) < 30:
-        return False
-    receding, aside = _gap(*both)
-    if receding > scale * (values["receding"] * aside + values["gap"]):
-        return False
-    noise = values["noise"] * float(np.mean(np.vstack(both)[:, 2])) ** 2
-    alone = max(noise, *(_roughness(each) for each in both))
-    if _roughness(np.vstack(both)) > scale * values["rougher"] * alone:
-        return False
-    return _convexity(a | b | _hidden(surfaces.depth, a, b)) >= values["filled"] / scale
-
-
-def _gap(a: NDArray[np.float64], b: NDArray[np.float64]) -> tuple[float, float]:
+def _gap(a: Array, b: Array) -> tuple[float, float]:
     """How far one recedes from the other where they are nearest, and how far they are apart sideways, in m."""
     seen_a, seen_b = (each[:, :2] / each[:, 2:] for each in (a, b))
     distance, index = cKDTree(seen_b).query(seen_a)
@@ -110,7 +191,7 @@ def _gap(a: NDArray[np.float64], b: NDArray[np.float64]) -> tuple[float, float]:
     return float(abs(depth_a - depth_b)), aside
 
 
-def _hidden(depth: NDArray[np.float32], a: Mask, b: Mask) -> Mask:
+def _hidden(depth: Floats, a: Mask, b: Mask) -> Mask:
     """What of the hull of both has no reading or is nearer than both."""
     rows, columns = np.nonzero(a | b)
     hull = cv2.convexHull(np.column_stack([columns, rows]).astype(np.int32))
@@ -120,15 +201,7 @@ def _hidden(depth: NDArray[np.float32], a: Mask, b: Mask) -> Mask:
     return filled.astype(bool) & ((depth == 0.0) | (depth < nearest + kinect_entries("wholes")["flush"]))
 
 
-def _points(surfaces: Surfaces, mask: Mask) -> NDArray[np.float64]:
-    """Some of the points of a region, in the camera frame in m, shape (n, 3)."""
-    rows, columns = np.nonzero(mask & (surfaces.depth > 0))
-    step = max(1, len(rows) // _FITTED)
-    rows, columns = rows[::step], columns[::step]
-    return surfaces.camera.point(np.column_stack([columns, rows]), surfaces.depth[rows, columns])
-
-
-def _roughness(points: NDArray[np.float64]) -> float:
+def _roughness(points: Array) -> float:
     """Distance of points from the quadric that fits them best, in m: median, as a standard deviation.
 
     Taubin's fit: the algebraic distance over the mean gradient is least (IEEE PAMI 13, 1991), and the distance is
@@ -152,7 +225,7 @@ def _roughness(points: NDArray[np.float64]) -> float:
     return float(_AS_DEVIATION * np.median(misses) * size)
 
 
-def _step(depth: NDArray[np.float32], a: Mask, b: Mask, within: int) -> float:
+def _step(depth: Floats, a: Mask, b: Mask, within: int) -> float:
     """Median depth of `a` less that of `b` where they border, that is within so many px across, in m."""
     kernel = np.ones((within, within), np.uint8)
     at_a = a & cv2.dilate(b.astype(np.uint8), kernel).astype(bool) & (depth > 0)
