@@ -78,7 +78,7 @@ def draw_setup(generator: np.random.Generator) -> tuple:
         began = time.process_time()
         try:
             snapshot = take_snapshot(frame.colour, frame.depth, frame.camera, default_settings())
-            selected = select_object(snapshot, tuple(clicks[0]))
+            selected = select_object(snapshot, tuple(clicks[0])).mask
             pixels = pixel_targets(snapshot, selected, *clicks, frame.camera)
             targets = pipe_targets(snapshot, selected, pixels, frame.camera)
             plan = plan_task(targets, frame.camera, start, generator)

@@ -145,7 +145,7 @@ def measure(name: str, distance: float, side: str, seed: int, make_arms) -> dict
     points = [(in_frame(p, given_in="world", wanted_in="plate") - pose[:3, 3]) @ pose[:3, :3] for p in wanted]
     clicks = [frame.camera.pixel(point) for point in points]
     try:
-        selected = select_object(snapshot, tuple(clicks[0]))
+        selected = select_object(snapshot, tuple(clicks[0])).mask
         pixels = pixel_targets(snapshot, selected, *clicks, frame.camera)
         targets = pipe_targets(snapshot, selected, pixels, frame.camera)
         begin = time.perf_counter()

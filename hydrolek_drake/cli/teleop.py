@@ -19,7 +19,10 @@ _Vector = tuple[float, float, float]
 
 def teleop(
     port: Annotated[int, typer.Option(min=0, max=65535, help="of the page; 0 for any free one")] = 8080,
-    camera: Annotated[str, typer.Option(help="sim, live, or a folder of frames")] = "sim",
+    camera: Annotated[
+        str,
+        typer.Option(help="sim, live (OpenNI), realsense, a recording of one (.db3), or a folder of frames"),
+    ] = "sim",
     host: Annotated[str, typer.Option(help="address to serve the page at")] = "127.0.0.1",
     allow_host: Annotated[
         list[str] | None,
@@ -180,7 +183,7 @@ def _session(
     import numpy as np
 
     from hydrolek_drake.teleop.session import OperatorSession
-    from hydrolek_drake.vision.frames import FolderSource, LiveCamera
+    from hydrolek_drake.vision.sources import camera_source
 
     if camera == "sim":
         from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect, as_machine_stands
@@ -191,14 +194,12 @@ def _session(
             seed=seed,
             stand=as_machine_stands,
         )
-    if camera == "live":
-        return OperatorSession(lambda: LiveCamera(flipped=flip), machine, seed=seed)
-    return OperatorSession(lambda: FolderSource(Path(camera)), machine, seed=seed)
+    return OperatorSession(lambda: camera_source(camera, flipped=flip), machine, seed=seed)
 
 
 def _check_camera(camera: str, point: _Vector | None, axis: _Vector | None, loose: bool) -> None:
     """Refuse what would be refused only after the plant has been started."""
-    from hydrolek_drake.vision.frames import FolderSource
+    from hydrolek_drake.vision.sources import camera_source
 
     if camera != "sim" and (point is not None or axis is not None):
         raise InputError("teleop: --pipe-point and --pipe-axis are the simulated camera's; leave them out")
@@ -206,8 +207,8 @@ def _check_camera(camera: str, point: _Vector | None, axis: _Vector | None, loos
         raise InputError(
             "teleop: --loose puts the simulated camera's pipe on the table; leave the others out"
         )
-    if camera not in ("sim", "live"):
-        FolderSource(Path(camera))
+    if camera != "sim":
+        camera_source(camera).close()
 
 
 def _address(text: str | None) -> tuple[str, int] | None:

@@ -14,14 +14,18 @@ if TYPE_CHECKING:
     from hydrolek_drake.vision.frames import FrameSource
     from hydrolek_drake.vision.selection import Mask, Snapshot
 
+_CAMERAS = "sim, live (OpenNI), realsense, a recording of one (.db3), or a folder of frames"
 _Pixel = tuple[float, float]
 
 
 def vision(
-    source: Annotated[str, typer.Argument(metavar="SOURCE", help="sim, live, or a folder of frames")],
+    source: Annotated[str, typer.Argument(metavar="SOURCE", help=_CAMERAS)],
     click: Annotated[_Pixel | None, typer.Option(metavar="U V", help="pixel inside the object")] = None,
     grasp: Annotated[_Pixel | None, typer.Option(metavar="U V", help="pixel to grasp at")] = None,
     cut: Annotated[_Pixel | None, typer.Option(metavar="U V", help="pixel to cut at")] = None,
+    other: Annotated[
+        int, typer.Option(min=0, metavar="N", help="take the Nth other outline, where the object is unsure")
+    ] = 0,
     frame: Annotated[
         str | None, typer.Option(help="name of a frame of the folder; the first if not given")
     ] = None,
@@ -64,12 +68,24 @@ def vision(
     pictures = {"colour": taken.colour, "edges": snapshot.edges}
     lines = [f"{taken.name}: {100 * snapshot.mask.mean():.0f} % of the picture is within reach"]
     if click is not None:
-        selected = select_object(snapshot, click, Fill(fill))
+        selection = select_object(snapshot, click, Fill(fill))
+        if other > len(selection.alternatives):
+            raise InputError(
+                f"vision: --other {other}, but this click has {len(selection.alternatives)} other outlines"
+            )
+        for _ in range(other):
+            selection = selection.next()
+        selected = selection.mask
         pictures["object"], pictures["selected"] = (
             (selected * 255).astype(np.uint8),
             overlay(taken.colour, selected),
         )
         lines.append(f"object: {int(selected.sum())} px")
+        if selection.unsure:
+            lines.append(selection.warning)
+        for number, mask in enumerate(selection.alternatives if selection.unsure and other == 0 else (), 1):
+            lines.append(f"other outline: {int(mask.sum())} px (--other {number})")
+            pictures[f"other{number}"] = overlay(taken.colour, mask)
         if grasp is not None and cut is not None:
             lines += _targets(snapshot, selected, grasp, cut, taken.camera, pictures["selected"])
     if out is not None:
@@ -84,16 +100,14 @@ def vision(
 def _source(source: str, seed: int, flip: bool) -> "FrameSource":
     import numpy as np
 
-    from hydrolek_drake.vision.frames import FolderSource, LiveCamera
+    from hydrolek_drake.vision.sources import camera_source
 
-    if source == "live":
-        return LiveCamera(flipped=flip)
     if source == "sim":
         from hydrolek_drake.workcell.pipe import make_pipe
         from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
 
         return SimulatedKinect(make_pipe(), np.random.default_rng(seed))
-    return FolderSource(Path(source))
+    return camera_source(source, flipped=flip)
 
 
 def _targets(

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.vision.configuration import kinect_entries
 from hydrolek_drake.vision.edges import EdgeSettings
 from hydrolek_drake.vision.frames import Frame
 from hydrolek_drake.vision.place import level_place
-from hydrolek_drake.vision.selection import Fill, Mask, Snapshot, overlay, select_object
+from hydrolek_drake.vision.selection import Fill, Mask, Selection, Snapshot, overlay, select_object
 from hydrolek_drake.vision.snapshot import take_snapshot
 from hydrolek_drake.vision.targets import PipeTargets, PixelTargets, pipe_targets, pixel_targets
 from hydrolek_drake.workcell.pipe import workcell_entries
@@ -65,7 +66,8 @@ class Clicks:
         self.targets: PipeTargets | None = None
         self.place: Array | None = None
         self._place_at: tuple[float, float] | None = None
-        self._selected: Mask | None = None
+        self._selection: Selection | None = None
+        self._object_at = (0.0, 0.0)
         self._grasp: tuple[float, float] | None = None
         self._pixels: PixelTargets | None = None
         self._snapshot: Snapshot
@@ -78,7 +80,7 @@ class Clicks:
 
     def wanted(self) -> Wanted:
         """What is to be clicked next."""
-        if self._selected is None:
+        if self._selection is None:
             return Wanted.OBJECT
         if self._grasp is None:
             return Wanted.GRASP
@@ -89,6 +91,8 @@ class Clicks:
     def click(self, u: float, v: float, fill: Fill) -> None:
         """Take the next click.
 
+        While it is unsure what the object is, a click at the place where it was clicked shows what else it might be.
+
         Raises:
             InputError: What is wrong with it, or that none is wanted.
         """
@@ -96,7 +100,10 @@ class Clicks:
             raise InputError("a click needs two finite numbers")
         match self.wanted():
             case Wanted.OBJECT:
-                self._selected = select_object(self._snapshot, (u, v), fill)
+                self._selection, self._object_at = select_object(self._snapshot, (u, v), fill), (u, v)
+            case Wanted.GRASP if self._asks_for_another(u, v):
+                assert self._selection is not None
+                self._selection = self._selection.next()
             case Wanted.GRASP:
                 self._targets_at((u, v), (u, v))
                 self._grasp = (u, v)
@@ -114,8 +121,8 @@ class Clicks:
             self._forget_last()
         elif self._grasp is not None:
             self._grasp = None
-        elif self._selected is not None:
-            self._selected = None
+        elif self._selection is not None:
+            self._selection = None
         else:
             return False
         return True
@@ -127,17 +134,28 @@ class Clicks:
             self._forget_last()
 
     def told(self) -> str:
-        """What has been found out about the object, in a sentence; empty before all is clicked."""
-        return "" if self.targets is None else f"Pipe of {2e3 * self.targets.cylinder.radius:.0f} mm."
+        """What the operator should know about the object, in a sentence; may be empty."""
+        if self.targets is not None:
+            return f"Pipe of {2e3 * self.targets.cylinder.radius:.0f} mm."
+        if self._selection is None or not self.unsure():
+            return ""
+        count = len(self._selection.alternatives)
+        others = "another" if count == 1 else f"one of {count} others"
+        offer = f" A click at the same place shows {others}." if count else ""
+        return self._selection.warning + offer
+
+    def unsure(self) -> bool:
+        """Whether the outline of the object is to be checked before the next click."""
+        return self.wanted() is Wanted.GRASP and self._selection is not None and self._selection.unsure
 
     def pictures(self) -> Pictures:
         """`colour` and `edges` with the marks of what has been clicked."""
         edges, colour = self._snapshot.edges, self._snapshot.colour
         shown = cv2.cvtColor(edges, cv2.COLOR_GRAY2BGR)
-        if self._selected is not None:
+        if self._selection is not None:
             shown = np.zeros_like(shown)
-            shown[self._selected] = 255
-            colour = overlay(colour, self._selected)
+            shown[self._selection.mask] = 255
+            colour = overlay(colour, self._selection.mask)
         colour = colour.copy()
         if self._grasp is not None:
             pixels = self._pixels or self._targets_at(self._grasp, self._grasp)
@@ -148,11 +166,11 @@ class Clicks:
         return {"colour": colour, "edges": shown}
 
     def _click_place(self, at: tuple[float, float]) -> None:
-        assert self._selected is not None and self._grasp is not None
+        assert self._grasp is not None
         values = workcell_entries()["place"]
         place = level_place(
             self._snapshot,
-            self._selected,
+            self._selected(),
             at,
             self.frame.camera,
             around=int(values["around"]),
@@ -161,6 +179,16 @@ class Clicks:
         _, self.targets = self._fitted(self._grasp, self._grasp)
         self.place, self._place_at = place, at
 
+    def _asks_for_another(self, u: float, v: float) -> bool:
+        """Whether this click, the one after the object's, is at the same place, while the object is unsure."""
+        apart = math.hypot(u - self._object_at[0], v - self._object_at[1])
+        others = self._selection.alternatives if self._selection is not None else ()
+        return self.unsure() and len(others) > 0 and apart <= kinect_entries("selection")["again"]
+
+    def _selected(self) -> Mask:
+        assert self._selection is not None
+        return self._selection.mask
+
     def _forget_last(self) -> None:
         self._pixels = self.targets = self.place = self._place_at = None
 
@@ -168,12 +196,10 @@ class Clicks:
         self, grasp: tuple[float, float], cut: tuple[float, float]
     ) -> tuple[PixelTargets, PipeTargets]:
         pixels = self._targets_at(grasp, cut)
-        assert self._selected is not None
-        return pixels, pipe_targets(self._snapshot, self._selected, pixels, self.frame.camera)
+        return pixels, pipe_targets(self._snapshot, self._selected(), pixels, self.frame.camera)
 
     def _targets_at(self, grasp: tuple[float, float], cut: tuple[float, float]) -> PixelTargets:
-        assert self._selected is not None
-        return pixel_targets(self._snapshot, self._selected, grasp, cut, self.frame.camera)
+        return pixel_targets(self._snapshot, self._selected(), grasp, cut, self.frame.camera)
 
 
 def _whole(point: Any) -> tuple[int, int]:

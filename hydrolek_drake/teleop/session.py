@@ -110,7 +110,7 @@ class OperatorSession:
             self._steps = STEPS_OF[self._task]
             if self._clicks is not None:
                 self._clicks.change_task(self._task)
-                self._stage, self._message = STAGE_FOR[self._clicks.wanted()], ""
+                self._stage, self._message = STAGE_FOR[self._clicks.wanted()], self._clicks.told()
             self._draw()
 
     def set_sliders(self, **values: float) -> None:
@@ -165,10 +165,9 @@ class OperatorSession:
         self._not_while_moving()
         with self._lock:
             if self._clicks is not None and self._clicks.back():
-                self._stage = STAGE_FOR[self._clicks.wanted()]
+                self._stage, self._message = STAGE_FOR[self._clicks.wanted()], self._clicks.told()
             else:
-                self._clicks, self._stage = None, Stage.LIVE
-            self._message = ""
+                self._clicks, self._stage, self._message = None, Stage.LIVE, ""
             self._draw()
 
     def confirm(self) -> None:
@@ -254,6 +253,7 @@ class OperatorSession:
                 "stage": self._stage.name.lower(),
                 "instruction": self._stage.value,
                 "message": self._message,
+                "unsure": self._stage is Stage.GRASP and self._clicks is not None and self._clicks.unsure(),
                 "error": self._error or machine.reason,
                 "sliders": {
                     name: getattr(self._settings, name)

@@ -40,6 +40,10 @@ class FrameSource(ABC):
             InputError: There is none, with the reason.
         """
 
+    def close(self) -> None:
+        """Let go what is held; nothing by default."""
+        return
+
 
 class FolderSource(FrameSource):
     """Frames `NAME_color.png` with `NAME_depth.png` of a folder, in the order of their names, again and again."""
@@ -102,6 +106,10 @@ class LiveCamera(FrameSource):
             colour, depth = flipped(colour), flipped(depth)
         checked_frame(colour, depth, self._camera)
         return Frame(colour, depth, self._camera, f"camera {self._index}")
+
+    def close(self) -> None:
+        """Let the camera go."""
+        self._capture.release()
 
 
 def flipped(picture: NDArray) -> NDArray:

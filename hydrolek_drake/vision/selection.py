@@ -14,7 +14,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.vision.configuration import kinect_entries
 from hydrolek_drake.vision.edges import EdgeSettings, dilated, edge_picture
 from hydrolek_drake.vision.surfaces import Pieces, Surfaces, cut_into_pieces
-from hydrolek_drake.vision.wholes import Wholes
+from hydrolek_drake.vision.wholes import Wholes, is_coherent
 
 Mask = NDArray[np.bool_]
 
@@ -83,34 +83,37 @@ class _Outline:
 class Selection:
     """The object under a click, and how far that is certain.
 
-    The same click is tried a little beside, and with every threshold a little lower and higher. What most of these
-    agree on is the object; what some of them find instead are the alternatives.
+    The same click is tried a little beside, and with the thresholds that cut surfaces, and those that join them,
+    lowered and raised (`spread` in `kinect.yaml`). What most of these tries agree on is the object; what some of them
+    find instead are the alternatives.
 
     Attributes:
         mask: The object, shape (h, w).
-        agreement: Share of the tries that find the same outline.
+        agreement: Share of the tries that find the same outline, a refused click counting as another.
         alternatives: Other outlines, the most frequent first; each of shape (h, w).
+        coherent: Whether the object is convex or one surface, as nearly every single thing is.
     """
 
     mask: Mask
     agreement: float
     alternatives: tuple[Mask, ...]
+    coherent: bool
 
     @property
     def unsure(self) -> bool:
-        """Whether too few tries agree."""
-        return bool(self.alternatives) and self.agreement < kinect_entries("selection")["agreement"]
+        """Whether too many tries find something else, or this looks like two things."""
+        return self._disputed or not self.coherent
+
+    @property
+    def _disputed(self) -> bool:
+        return self.agreement < kinect_entries("selection")["agreement"]
 
     @property
     def warning(self) -> str:
         """What an operator should know, in a sentence; empty where it is certain."""
-        if not self.unsure:
-            return ""
-        count = len(self.alternatives)
-        return (
-            f"Unsure of this outline ({100 * self.agreement:.0f} % of the tries agree): check it; another click at "
-            f"the same place shows {'the other' if count == 1 else f'the next of {count} others'}."
-        )
+        if self._disputed:
+            return f"Unsure of this outline ({100 * self.agreement:.0f} % of the tries agree): check it."
+        return "" if self.coherent else "Unsure of this outline (it looks like two things): check it."
 
     def next(self) -> "Selection":
         """With the first alternative as the object; the object so far becomes the last alternative."""
@@ -140,10 +143,12 @@ def select_object(snapshot: Snapshot, pixel: tuple[float, float], fill: Fill = F
     if not snapshot.mask[v, u] and fill is Fill.EDGES:
         raise InputError(_nothing(u, v))
     found = _tries(snapshot, (u, v), fill)
-    return _agreed(_filled(snapshot, (u, v), fill, 1.0, 1.0), found)
+    return _agreed(_filled(snapshot, (u, v), fill, 1.0, 1.0), found, snapshot.surfaces)
 
 
-def _filled(snapshot: Snapshot, pixel: tuple[int, int], fill: Fill, scale: float, leniency: float) -> _Outline:
+def _filled(
+    snapshot: Snapshot, pixel: tuple[int, int], fill: Fill, scale: float, leniency: float
+) -> _Outline:
     """The object around a click with all thresholds for cutting times `scale`, and for joining times `leniency`."""
     if fill is Fill.EDGES:
         mask = fill_between_lines(snapshot.lines(scale), snapshot.mask, pixel)
@@ -171,10 +176,12 @@ def _tries(snapshot: Snapshot, pixel: tuple[int, int], fill: Fill) -> list[_Outl
     values = kinect_entries("selection")
     (u, v), beside = pixel, int(values["beside"])
     height, width = snapshot.mask.shape
-    leniencies = _around_one(values["join_spread"], values["joins"]) if fill is Fill.SURFACES else [1.0]
+    scales = [
+        float(scale) for scale in np.geomspace(1 / values["spread"], values["spread"], int(values["scales"]))
+    ]
     found: list[_Outline | None] = []
-    for scale in _around_one(values["cut_spread"], values["cuts"]):
-        for leniency in leniencies:
+    for scale in scales:
+        for leniency in scales if fill is Fill.SURFACES else [1.0]:
             for right, down in ((0, 0), (beside, 0), (-beside, 0), (0, beside), (0, -beside)):
                 at = (min(max(u + right, 0), width - 1), min(max(v + down, 0), height - 1))
                 try:
@@ -184,11 +191,7 @@ def _tries(snapshot: Snapshot, pixel: tuple[int, int], fill: Fill) -> list[_Outl
     return found
 
 
-def _around_one(spread: float, count: float) -> list[float]:
-    return [float(factor) for factor in np.geomspace(1.0 / spread, spread, int(count))]
-
-
-def _agreed(as_set: _Outline, tries: list[_Outline | None]) -> Selection:
+def _agreed(as_set: _Outline, tries: list[_Outline | None], surfaces: Surfaces) -> Selection:
     """The outline that most tries agree with, and the others."""
     values = kinect_entries("selection")
     counts = Counter(outline.key for outline in tries if outline is not None)
@@ -204,7 +207,9 @@ def _agreed(as_set: _Outline, tries: list[_Outline | None]) -> Selection:
             kinds.append((mask, counts[key]))
     kinds.sort(key=lambda kind: -kind[1])
     first, count = kinds[0]
-    return Selection(first, count / len(tries), tuple(mask for mask, _ in kinds[1:]))
+    return Selection(
+        first, count / len(tries), tuple(mask for mask, _ in kinds[1:]), is_coherent(surfaces, first)
+    )
 
 
 def _overlap(a: Mask, b: Mask) -> float:

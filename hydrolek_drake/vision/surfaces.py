@@ -31,8 +31,8 @@ _PLANES = 3
 class Surfaces:
     """What the depth picture says about objects, before anything is decided.
 
-    Each strength is a quantity over its threshold in `kinect.yaml`, so that 1 decides at the threshold as it stands, and
-    another number at all thresholds that many times as high.
+    Each strength is a quantity over its threshold in `kinect.yaml`, so that 1 decides at the threshold as it stands,
+    and another number at all thresholds that many times as high.
 
     Attributes:
         depth: In m, 0 for no reading or out of reach, median filtered; shape (h, w).

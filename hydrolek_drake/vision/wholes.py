@@ -18,7 +18,9 @@ Mask = NDArray[np.bool_]
 Window = tuple[slice, slice]
 
 _BESIDE = 9  # px across: pieces this near to each other may belong together
-_BEHIND = 41  # px across: a thing hides its neighbours, and the shadow of a thing at 0.8 m on one at 1.3 m some 20 px more
+_BEHIND = (
+    41  # px across: a thing hides its neighbours; its shadow, at 0.8 m on what is at 1.3 m, some 20 px more
+)
 _CLOSED = 4  # px around a region, for closing its gaps
 _FITTED = 400  # points of a piece
 _FEWEST = 30  # points that a quadric is fitted to
@@ -95,7 +97,9 @@ class Wholes:
         """Pieces within so many px across of a piece, and how many pixels of them are."""
         if (piece, size) not in self._near:
             window = self._window({piece}, size // 2 + 1)
-            widened = cv2.dilate(self._within(window, {piece}).astype(np.uint8), np.ones((size, size), np.uint8))
+            widened = cv2.dilate(
+                self._within(window, {piece}).astype(np.uint8), np.ones((size, size), np.uint8)
+            )
             counts = np.bincount(self._numbers[window][widened > 0])
             found = {int(number): int(counts[number]) for number in np.flatnonzero(counts)}
             self._near[piece, size] = {n: count for n, count in found.items() if n not in (0, piece)}
@@ -139,7 +143,9 @@ class Wholes:
             self._apart[key] = apart
         return self._apart[key]
 
-    def _off_one_surface(self, window: Window, members: frozenset[int], other: int, a: Mask, b: Mask) -> float:
+    def _off_one_surface(
+        self, window: Window, members: frozenset[int], other: int, a: Mask, b: Mask
+    ) -> float:
         values = kinect_entries("wholes")
         both = [self._some_points(members), self._some_points({other})]
         if min(len(each) for each in both) < _FEWEST:
@@ -148,9 +154,8 @@ class Wholes:
         apart = receding / (values["receding"] * aside + values["gap"])
         if apart > _FAR_APART:
             return apart
-        noise = values["noise"] * float(np.mean(np.vstack(both)[:, 2])) ** 2
-        alone = max(noise, *(_roughness(each) for each in both))
-        apart = max(apart, _roughness(np.vstack(both)) / (values["rougher"] * alone))
+        together = np.vstack(both)
+        apart = max(apart, _roughness(together) / (values["rougher"] * _noise(together)))
         if apart > _FAR_APART:
             return apart
         filled = _convexity(a | b | _hidden(self._depth[window], a, b))
@@ -171,6 +176,11 @@ class Wholes:
         return points[:: max(1, len(points) // _FITTED)]
 
 
+def _noise(points: Array) -> float:
+    """Noise of the depth where these points are, in m."""
+    return float(kinect_entries("wholes")["noise"] * np.mean(points[:, 2]) ** 2)
+
+
 def _off_one_shape(depth: Floats, a: Mask, b: Mask) -> float:
     """How far two regions side by side are from filling their hull as well together as alone; below 1 they do."""
     values = kinect_entries("wholes")
@@ -178,7 +188,9 @@ def _off_one_shape(depth: Floats, a: Mask, b: Mask) -> float:
     mean = float(np.average([convex_a, convex_b], weights=[a.sum(), b.sum()]))
     wanted = max(mean, min(values["convexity"], max(convex_a, convex_b)))
     rounder, bitten = (a, b) if convex_a >= convex_b else (b, a)
-    return max((wanted - together) / values["less"], -_step(depth, rounder, bitten, _BESIDE) / values["flush"])
+    return max(
+        (wanted - together) / values["less"], -_step(depth, rounder, bitten, _BESIDE) / values["flush"]
+    )
 
 
 def _gap(a: Array, b: Array) -> tuple[float, float]:
@@ -193,10 +205,9 @@ def _gap(a: Array, b: Array) -> tuple[float, float]:
 
 def _hidden(depth: Floats, a: Mask, b: Mask) -> Mask:
     """What of the hull of both has no reading or is nearer than both."""
-    rows, columns = np.nonzero(a | b)
-    hull = cv2.convexHull(np.column_stack([columns, rows]).astype(np.int32))
+    outlines, _ = cv2.findContours((a | b).astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
     filled = np.zeros(depth.shape, np.uint8)
-    cv2.fillConvexPoly(filled, hull, 1)
+    cv2.fillConvexPoly(filled, cv2.convexHull(np.vstack(outlines)), 1)
     nearest = np.percentile(depth[(a | b) & (depth > 0)], 5)
     return filled.astype(bool) & ((depth == 0.0) | (depth < nearest + kinect_entries("wholes")["flush"]))
 
@@ -238,15 +249,29 @@ def _step(depth: Floats, a: Mask, b: Mask, within: int) -> float:
 def _convexity(mask: Mask) -> float:
     """Share of its convex hull that a region fills, holes counted as filled."""
     closed = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((7, 7), np.uint8))
-    outlines, _ = cv2.findContours(closed, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    outlines, _ = cv2.findContours(closed, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
     hull = cv2.contourArea(cv2.convexHull(np.vstack(outlines)))
     return sum(cv2.contourArea(outline) for outline in outlines) / hull if hull > 0.0 else 1.0
+
+
+def is_coherent(surfaces: Surfaces, mask: Mask) -> bool:
+    """Whether an object is one surface or convex in view, as nearly every single thing is: two joined are neither."""
+    values = kinect_entries("wholes")
+    if _convexity(mask) >= values["coherent"]:
+        return True
+    rows, columns = np.nonzero(mask & (surfaces.depth > 0))
+    if len(rows) < _FEWEST:
+        return True
+    step = max(1, len(rows) // _FITTED)
+    rows, columns = rows[::step], columns[::step]
+    points = surfaces.camera.point(np.column_stack([columns, rows]), surfaces.depth[rows, columns])
+    return _roughness(points) <= values["rougher"] * _noise(points)
 
 
 def without_holes(mask: Mask) -> Mask:
     """The mask with what it encloses, but for its outline."""
     closed = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((5, 5), np.uint8))
-    outlines, _ = cv2.findContours(closed, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    outlines, _ = cv2.findContours(closed, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
     filled = np.zeros_like(closed)
     cv2.drawContours(filled, outlines, -1, 1, cv2.FILLED)
     return filled.astype(bool)

@@ -26,7 +26,7 @@ def scene():
     return (
         frame,
         snapshot,
-        select_object(snapshot, tuple(_pixel(pipe.point + np.array([0, 0, 0.1]), frame.camera))),
+        select_object(snapshot, tuple(_pixel(pipe.point + np.array([0, 0, 0.1]), frame.camera))).mask,
     )
 
 

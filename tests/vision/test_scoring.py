@@ -23,7 +23,7 @@ def test_score_is_the_intersection_over_the_union(pipe):
     frame = Frame(colour, depth, recorded_camera(), "cast")
     scores, seconds = score_frame(frame, labels, default_settings(), np.random.default_rng(1), clicks=5)
     assert len(scores) == 1 and scores[0].number == 2
-    assert max(scores[0].middle, scores[0].anywhere) <= 0.55 and seconds > 0
+    assert max(click.overlap for click in scores[0].clicks) <= 0.55 and seconds > 0
 
 
 @pytest.mark.shared_recordings
@@ -38,5 +38,5 @@ def test_one_click_selects_real_objects():
         )
         scores += found
     assert len(scores) == 26
-    assert np.mean([score.middle for score in scores]) > 0.85
-    assert np.mean([score.anywhere for score in scores]) > 0.85
+    assert np.mean([score.middle.overlap for score in scores]) > 0.85
+    assert np.mean([score.mean_anywhere for score in scores]) > 0.85

@@ -22,19 +22,19 @@ def _overlap(a, b):
 @pytest.mark.parametrize("axis", [(0, 1, 0), (1, 0, 0), (1, 1, 0), (0.3, 1, 0.4)])
 def test_a_pipe_before_a_wall_is_selected_by_one_click(pipe, axis, fill):
     frame = pipe([0.0, 0.0, 1.0], axis, 0.05, wall=1.4, noise=0.0015)
-    assert _overlap(select_object(_snapshot(frame), (320, 240), fill), frame[2]) > 0.9
+    assert _overlap(select_object(_snapshot(frame), (320, 240), fill).mask, frame[2]) > 0.9
 
 
 def test_a_pipe_in_the_dark_is_still_selected_by_its_surface(pipe):
     frame = pipe([0.0, 0.0, 1.0], [0, 1, 0], 0.05, wall=1.4, brightness=0.02, noise=0.0015)
-    assert _overlap(select_object(_snapshot(frame), (320, 240)), frame[2]) > 0.9
+    assert _overlap(select_object(_snapshot(frame), (320, 240)).mask, frame[2]) > 0.9
 
 
 def test_the_nearer_of_two_crossing_pipes_is_selected_alone(pipe):
     near, far = pipe([0.0, 0.0, 0.9], [0, 1, 0], 0.04), pipe([0.0, 0.0, 1.2], [1, 0, 0], 0.04)
     depth = np.where(near[2], near[1], far[1])
     colour = np.where(near[2][..., None], near[0], far[0])
-    selected = select_object(_snapshot((colour, depth)), (320, 100))
+    selected = select_object(_snapshot((colour, depth)), (320, 100)).mask
     assert _overlap(selected, near[2]) > 0.9
 
 

@@ -24,7 +24,7 @@ def test_targets_lie_on_the_axis_of_the_pipe(pipe, axis, distance):
     camera = recorded_camera()
     snapshot = take_snapshot(colour, depth, camera, default_settings())
     click = camera.pixel(middle)
-    selected = select_object(snapshot, tuple(click))
+    selected = select_object(snapshot, tuple(click)).mask
     unit = np.array(axis, dtype=float) / np.linalg.norm(axis)
     cut_click = camera.pixel(middle + 0.12 * unit)
     pixels = pixel_targets(snapshot, selected, click, cut_click, camera)
