@@ -134,19 +134,37 @@ def least_height(depth: Any, rays: Any, planes: Any, height: Any) -> None:
 
 
 @njit(cache=True, nogil=True)
-def grow(labels: Any, allowed: Any, reach: int) -> None:
-    """Spread the numbers in `labels` over the allowed pixels around them, at most `reach` pixels far.
+def grow(labels: Any, allowed: Any, smallest: int, reach: int) -> None:
+    """Drop small regions, number the others anew, and spread them over the allowed pixels around them.
 
     Args:
-        labels: Numbers, 0 for none, changed in place; shape (h, w).
+        labels: Numbers of regions, 0 for none, changed in place; shape (h, w).
         allowed: Not 0 where a number may spread to, shape (h, w).
-        reach: In px, counted along rows and columns.
+        smallest: In px; smaller regions are dropped.
+        reach: How far at most, in px, counted along rows and columns.
     """
     height, width = labels.shape
+    most = 0
+    for row in range(height):
+        for column in range(width):
+            most = max(most, labels[row, column])
+    size = np.zeros(most + 1, np.int64)
+    for row in range(height):
+        for column in range(width):
+            size[labels[row, column]] += 1
+    number = np.zeros(most + 1, np.int32)
+    count = 0
+    for label in range(1, most + 1):
+        if size[label] >= smallest:
+            count += 1
+            number[label] = count
     front = np.empty(height * width, np.int64)
     end = 0
     for row in range(height):
         for column in range(width):
+            if labels[row, column] == 0:
+                continue
+            labels[row, column] = number[labels[row, column]]
             if labels[row, column] > 0:
                 front[end] = row * width + column
                 end += 1

@@ -114,7 +114,8 @@ def cut_into_pieces(surfaces: Surfaces, scale: float) -> Pieces:
     )
     core = standing_out & ~crease & ~(surfaces.jump > scale).astype(np.uint8) & 1
     core = cv2.morphologyEx(core, cv2.MORPH_OPEN, square)
-    numbers = _grown(core, standing_out, int(values["smallest"]), values["reach"])
+    _, numbers = cv2.connectedComponents(core, connectivity=4)
+    grow(numbers, standing_out, int(values["smallest"]), int(values["reach"]))
     return Pieces(numbers, standing_out.astype(bool))
 
 
@@ -208,17 +209,3 @@ def _extent(rays: Floats, inverse: Floats, on: NDArray[np.bool_]) -> float:
     points = np.stack([rays[0][on] * depth, rays[1][on] * depth, depth])
     spreads = np.sqrt(np.maximum(0.0, np.linalg.eigvalsh(np.cov(points))))
     return float(spreads[1])
-
-
-def _grown(
-    core: NDArray[np.uint8], standing_out: NDArray[np.uint8], smallest: int, reach: float
-) -> NDArray[np.int32]:
-    """Connected cores, numbered, each grown to the pixels nearest to it."""
-    count, labels, statistics, _ = cv2.connectedComponentsWithStats(core, connectivity=4)
-    keep = statistics[:, cv2.CC_STAT_AREA] >= smallest
-    keep[0] = False
-    numbers = np.zeros(count, np.int32)
-    numbers[keep] = np.arange(1, int(keep.sum()) + 1)
-    pieces = numbers[labels]
-    grow(pieces, standing_out, int(reach))
-    return pieces

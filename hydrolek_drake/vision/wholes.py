@@ -1,13 +1,13 @@
 """From pieces of surface to whole objects: which pieces belong together."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh
 from scipy.ndimage import find_objects
-from scipy.spatial import cKDTree
+from scipy.spatial import ConvexHull, QhullError, cKDTree
 
 from hydrolek_drake.vision.configuration import kinect_entries
 from hydrolek_drake.vision.surfaces import Pieces, Surfaces
@@ -24,19 +24,34 @@ _BEHIND = (
 _CLOSED = 4  # px around a region, for closing its gaps
 _FITTED = 400  # points of a piece
 _FEWEST = 30  # points that a quadric is fitted to
-_FAR_APART = 10.0  # thresholds: farther is not looked at
+_FAR_APART, _SURELY = 3.0, 0.5  # thresholds: what is farther, or nearer, is not looked at more closely
 _BORDER = 15  # nearest pairs of these
-_REGULAR = 1e-12  # of the eigenvalue problem
-_AS_DEVIATION = 1.4826  # of a median of absolute values of a normal distribution
+_NEARLY_ALL = 95  # percent
+_BEST = 20  # percent of a border
+
+
+@dataclass(frozen=True)
+class _Steps:
+    """From points of one region to those of another, where they are nearest to each other in the picture.
+
+    Attributes:
+        aside: How far they are apart in the picture, as slopes of the rays; shape (n,).
+        deeper: By how much the first is deeper, in m; shape (n,).
+        depth: How deep the nearer region is there, in m.
+    """
+
+    aside: Array
+    deeper: Array
+    depth: float
 
 
 class Wholes:
     """The objects that the pieces of one cut make up.
 
-    Two pieces, side by side or on both sides of something nearer, belong together if they are one surface: a quadric
-    (plane, cylinder, ball, two faces of a box ...) fits both as well as each, the depth goes on from one to the other,
-    and they fill their hull but for what is hidden. Side by side they do, too, if they fill their hull as well as each
-    alone, unless the one in front bites into the other: then it stands before it or on it.
+    Two pieces, side by side or on both sides of something nearer, belong together if the depth goes on from one to the
+    other, and they are convex: in space, their points lie on their convex hull; in the picture, they fill it but for
+    what is hidden. Side by side they do, too, if they fill their hull in the picture as well as each alone, such as a
+    cup with its inside, unless the one in front bites into the other: then it stands before it or on it.
 
     How far two pieces are from belonging together is one number, the largest of these quantities over their thresholds
     in `kinect.yaml`: below 1 they do, as the thresholds stand.
@@ -137,29 +152,17 @@ class Wholes:
         if key not in self._apart:
             window = self._window(members | {other}, _CLOSED)
             a, b = self._within(window, members), self._within(window, {other})
-            apart = self._off_one_surface(window, members, other, a, b)
-            if beside and apart > 0.0:
-                apart = min(apart, _off_one_shape(self._depth[window], a, b))
+            both = [self._some_points(members), self._some_points({other})]
+            depth = self._depth[window]
+            apart = np.inf
+            if min(len(each) for each in both) >= _FEWEST:
+                steps = _steps(*both)
+                if beside and (apart := _off_one_shape(depth, a, b)) < _FAR_APART:
+                    apart = max(apart, _off_reaching(both, steps))
+                if apart > _SURELY and (receding := _off_going_on(steps)) < _FAR_APART:
+                    apart = min(apart, max(receding, _off_convex(np.vstack(both), depth, a, b)))
             self._apart[key] = apart
         return self._apart[key]
-
-    def _off_one_surface(
-        self, window: Window, members: frozenset[int], other: int, a: Mask, b: Mask
-    ) -> float:
-        values = kinect_entries("wholes")
-        both = [self._some_points(members), self._some_points({other})]
-        if min(len(each) for each in both) < _FEWEST:
-            return np.inf
-        receding, aside = _gap(*both)
-        apart = receding / (values["receding"] * aside + values["gap"])
-        if apart > _FAR_APART:
-            return apart
-        together = np.vstack(both)
-        apart = max(apart, _roughness(together) / (values["rougher"] * _noise(together)))
-        if apart > _FAR_APART:
-            return apart
-        filled = _convexity(a | b | _hidden(self._depth[window], a, b))
-        return max(apart, (1.0 - filled) / values["unfilled"])
 
     def _some_points(self, members: Iterable[int]) -> Array:
         """Some of the points of pieces, in the camera frame in m, shape (n, 3)."""
@@ -193,14 +196,35 @@ def _off_one_shape(depth: Floats, a: Mask, b: Mask) -> float:
     )
 
 
-def _gap(a: Array, b: Array) -> tuple[float, float]:
-    """How far one recedes from the other where they are nearest, and how far they are apart sideways, in m."""
+def _off_going_on(steps: _Steps) -> float:
+    """How far the depth is from going on from one region to another, where they are nearest; below 1 it does."""
+    values = kinect_entries("wholes")
+    allowed = values["receding"] * np.median(steps.aside) * steps.depth + values["gap"]
+    return float(abs(np.median(steps.deeper)) / allowed)
+
+
+def _off_reaching(regions: list[Array], steps: _Steps) -> float:
+    """How far one region is from reaching the other in depth, for what both are wide together; below 1 it does."""
+    values = kinect_entries("wholes")
+    there_and_back = (steps.deeper, _steps(*regions[::-1]).deeper)
+    step = min(np.percentile(np.abs(deeper), _BEST) for deeper in there_and_back)
+    width = np.sqrt(np.linalg.eigvalsh(np.cov(np.vstack(regions)[:, :2].T))[1])
+    return float(step / (values["receding"] * 2.0 * width + values["gap"]))
+
+
+def _steps(a: Array, b: Array) -> _Steps:
     seen_a, seen_b = (each[:, :2] / each[:, 2:] for each in (a, b))
     distance, index = cKDTree(seen_b).query(seen_a)
-    nearest = np.argsort(distance)[:_BORDER]
-    depth_a, depth_b = np.median(a[nearest, 2]), np.median(b[index[nearest], 2])
-    aside = float(np.median(distance[nearest]) * min(depth_a, depth_b))
-    return float(abs(depth_a - depth_b)), aside
+    nearest = np.argpartition(distance, min(_BORDER, len(distance) - 1))[:_BORDER]
+    depth_a, depth_b = a[nearest, 2], b[index[nearest], 2]
+    return _Steps(distance[nearest], depth_a - depth_b, float(min(np.median(depth_a), np.median(depth_b))))
+
+
+def _off_convex(points: Array, depth: Floats, a: Mask, b: Mask) -> float:
+    """How far two regions are from being convex together, in space and in the picture; below 1 they are."""
+    values = kinect_entries("wholes")
+    unfilled = 1.0 - _convexity(a | b | _hidden(depth, a, b))
+    return max(_hollowness(points) / (values["hollow"] * _noise(points)), unfilled / values["unfilled"])
 
 
 def _hidden(depth: Floats, a: Mask, b: Mask) -> Mask:
@@ -212,28 +236,19 @@ def _hidden(depth: Floats, a: Mask, b: Mask) -> Mask:
     return filled.astype(bool) & ((depth == 0.0) | (depth < nearest + kinect_entries("wholes")["flush"]))
 
 
-def _roughness(points: Array) -> float:
-    """Distance of points from the quadric that fits them best, in m: median, as a standard deviation.
+def _hollowness(points: Array) -> float:
+    """How far nearly all points lie below the side of their convex hull that the camera sees, in m.
 
-    Taubin's fit: the algebraic distance over the mean gradient is least (IEEE PAMI 13, 1991), and the distance is
-    taken to first order.
+    The points of a convex thing lie on their hull, whatever of it is hidden; between two things there is a hollow.
+    Noise lifts the hull by some 3 standard deviations above a surface, and a twentieth of the points lies 1.6 below.
     """
-    centred = points - points.mean(axis=0)
-    size = float(centred.std())
-    x, y, z = (centred / size).T
-    one, none = np.ones_like(x), np.zeros_like(x)
-    terms = np.column_stack([x * x, y * y, z * z, x * y, x * z, y * z, x, y, z, one])
-    slopes = [
-        np.column_stack([2 * x, none, none, y, z, none, one, none, none, none]),
-        np.column_stack([none, 2 * y, none, x, none, z, none, one, none, none]),
-        np.column_stack([none, none, 2 * z, none, x, y, none, none, one, none]),
-    ]
-    scatter, gradient = terms.T @ terms, sum(slope.T @ slope for slope in slopes)
-    tiny = len(x) * np.eye(10)
-    _, vectors = eigh(scatter + _REGULAR * tiny, gradient + 1e3 * _REGULAR * tiny, subset_by_index=[0, 0])
-    steepness = np.sqrt(sum((slope @ vectors[:, 0]) ** 2 for slope in slopes))
-    misses = np.abs(terms @ vectors[:, 0]) / np.maximum(steepness, 1e-3)
-    return float(_AS_DEVIATION * np.median(misses) * size)
+    try:
+        facets = ConvexHull(points).equations  # normals outwards, and minus their distance from the origin
+    except QhullError:  # all in one plane, by the steps of the sensor
+        return 0.0
+    seen = facets[facets[:, 3] > 0.0]
+    below = -(points @ seen[:, :3].T + seen[:, 3]).max(axis=1)
+    return float(np.percentile(below, _NEARLY_ALL))
 
 
 def _step(depth: Floats, a: Mask, b: Mask, within: int) -> float:
@@ -255,7 +270,7 @@ def _convexity(mask: Mask) -> float:
 
 
 def is_coherent(surfaces: Surfaces, mask: Mask) -> bool:
-    """Whether an object is one surface or convex in view, as nearly every single thing is: two joined are neither."""
+    """Whether an object is convex in space or in the picture, as nearly every single thing is."""
     values = kinect_entries("wholes")
     if _convexity(mask) >= values["coherent"]:
         return True
@@ -265,7 +280,7 @@ def is_coherent(surfaces: Surfaces, mask: Mask) -> bool:
     step = max(1, len(rows) // _FITTED)
     rows, columns = rows[::step], columns[::step]
     points = surfaces.camera.point(np.column_stack([columns, rows]), surfaces.depth[rows, columns])
-    return _roughness(points) <= values["rougher"] * _noise(points)
+    return _hollowness(points) <= values["hollow"] * _noise(points)
 
 
 def without_holes(mask: Mask) -> Mask:
