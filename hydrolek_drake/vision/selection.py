@@ -101,17 +101,13 @@ class Selection:
 
     @property
     def unsure(self) -> bool:
-        """Whether too many tries find something else, or this looks like two things."""
-        return self._disputed or not self.coherent
-
-    @property
-    def _disputed(self) -> bool:
-        return self.agreement < kinect_entries("selection")["agreement"]
+        """Whether a try finds something else, or this looks like two things."""
+        return self.agreement < 1.0 or not self.coherent
 
     @property
     def warning(self) -> str:
         """What an operator should know, in a sentence; empty where it is certain."""
-        if self._disputed:
+        if self.agreement < 1.0:
             return f"Unsure of this outline ({100 * self.agreement:.0f} % of the tries agree): check it."
         return "" if self.coherent else "Unsure of this outline (it looks like two things): check it."
 

@@ -18,15 +18,14 @@ Mask = NDArray[np.bool_]
 Window = tuple[slice, slice]
 
 _BESIDE = 9  # px across: pieces this near to each other may belong together
-_BEHIND = (
-    41  # px across: a thing hides its neighbours; its shadow, at 0.8 m on what is at 1.3 m, some 20 px more
-)
+_BEHIND = 61  # px across: a thing hides its neighbours, and its shadow some 25 px more (at 0.75 m, of what is at 1.3 m)
 _CLOSED = 4  # px around a region, for closing its gaps
 _FITTED = 400  # points of a piece
 _FEWEST = 30  # points that a quadric is fitted to
 _FAR_APART, _SURELY = 3.0, 0.5  # thresholds: what is farther, or nearer, is not looked at more closely
 _BORDER = 15  # nearest pairs of these
 _NEARLY_ALL = 95  # percent
+_HARDLY = 0.01  # hollow
 _BEST = 20  # percent of a border
 
 
@@ -50,8 +49,9 @@ class Wholes:
 
     Two pieces, side by side or on both sides of something nearer, belong together if the depth goes on from one to the
     other, and they are convex: in space, their points lie on their convex hull; in the picture, they fill it but for
-    what is hidden. Side by side they do, too, if they fill their hull in the picture as well as each alone, such as a
-    cup with its inside, unless the one in front bites into the other: then it stands before it or on it.
+    what is hidden. Side by side they do, too, if one is hollow, such as the inside of a cup, and they fill their hull
+    in the picture as well as each alone, unless the one in front bites into the other: then it stands before it or in
+    it.
 
     How far two pieces are from belonging together is one number, the largest of these quantities over their thresholds
     in `kinect.yaml`: below 1 they do, as the thresholds stand.
@@ -158,7 +158,8 @@ class Wholes:
             if min(len(each) for each in both) >= _FEWEST:
                 steps = _steps(*both)
                 if beside and (apart := _off_one_shape(depth, a, b)) < _FAR_APART:
-                    apart = max(apart, _off_reaching(both, steps))
+                    hollow = max(_hollow(each) for each in both)
+                    apart = max(apart, _off_reaching(both, steps), 1.0 / max(hollow, _HARDLY))
                 if apart > _SURELY and (receding := _off_going_on(steps)) < _FAR_APART:
                     apart = min(apart, max(receding, _off_convex(np.vstack(both), depth, a, b)))
             self._apart[key] = apart
@@ -177,11 +178,6 @@ class Wholes:
             chosen.append(self._points[number])
         points = np.vstack(chosen)
         return points[:: max(1, len(points) // _FITTED)]
-
-
-def _noise(points: Array) -> float:
-    """Noise of the depth where these points are, in m."""
-    return float(kinect_entries("wholes")["noise"] * np.mean(points[:, 2]) ** 2)
 
 
 def _off_one_shape(depth: Floats, a: Mask, b: Mask) -> float:
@@ -222,9 +218,14 @@ def _steps(a: Array, b: Array) -> _Steps:
 
 def _off_convex(points: Array, depth: Floats, a: Mask, b: Mask) -> float:
     """How far two regions are from being convex together, in space and in the picture; below 1 they are."""
-    values = kinect_entries("wholes")
     unfilled = 1.0 - _convexity(a | b | _hidden(depth, a, b))
-    return max(_hollowness(points) / (values["hollow"] * _noise(points)), unfilled / values["unfilled"])
+    return max(_hollow(points), unfilled / kinect_entries("wholes")["unfilled"])
+
+
+def _hollow(points: Array) -> float:
+    """How hollow a region is, over what noise explains."""
+    values = kinect_entries("wholes")
+    return _hollowness(points) / (values["hollow"] * values["noise"] * float(np.mean(points[:, 2])) ** 2)
 
 
 def _hidden(depth: Floats, a: Mask, b: Mask) -> Mask:
@@ -280,7 +281,7 @@ def is_coherent(surfaces: Surfaces, mask: Mask) -> bool:
     step = max(1, len(rows) // _FITTED)
     rows, columns = rows[::step], columns[::step]
     points = surfaces.camera.point(np.column_stack([columns, rows]), surfaces.depth[rows, columns])
-    return _hollowness(points) <= values["hollow"] * _noise(points)
+    return _hollow(points) <= 1.0
 
 
 def without_holes(mask: Mask) -> Mask:
