@@ -64,6 +64,7 @@ class OperatorSession:
         self._settings, self._fill = default_settings(), Fill.SURFACES
         self._message, self._error = "", ""
         self._pictures = Pictures()
+        self._camera_lost = ""
         self._undertaking = Undertaking(machine, self._lock)
         self._steps: tuple[str, ...] = STEPS
 
@@ -73,14 +74,23 @@ class OperatorSession:
         self._undertaking.close()
 
     def refresh(self) -> None:
-        """Read a live frame for the colour picture. A lost camera is shown, not raised."""
+        """Read a live frame for the colour picture. A lost camera is shown, not raised, and stops the arms once.
+
+        Who resumes then does it without a picture.
+        """
         try:
             frame = self._camera.read()
         except InputError as error:
+            if not self._camera_lost:
+                self._camera_lost = f"{error}. The arms are stopped."
+                self.order(Order.STOP)
             with self._lock:
-                self._error = str(error)
+                self._error = self._camera_lost
             return
         with self._lock:
+            if self._camera_lost and self._error == self._camera_lost:
+                self._error = ""
+            self._camera_lost = ""
             self._pictures.show("live", frame.colour)
 
     def snapshot(self) -> None:

@@ -36,7 +36,7 @@ class RealSenseCamera(FrameSource):
     """
 
     def __init__(self, recording: Path | None = None, *, flipped: bool = False, again: bool = True) -> None:
-        self._library = _librealsense()
+        self._library = librealsense()
         self._recording, self._flipped, self._again = recording, flipped, again
         self._what = "the RealSense camera" if recording is None else f"{recording}"
         self._pipeline: Any = None
@@ -51,11 +51,13 @@ class RealSenseCamera(FrameSource):
         if self._pipeline is None:
             self._start()
         try:
-            frames = self._align.process(self._pipeline.wait_for_frames(self._patience()))
+            frames = self._pipeline.wait_for_frames(self._patience())
+            if not self._aligned:
+                frames = self._align.process(frames)
             colour, depth = frames.get_color_frame(), frames.get_depth_frame()
             if not colour or not depth:
                 raise RuntimeError("a frame without colour or depth")
-            pictures = np.array(colour.get_data()), _in_millimetres(depth)
+            pictures = self._blue_green_red(colour), _in_millimetres(depth)
             camera = _model(colour.profile.as_video_stream_profile().get_intrinsics())
         except RuntimeError as error:
             self.close()
@@ -89,16 +91,30 @@ class RealSenseCamera(FrameSource):
             if self._recording is not None:
                 config.enable_device_from_file(str(self._recording), repeat_playback=self._again)
                 config.enable_stream(library.stream.depth)
-                config.enable_stream(library.stream.color, library.format.bgr8)
+                config.enable_stream(library.stream.color)  # as it was recorded
             else:
                 values = kinect_entries("camera")
                 size = int(values["width"]), int(values["height"])
                 config.enable_stream(library.stream.depth, *size, library.format.z16, _PICTURES_A_SECOND)
                 config.enable_stream(library.stream.color, *size, library.format.bgr8, _PICTURES_A_SECOND)
-            pipeline.start(config)
+            started = pipeline.start(config)
         except RuntimeError as error:
             raise InputError(f"{self._what} cannot be started: {_in_one_line(error)}") from None
         self._pipeline, self._align = pipeline, library.align(library.stream.color)
+        depth, colour = (
+            started.get_stream(stream).as_video_stream_profile()
+            for stream in (library.stream.depth, library.stream.color)
+        )
+        self._aligned = _seen_from_one_place(depth, colour)
+
+    def _blue_green_red(self, colour: Any) -> NDArray[np.uint8]:
+        """A copy of the colour picture, which recordings hold in several forms."""
+        form, picture = colour.profile.format(), np.array(colour.get_data())
+        if form == self._library.format.bgr8:
+            return picture
+        if form == self._library.format.rgb8:
+            return np.ascontiguousarray(picture[:, :, ::-1])
+        raise InputError(f"{self._what} holds colour as {form.name}; record it as rgb8 or bgr8")
 
     def _patience(self) -> int:
         return round(1e3 * kinect_entries("camera")["patience"])
@@ -122,11 +138,18 @@ def _model(intrinsics: Any) -> CameraModel:
     )
 
 
+def _seen_from_one_place(depth: Any, colour: Any) -> bool:
+    """Whether both pictures come from one camera, so that aligning them would only add its roundings."""
+    pose = depth.get_extrinsics_to(colour)
+    still = np.allclose(pose.rotation, np.eye(3).ravel()) and np.allclose(pose.translation, 0.0)
+    return still and _model(depth.get_intrinsics()) == _model(colour.get_intrinsics())
+
+
 def _in_one_line(error: Exception) -> str:
     return " ".join(str(error).split())
 
 
-def _librealsense() -> Any:
+def librealsense() -> Any:
     """The package `pyrealsense2`, which is an optional one.
 
     Raises:
