@@ -10,6 +10,7 @@ from scipy.ndimage import find_objects
 from scipy.spatial import ConvexHull, QhullError, cKDTree
 
 from hydrolek_drake.vision.configuration import kinect_entries
+from hydrolek_drake.vision.surface_kernel import grow
 from hydrolek_drake.vision.surfaces import Pieces, Surfaces
 
 Array = NDArray[np.float64]
@@ -18,7 +19,9 @@ Mask = NDArray[np.bool_]
 Window = tuple[slice, slice]
 
 _BESIDE = 9  # px across: pieces this near to each other may belong together
-_BEHIND = 61  # px across: a thing hides its neighbours, and its shadow some 25 px more (at 0.75 m, of what is at 1.3 m)
+_BEHIND = 41  # px across: a thing hides its neighbours
+_ACROSS = 11  # px across: the same of what has no depth, halves of which belong to those around it
+_SHADED = 30  # px: half of the shadow of what is at 0.6 m on what is at 1.5 m
 _CLOSED = 4  # px around a region, for closing its gaps
 _FITTED = 400  # points of a piece
 _FEWEST = 30  # points that a quadric is fitted to
@@ -47,11 +50,11 @@ class _Steps:
 class Wholes:
     """The objects that the pieces of one cut make up.
 
-    Two pieces, side by side or on both sides of something nearer, belong together if the depth goes on from one to the
-    other, and they are convex: in space, their points lie on their convex hull; in the picture, they fill it but for
-    what is hidden. Side by side they do, too, if one is hollow, such as the inside of a cup, and they fill their hull
-    in the picture as well as each alone, unless the one in front bites into the other: then it stands before it or in
-    it.
+    Two pieces, side by side or on both sides of something nearer or without depth, belong together if the depth goes on
+    from one to the other, and they are convex: in space, their points lie on their convex hull; in the picture, they
+    fill it but for what is hidden. Side by side they do, too, if one is hollow, such as the inside of a cup, and they
+    fill their hull in the picture as well as each alone, unless the one in front bites into the other: then it stands
+    before it or in it.
 
     How far two pieces are from belonging together is one number, the largest of these quantities over their thresholds
     in `kinect.yaml`: below 1 they do, as the thresholds stand.
@@ -64,8 +67,12 @@ class Wholes:
     def __init__(self, surfaces: Surfaces, pieces: Pieces) -> None:
         self._depth, self._surfaces, self._numbers = surfaces.depth, surfaces, pieces.numbers
         self._boxes = find_objects(pieces.numbers)
-        self._near: dict[tuple[int, int], dict[int, int]] = {}
+        self._shaded = pieces.numbers.copy()  # and what has no depth around them, such as their shadows
+        dark = cv2.dilate((surfaces.depth == 0.0).astype(np.uint8), np.ones((_BESIDE, _BESIDE), np.uint8))
+        grow(self._shaded, dark, 0, _SHADED)
+        self._near: dict[tuple[int, int], frozenset[int]] = {}
         self._before: dict[tuple[int, int], bool] = {}
+        self._candidates_of: dict[frozenset[int], list[tuple[int, bool]]] = {}
         self._apart: dict[tuple[frozenset[int], int, bool], float] = {}
         self._points: dict[int, Array] = {}
 
@@ -77,16 +84,17 @@ class Wholes:
             leniency: What the thresholds are multiplied by: above 1 more is joined.
         """
         members = frozenset({piece})
-        tried = set(members)
         while True:
-            for other, beside in self._candidates(members, tried):
-                tried.add(other)
-                if self._apartness(members, other, beside) < leniency:
-                    members |= {other}
-                    tried = set(members)
-                    break
-            else:
+            nearest = min(
+                (
+                    (self._apartness(members, *candidate), candidate[0])
+                    for candidate in self._candidates(members)
+                ),
+                default=(np.inf, 0),
+            )
+            if not nearest[0] < leniency:
                 return members
+            members |= {nearest[1]}
 
     def mask(self, members: frozenset[int]) -> Mask:
         """The outline of an object that consists of these pieces, filled; shape (h, w)."""
@@ -108,16 +116,14 @@ class Wholes:
         numbers = self._numbers[window]
         return np.logical_or.reduce([numbers == number for number in members])
 
-    def _nearby(self, piece: int, size: int) -> dict[int, int]:
-        """Pieces within so many px across of a piece, and how many pixels of them are."""
+    def _nearby(self, piece: int, size: int) -> frozenset[int]:
+        """Other pieces within so many px across of a piece."""
         if (piece, size) not in self._near:
-            window = self._window({piece}, size // 2 + 1)
-            widened = cv2.dilate(
-                self._within(window, {piece}).astype(np.uint8), np.ones((size, size), np.uint8)
-            )
-            counts = np.bincount(self._numbers[window][widened > 0])
-            found = {int(number): int(counts[number]) for number in np.flatnonzero(counts)}
-            self._near[piece, size] = {n: count for n, count in found.items() if n not in (0, piece)}
+            numbers, margin = (self._numbers, 0) if size == _BESIDE else (self._shaded, _SHADED)
+            window = self._window({piece}, size // 2 + 1 + margin)
+            it = (numbers[window] == piece).astype(np.uint8)
+            found = np.unique(numbers[window][cv2.dilate(it, np.ones((size, size), np.uint8)) > 0])
+            self._near[piece, size] = frozenset(found.tolist()) - {0, piece}
         return self._near[piece, size]
 
     def _is_before(self, piece: int, other: int) -> bool:
@@ -125,23 +131,23 @@ class Wholes:
         if (piece, other) not in self._before:
             window = self._window({piece, other}, 1)
             a, b = self._within(window, {other}), self._within(window, {piece})
+            near = _BEHIND + 2 * _SHADED
             self._before[piece, other] = (
-                _step(self._depth[window], a, b, _BEHIND) > kinect_entries("wholes")["flush"]
+                _step(self._depth[window], a, b, near) > kinect_entries("wholes")["flush"]
             )
         return self._before[piece, other]
 
-    def _candidates(self, members: frozenset[int], tried: set[int]) -> list[tuple[int, bool]]:
+    def _candidates(self, members: frozenset[int]) -> list[tuple[int, bool]]:
         """Pieces that may belong to these, and whether they are beside them or beyond something that is nearer."""
-        common: dict[int, int] = {}
-        for member in members:
-            for number, count in self._nearby(member, _BESIDE).items():
-                common[number] = common.get(number, 0) + count
-        beside = [n for n in sorted(common, key=lambda n: -common[n]) if n not in tried]
-        around = {n for member in members for n in self._nearby(member, _BEHIND)} - members
-        before = [n for n in around if any(self._hides(n, member) for member in members)]
-        beyond = dict.fromkeys(m for n in before for m in self._nearby(n, _BEHIND))
-        others = [n for n in beyond if n not in tried and n not in common]
-        return [(n, True) for n in beside] + [(n, False) for n in others]
+        if members not in self._candidates_of:
+            beside = {n for member in members for n in self._nearby(member, _BESIDE)}
+            around = {n for member in members for n in self._nearby(member, _BEHIND)} - members
+            before = [n for n in around if any(self._hides(n, member) for member in members)]
+            beyond = {m for n in before for m in self._nearby(n, _BEHIND)}
+            beyond |= {m for member in members for m in self._nearby(member, _ACROSS)}
+            found = [(n, True) for n in sorted(beside - members)]
+            self._candidates_of[members] = found + [(n, False) for n in sorted(beyond - beside - members)]
+        return self._candidates_of[members]
 
     def _hides(self, piece: int, member: int) -> bool:
         return piece in self._nearby(member, _BEHIND) and self._is_before(piece, member)
