@@ -163,7 +163,10 @@ def _filled(
             f"the click at ({u}, {v}) is between objects; click further inside, or fill up to the lines instead"
         )
     wholes = snapshot.wholes(scale)
-    members = wholes.members(piece, leniency)
+    return _joined(wholes, scale, wholes.members(piece, leniency))
+
+
+def _joined(wholes: Wholes, scale: float, members: frozenset[int]) -> _Outline:
     return _Outline((scale, members), lambda: wholes.mask(members))
 
 
@@ -184,6 +187,10 @@ def _tries(snapshot: Snapshot, pixel: tuple[int, int], fill: Fill) -> list[_Outl
                     found.append(_filled(snapshot, at, fill, scale, leniency))
                 except InputError:
                     found.append(None)
+    if fill is Fill.SURFACES and (piece := _piece_at(snapshot.pieces(1.0).numbers, u, v)):
+        wholes = snapshot.wholes(1.0)
+        for other in wholes.plausible(piece, values["spread"]):
+            found.append(_joined(wholes, 1.0, wholes.members(piece, 1.0, other)))
     return found
 
 

@@ -1,7 +1,6 @@
 """From pieces of surface to whole objects: which pieces belong together."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -22,6 +21,7 @@ _BESIDE = 9  # px across: pieces this near to each other may belong together
 _BEHIND = 41  # px across: a thing hides its neighbours
 _ACROSS = 11  # px across: the same of what has no depth, halves of which belong to those around it
 _SHADED = 30  # px: half of the shadow of what is at 0.6 m on what is at 1.5 m
+_RIM = 5  # px across
 _CLOSED = 4  # px around a region, for closing its gaps
 _FITTED = 400  # points of a piece
 _FEWEST = 30  # points that a quadric is fitted to
@@ -29,22 +29,6 @@ _FAR_APART, _SURELY = 3.0, 0.5  # thresholds: what is farther, or nearer, is not
 _BORDER = 15  # nearest pairs of these
 _NEARLY_ALL = 95  # percent
 _HARDLY = 0.01  # hollow
-_BEST = 20  # percent of a border
-
-
-@dataclass(frozen=True)
-class _Steps:
-    """From points of one region to those of another, where they are nearest to each other in the picture.
-
-    Attributes:
-        aside: How far they are apart in the picture, as slopes of the rays; shape (n,).
-        deeper: By how much the first is deeper, in m; shape (n,).
-        depth: How deep the nearer region is there, in m.
-    """
-
-    aside: Array
-    deeper: Array
-    depth: float
 
 
 class Wholes:
@@ -76,14 +60,15 @@ class Wholes:
         self._apart: dict[tuple[frozenset[int], int, bool], float] = {}
         self._points: dict[int, Array] = {}
 
-    def members(self, piece: int, leniency: float) -> frozenset[int]:
+    def members(self, piece: int, leniency: float, other: int | None = None) -> frozenset[int]:
         """The pieces that make one object with a piece, and itself.
 
         Args:
             piece: Its number.
             leniency: What the thresholds are multiplied by: above 1 more is joined.
+            other: Of another piece that belongs to it, if given.
         """
-        members = frozenset({piece})
+        members = frozenset({piece} if other is None else {piece, other})
         while True:
             nearest = min(
                 (
@@ -95,6 +80,15 @@ class Wholes:
             if not nearest[0] < leniency:
                 return members
             members |= {nearest[1]}
+
+    def plausible(self, piece: int, leniency: float) -> list[int]:
+        """Pieces that may each belong to a piece, by thresholds times `leniency`."""
+        members = frozenset({piece})
+        return [
+            other
+            for other, beside in self._candidates(members)
+            if self._apartness(members, other, beside) < leniency
+        ]
 
     def mask(self, members: frozenset[int]) -> Mask:
         """The outline of an object that consists of these pieces, filled; shape (h, w)."""
@@ -162,11 +156,9 @@ class Wholes:
             depth = self._depth[window]
             apart = np.inf
             if min(len(each) for each in both) >= _FEWEST:
-                steps = _steps(*both)
                 if beside and (apart := _off_one_shape(depth, a, b)) < _FAR_APART:
-                    hollow = max(_hollow(each) for each in both)
-                    apart = max(apart, _off_reaching(both, steps), 1.0 / max(hollow, _HARDLY))
-                if apart > _SURELY and (receding := _off_going_on(steps)) < _FAR_APART:
+                    apart = max(apart, 1.0 / max(_HARDLY, *(_hollow(each) for each in both)))
+                if apart > _SURELY and (receding := _off_going_on(*both)) < _FAR_APART:
                     apart = min(apart, max(receding, _off_convex(np.vstack(both), depth, a, b)))
             self._apart[key] = apart
         return self._apart[key]
@@ -176,14 +168,21 @@ class Wholes:
         chosen = []
         for number in members:
             if number not in self._points:
-                window = self._window({number}, 0)
-                rows, columns = np.nonzero(self._within(window, {number}) & (self._depth[window] > 0))
+                window = self._window({number}, _RIM)
+                within = self._within(window, {number}) & (self._depth[window] > 0)
+                rows, columns = np.nonzero(_without_rim(within))
                 rows, columns = rows + window[0].start, columns + window[1].start
                 pixels = np.column_stack([columns, rows])
                 self._points[number] = self._surfaces.camera.point(pixels, self._depth[rows, columns])
             chosen.append(self._points[number])
         points = np.vstack(chosen)
         return points[:: max(1, len(points) // _FITTED)]
+
+
+def _without_rim(mask: Mask) -> Mask:
+    """A region without its rim, where the depth may be half of what is beside it; the region if nothing else is left."""
+    inner = cv2.erode(mask.astype(np.uint8), np.ones((_RIM, _RIM), np.uint8)).astype(bool)
+    return inner if np.count_nonzero(inner) >= _FEWEST else mask
 
 
 def _off_one_shape(depth: Floats, a: Mask, b: Mask) -> float:
@@ -198,40 +197,32 @@ def _off_one_shape(depth: Floats, a: Mask, b: Mask) -> float:
     )
 
 
-def _off_going_on(steps: _Steps) -> float:
+def _off_going_on(a: Array, b: Array) -> float:
     """How far the depth is from going on from one region to another, where they are nearest; below 1 it does."""
     values = kinect_entries("wholes")
-    allowed = values["receding"] * np.median(steps.aside) * steps.depth + values["gap"]
-    return float(abs(np.median(steps.deeper)) / allowed)
-
-
-def _off_reaching(regions: list[Array], steps: _Steps) -> float:
-    """How far one region is from reaching the other in depth, for what both are wide together; below 1 it does."""
-    values = kinect_entries("wholes")
-    there_and_back = (steps.deeper, _steps(*regions[::-1]).deeper)
-    step = min(np.percentile(np.abs(deeper), _BEST) for deeper in there_and_back)
-    width = np.sqrt(np.linalg.eigvalsh(np.cov(np.vstack(regions)[:, :2].T))[1])
-    return float(step / (values["receding"] * 2.0 * width + values["gap"]))
-
-
-def _steps(a: Array, b: Array) -> _Steps:
     seen_a, seen_b = (each[:, :2] / each[:, 2:] for each in (a, b))
     distance, index = cKDTree(seen_b).query(seen_a)
     nearest = np.argpartition(distance, min(_BORDER, len(distance) - 1))[:_BORDER]
-    depth_a, depth_b = a[nearest, 2], b[index[nearest], 2]
-    return _Steps(distance[nearest], depth_a - depth_b, float(min(np.median(depth_a), np.median(depth_b))))
+    depth_a, depth_b = np.median(a[nearest, 2]), np.median(b[index[nearest], 2])
+    aside = np.median(distance[nearest]) * min(depth_a, depth_b)
+    return float(abs(depth_a - depth_b) / (values["receding"] * aside + values["gap"]))
 
 
 def _off_convex(points: Array, depth: Floats, a: Mask, b: Mask) -> float:
-    """How far two regions are from being convex together, in space and in the picture; below 1 they are."""
-    unfilled = 1.0 - _convexity(a | b | _hidden(depth, a, b))
-    return max(_hollow(points), unfilled / kinect_entries("wholes")["unfilled"])
+    """How far two regions are from being seen to be convex together, in space and in the picture; below 1 they are."""
+    values = kinect_entries("wholes")
+    hidden = _hidden(depth, a, b)
+    all_of_it = a | b | hidden
+    unseen = np.count_nonzero(hidden & ~a & ~b) / np.count_nonzero(all_of_it)
+    unfilled = 1.0 - _convexity(all_of_it)
+    return max(_hollow(points), unfilled / values["unfilled"], unseen / values["unseen"])
 
 
 def _hollow(points: Array) -> float:
-    """How hollow a region is, over what noise explains."""
+    """How hollow a region is: 0 where it is no more than noise makes it, 1 at the threshold."""
     values = kinect_entries("wholes")
-    return _hollowness(points) / (values["hollow"] * values["noise"] * float(np.mean(points[:, 2])) ** 2)
+    over_noise = _hollowness(points) / (values["noise"] * float(np.mean(points[:, 2])) ** 2)
+    return (over_noise - values["flat"]) / (values["hollow"] - values["flat"])
 
 
 def _hidden(depth: Floats, a: Mask, b: Mask) -> Mask:
@@ -281,7 +272,7 @@ def is_coherent(surfaces: Surfaces, mask: Mask) -> bool:
     values = kinect_entries("wholes")
     if _convexity(mask) >= values["coherent"]:
         return True
-    rows, columns = np.nonzero(mask & (surfaces.depth > 0))
+    rows, columns = np.nonzero(_without_rim(mask & (surfaces.depth > 0)))
     if len(rows) < _FEWEST:
         return True
     step = max(1, len(rows) // _FITTED)
