@@ -23,7 +23,7 @@ _ACROSS = 11  # px across: the same of what has no depth, halves of which belong
 _SHADED = 30  # px: half of the shadow of what is at 0.6 m on what is at 1.5 m
 _RIM = 5  # px across
 _CLOSED = 4  # px around a region, for closing its gaps
-_FITTED = 400  # points of a piece
+_FITTED = 200  # points of a piece
 _FEWEST = 30  # points that a quadric is fitted to
 _FAR_APART, _SURELY = 3.0, 0.5  # thresholds: what is farther, or nearer, is not looked at more closely
 _BORDER = 15  # nearest pairs of these
@@ -116,7 +116,8 @@ class Wholes:
             numbers, margin = (self._numbers, 0) if size == _BESIDE else (self._shaded, _SHADED)
             window = self._window({piece}, size // 2 + 1 + margin)
             it = (numbers[window] == piece).astype(np.uint8)
-            found = np.unique(numbers[window][cv2.dilate(it, np.ones((size, size), np.uint8)) > 0])
+            around = cv2.dilate(it, np.ones((size, size), np.uint8)) > 0
+            found = np.flatnonzero(np.bincount(numbers[window][around]))
             self._near[piece, size] = frozenset(found.tolist()) - {0, piece}
         return self._near[piece, size]
 
@@ -180,7 +181,7 @@ class Wholes:
 
 
 def _without_rim(mask: Mask) -> Mask:
-    """A region without its rim, where the depth may be half of what is beside it; the region if nothing else is left."""
+    """A region without its rim, where the depth may be half of what is beside it; all of it if nothing else is left."""
     inner = cv2.erode(mask.astype(np.uint8), np.ones((_RIM, _RIM), np.uint8)).astype(bool)
     return inner if np.count_nonzero(inner) >= _FEWEST else mask
 
