@@ -23,7 +23,7 @@ _MILLIMETRE = 1e-3  # m
 class RealSenseCamera(FrameSource):
     """A RealSense camera with the depth aligned onto the colour.
 
-    The first one that answers, or a recording of one: librealsense plays it through the same pipeline. A lens's
+    The first one that answers, or a recording of one, which librealsense plays through the same pipeline. A lens's
     distortion is left in; the factory calibration of most models has none for the colour picture.
 
     Args:
@@ -51,7 +51,14 @@ class RealSenseCamera(FrameSource):
         if self._pipeline is None:
             self._start()
         try:
-            frames = self._pipeline.wait_for_frames(self._patience())
+            try:
+                frames = self._pipeline.wait_for_frames(self._patience())
+            except RuntimeError:
+                if self._recording is None or not self._again:
+                    raise
+                self.close()  # it has ended: from its beginning
+                self._start()
+                frames = self._pipeline.wait_for_frames(self._patience())
             if not self._aligned:
                 frames = self._align.process(frames)
             colour, depth = frames.get_color_frame(), frames.get_depth_frame()
@@ -61,11 +68,8 @@ class RealSenseCamera(FrameSource):
             camera = _model(colour.profile.as_video_stream_profile().get_intrinsics())
         except RuntimeError as error:
             self.close()
-            if self._recording is not None:
-                raise InputError(f"{self._what} gives no more frames ({error}); it has ended") from None
-            raise InputError(
-                f"{self._what} gives no more frames ({error}); check its cable and power"
-            ) from None
+            advice = "check its cable and power" if self._recording is None else "it has ended"
+            raise InputError(f"{self._what} gives no more frames ({_in_one_line(error)}); {advice}") from None
         if self._flipped:
             pictures = flipped(pictures[0]), flipped(pictures[1])
         checked_frame(*pictures, camera)
@@ -89,7 +93,7 @@ class RealSenseCamera(FrameSource):
         config, pipeline = library.config(), library.pipeline()
         try:
             if self._recording is not None:
-                config.enable_device_from_file(str(self._recording), repeat_playback=self._again)
+                config.enable_device_from_file(str(self._recording), repeat_playback=False)
                 config.enable_stream(library.stream.depth)
                 config.enable_stream(library.stream.color)  # as it was recorded
             else:
@@ -97,6 +101,10 @@ class RealSenseCamera(FrameSource):
                 size = int(values["width"]), int(values["height"])
                 config.enable_stream(library.stream.depth, *size, library.format.z16, _PICTURES_A_SECOND)
                 config.enable_stream(library.stream.color, *size, library.format.bgr8, _PICTURES_A_SECOND)
+            if self._recording is not None:  # frame by frame, however slowly it is read
+                config.resolve(library.pipeline_wrapper(pipeline)).get_device().as_playback().set_real_time(
+                    False
+                )
             started = pipeline.start(config)
         except RuntimeError as error:
             raise InputError(f"{self._what} cannot be started: {_in_one_line(error)}") from None
