@@ -30,3 +30,23 @@ def cast_pipe(point, axis, radius, *, wall=None, brightness=1.0, noise=0.0, seed
 @pytest.fixture
 def pipe():
     return cast_pipe
+
+
+def cast_crossing(shift):
+    """A pipe from left to right beyond a nearer one that stands; its right half set back by `shift` m.
+
+    Returns:
+        Colour, depth (mm), and which pixels are the left half's and the right half's.
+    """
+    left = cast_pipe([0.0, 0.0, 1.2], [1, 0, 0], 0.05, wall=1.6, noise=0.0015, seed=0)
+    right = cast_pipe([0.0, 0.0, 1.2 + shift], [1, 0, 0], 0.05, wall=1.6, noise=0.0015, seed=1)
+    near = cast_pipe([0.0, 0.0, 0.8], [0, 1, 0], 0.04, noise=0.0015, seed=2)
+    on_left = np.broadcast_to(np.arange(640) < 320, near[2].shape)
+    depth = np.where(near[2], near[1], np.where(on_left, left[1], right[1]))
+    colour = np.where(near[2][..., None], near[0], np.where(on_left[..., None], left[0], right[0]))
+    return colour, depth, left[2] & on_left & ~near[2], right[2] & ~on_left & ~near[2]
+
+
+@pytest.fixture
+def crossing():
+    return cast_crossing

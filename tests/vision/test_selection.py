@@ -38,6 +38,43 @@ def test_the_nearer_of_two_crossing_pipes_is_selected_alone(pipe):
     assert _overlap(selected, near[2]) > 0.9
 
 
+def test_what_goes_on_beyond_a_nearer_pipe_is_one_object_and_sure(crossing):
+    colour, depth, left, right = crossing(0.0)
+    for u in (100, 540):
+        selection = select_object(_snapshot((colour, depth)), (u, 240))
+        assert _overlap(selection.mask, left | right) > 0.9
+        assert not selection.unsure and selection.warning == ""
+
+
+def test_what_stands_a_hand_farther_beyond_a_nearer_pipe_is_another_object_and_sure(crossing):
+    colour, depth, left, right = crossing(0.15)
+    for u, half in ((100, left), (540, right)):
+        selection = select_object(_snapshot((colour, depth)), (u, 240))
+        assert _overlap(selection.mask, half) > 0.9
+        assert not selection.unsure
+
+
+def test_where_it_is_unsure_it_says_so_and_offers_the_other(crossing):
+    """Set back by 10 mm, twice what a Kinect's depth is off there, it may be one pipe or two."""
+    colour, depth, left, right = crossing(0.01)
+    selection = select_object(_snapshot((colour, depth)), (100, 240))
+    assert selection.unsure and selection.agreement < 1.0
+    assert f"{100 * selection.agreement:.0f} % of the tries agree" in selection.warning
+    both = [selection, selection.next()]
+    overlaps = sorted(_overlap(each.mask, left) for each in both)
+    assert overlaps[0] < 0.6 and overlaps[1] > 0.9
+    assert max(_overlap(each.mask, left | right) for each in both) > 0.9
+    again = both[1].next()
+    np.testing.assert_array_equal(again.mask, selection.mask)
+
+
+def test_the_next_of_a_sure_object_is_itself(pipe):
+    selection = select_object(
+        _snapshot(pipe([0.0, 0.0, 1.0], [0, 1, 0], 0.05, wall=1.4, noise=0.0015)), (320, 240)
+    )
+    assert not selection.unsure and selection.next() is selection
+
+
 def test_fill_stops_at_lines_and_leaves_them_out():
     edges = np.zeros((50, 50), np.uint8)
     edges[10, 10:41] = edges[40, 10:41] = edges[10:41, 10] = edges[10:41, 40] = 255
