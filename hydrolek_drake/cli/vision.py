@@ -70,8 +70,9 @@ def vision(
     if click is not None:
         selection = select_object(snapshot, click, Fill(fill))
         if other > len(selection.alternatives):
+            count = len(selection.alternatives)
             raise InputError(
-                f"vision: --other {other}, but this click has {len(selection.alternatives)} other outlines"
+                f"vision: --other {other}, but this click has {count} other outline{'' if count == 1 else 's'}"
             )
         for _ in range(other):
             selection = selection.next()

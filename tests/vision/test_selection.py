@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from casting import cast_crossing
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.vision.camera import recorded_camera
@@ -38,25 +39,25 @@ def test_the_nearer_of_two_crossing_pipes_is_selected_alone(pipe):
     assert _overlap(selected, near[2]) > 0.9
 
 
-def test_what_goes_on_beyond_a_nearer_pipe_is_one_object_and_sure(crossing):
-    colour, depth, left, right = crossing(0.0)
+def test_what_goes_on_beyond_a_nearer_pipe_is_one_object_and_sure():
+    colour, depth, left, right = cast_crossing(0.0)
     for u in (100, 540):
         selection = select_object(_snapshot((colour, depth)), (u, 240))
         assert _overlap(selection.mask, left | right) > 0.9
         assert not selection.unsure and selection.warning == ""
 
 
-def test_what_stands_a_hand_farther_beyond_a_nearer_pipe_is_another_object_and_sure(crossing):
-    colour, depth, left, right = crossing(0.15)
+def test_what_stands_a_hand_farther_beyond_a_nearer_pipe_is_another_object_and_sure():
+    colour, depth, left, right = cast_crossing(0.15)
     for u, half in ((100, left), (540, right)):
         selection = select_object(_snapshot((colour, depth)), (u, 240))
         assert _overlap(selection.mask, half) > 0.9
         assert not selection.unsure
 
 
-def test_where_it_is_unsure_it_says_so_and_offers_the_other(crossing):
+def test_where_it_is_unsure_it_says_so_and_offers_the_other():
     """Set back by 10 mm, twice what a Kinect's depth is off there, it may be one pipe or two."""
-    colour, depth, left, right = crossing(0.01)
+    colour, depth, left, right = cast_crossing(0.01)
     selection = select_object(_snapshot((colour, depth)), (100, 240))
     assert selection.unsure and selection.agreement < 1.0
     assert f"{100 * selection.agreement:.0f} % of the tries agree" in selection.warning
