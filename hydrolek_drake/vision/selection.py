@@ -216,7 +216,7 @@ def _agreed(as_set: _Outline, tries: list[_Outline | None], surfaces: Surfaces) 
 
 
 def _overlap(a: Mask, b: Mask) -> float:
-    return float(np.count_nonzero(a & b) / max(1, np.count_nonzero(a | b)))
+    return int(np.count_nonzero(a & b)) / max(1, int(np.count_nonzero(a | b)))
 
 
 def _nothing(u: int, v: int) -> str:

@@ -163,7 +163,8 @@ def _tin(values: dict[str, Any], generator: np.random.Generator) -> list[_Thing]
 
 
 def _box(values: dict[str, Any], generator: np.random.Generator) -> list[_Thing]:
-    size = generator.uniform(*values["box_size"], 3)
+    smallest, largest = values["box_size"]
+    size = generator.uniform(smallest, largest, 3)
     turn = RotationMatrix.MakeZRotation(generator.uniform(0.0, np.pi))
     pose = RigidTransform(turn, [0.0, 0.0, size[2] / 2])
     return [_Thing("box", Box(*size), pose, 0.5 * float(np.hypot(*size[:2])))]

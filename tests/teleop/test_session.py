@@ -1,12 +1,15 @@
 """The operator's work without a browser: clicks, corrections, refusals, the whole task, release."""
 
+import threading
 import time
 
 import cv2
 import numpy as np
 import pytest
+from casting import cast_crossing
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.teleop import camera_thread
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.sequencer import Order
 from hydrolek_drake.teleop.session import OperatorSession
@@ -171,4 +174,115 @@ def test_depth_of_holes_and_a_lost_camera_are_told(machine):
     assert "cable" in session.state()["error"]
     with pytest.raises(InputError, match="cable"):
         session.snapshot()
+    session.close()
+
+
+class _Losable(FrameSource):
+    """Gives frames of a table, until it is lost or mute."""
+
+    def __init__(self):
+        self.reason, self.may_answer = "", threading.Event()
+        self.may_answer.set()
+
+    def read(self):
+        self.may_answer.wait()
+        if self.reason:
+            raise InputError(self.reason)
+        empty = np.zeros((480, 640, 3), np.uint8)
+        return Frame(empty, np.full((480, 640), 1200, np.uint16), recorded_camera(), "losable")
+
+
+def _moving_by_hand(session):
+    session.move_by_hand(deflection=[30.0, *[0.0] * 13])
+    return session.state()["valves_open"]
+
+
+def test_a_lost_camera_stops_what_moves_once_and_is_told_until_it_is_back(machine):
+    camera = _Losable()
+    session = OperatorSession(lambda: camera, machine, seed=1)
+    session.refresh()
+    assert _moving_by_hand(session)
+    camera.reason = "the camera gives no more frames; check its cable and power"
+    session.refresh()
+    assert not session.state()["valves_open"]
+    assert "cable" in session.state()["error"] and "arms are stopped" in session.state()["error"]
+    assert not _moving_by_hand(session)  # the hand must have let go first
+    session.let_go()
+    session.refresh()  # still lost: who moves them now does so without a picture
+    assert _moving_by_hand(session)
+    camera.reason = ""
+    session.refresh()
+    assert session.state()["error"] == ""
+    session.close()
+
+
+def test_a_camera_lost_on_the_way_stops_the_task_which_may_be_resumed(machine):
+    lost = threading.Event()
+
+    class Kinect(SimulatedKinect):
+        def read(self):
+            if lost.is_set():
+                raise InputError("camera 0 gives no more frames; check its cable and power")
+            return super().read()
+
+    session = OperatorSession(
+        lambda: Kinect(make_pipe(), np.random.default_rng(1)), machine, seed=1, stand=as_machine_stands
+    )
+    _click_all(session)
+    session.confirm()
+    _until(lambda: session.state()["mode"] == "running")
+    lost.set()
+    session.refresh()
+    _until(lambda: session.state()["mode"] == "stopped")
+    where = machine.state().position.copy()
+    time.sleep(0.2)
+    np.testing.assert_allclose(machine.state().position, where, atol=np.radians(1.0))
+    assert "cable" in session.state()["error"] and session.state()["stage"] == "moving"
+    lost.clear()
+    session.refresh()
+    assert session.state()["error"] == ""
+    session.order(Order.RESUME)
+    _until(lambda: session.state()["stage"] == "live")
+    assert session.state()["mode"] == "done"
+    session.close()
+
+
+def test_a_mute_camera_counts_as_lost_and_does_not_hold_the_session(machine, monkeypatch):
+    monkeypatch.setattr(camera_thread, "teleop_entries", lambda part: {"mute": 0.2})
+    camera = _Losable()
+    session = OperatorSession(lambda: camera, machine, seed=1)
+    session.refresh()
+    assert _moving_by_hand(session)
+    camera.may_answer.clear()
+    session.refresh()
+    assert not session.state()["valves_open"] and "has not answered for 0.2 s" in session.state()["error"]
+    with pytest.raises(InputError, match="has not answered"):
+        session.snapshot()
+    camera.may_answer.set()
+    _until(lambda: session.refresh() or session.state()["error"] == "")
+    session.snapshot()
+    session.close()
+
+
+def test_an_unsure_object_is_shown_as_such_until_the_grasp(machine):
+    colour, depth, _, _ = cast_crossing(0.01)
+    frame = Frame(colour, depth, recorded_camera(), "cast")
+
+    class Crossing(FrameSource):
+        def read(self):
+            return frame
+
+    session = OperatorSession(Crossing, machine, seed=1)
+    session.snapshot()
+    session.click(100, 240)
+    first = session.picture("colour")
+    assert session.state()["unsure"] and "Unsure of this outline" in session.state()["message"]
+    session.click(100, 240)
+    assert session.state()["stage"] == "grasp" and session.state()["unsure"]
+    assert session.picture("colour") != first
+    session.click(160, 240)
+    assert session.state()["stage"] == "cut" and not session.state()["unsure"]
+    assert session.state()["message"] == ""
+    session.back()
+    assert session.state()["unsure"] and session.state()["message"] != ""
     session.close()
