@@ -2,10 +2,13 @@
 
 import numpy as np
 import pytest
-from four_clicks import click_picture, click_the_pipe
+from casting import cast_crossing
+from four_clicks import click_picture, click_the_pipe, says
 
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.sequencer import Mode
+from hydrolek_drake.vision.camera import recorded_camera
+from hydrolek_drake.vision.frames import Frame, FrameSource
 from hydrolek_drake.workcell.pipe import make_pipe
 from hydrolek_drake.workcell.scene import home_posture
 from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
@@ -89,3 +92,30 @@ def test_before_the_console_answers_only_stop_can_be_pressed_and_it_is_not_forgo
     page.click("#stop")
     while not any('"stop"' in message for message in heard):
         page.wait_for_timeout(50)
+
+
+def test_an_unsure_object_is_told_in_the_browser_and_a_second_click_shows_the_other(browser, served_console):
+    colour, depth, _, _ = cast_crossing(0.01)
+
+    class Crossing(FrameSource):
+        def read(self):
+            return Frame(colour, depth, recorded_camera(), "cast")
+
+    served = served_console(lambda: Machine(home_posture()), Crossing)
+    try:
+        page = browser.new_page()
+        page.goto(served.address)
+        page.click("#snapshot")
+        click_picture(page, "colour", 100, 240)
+        page.wait_for_selector("#note.unsure:has-text('Unsure of this outline')")
+        shown = page.get_attribute("#edges img", "src")
+        click_picture(page, "edges", 100, 240)
+        page.wait_for_function(
+            "shown => document.querySelector('#edges img').src !== shown", arg=shown, polling=50
+        )
+        assert "grasp it" in page.inner_text("#instruction")
+        click_picture(page, "colour", 160, 240)
+        says(page, "cut it")
+        page.wait_for_function("() => document.querySelector('#note.unsure') === null")
+    finally:
+        served.end()
