@@ -138,8 +138,8 @@ def select_object(snapshot: Snapshot, pixel: tuple[float, float], fill: Fill = F
         )
     if not snapshot.mask[v, u] and fill is Fill.EDGES:
         raise InputError(_nothing(u, v))
-    found = _tries(snapshot, (u, v), fill)
-    return _agreed(_filled(snapshot, (u, v), fill, 1.0, 1.0), found, snapshot.surfaces)
+    as_set = _filled(snapshot, (u, v), fill, 1.0, 1.0)
+    return _agreed(as_set, _tries(snapshot, (u, v), fill), snapshot.surfaces)
 
 
 def _filled(

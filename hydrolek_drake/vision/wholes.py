@@ -21,14 +21,14 @@ _BESIDE = 9  # px across: pieces this near to each other may belong together
 _BEHIND = 41  # px across: a thing hides its neighbours
 _ACROSS = 11  # px across: the same of what has no depth, halves of which belong to those around it
 _SHADED = 30  # px: half of the shadow of what is at 0.6 m on what is at 1.5 m
-_RIM = 5  # px across
+_RIM = 5  # px across, of what is left out at the edge of a piece
 _CLOSED = 4  # px around a region, for closing its gaps
 _FITTED = 200  # points of a piece
-_FEWEST = 30  # points that a quadric is fitted to
+_FEWEST = 30  # points of a piece that is judged
 _FAR_APART, _SURELY = 3.0, 0.5  # thresholds: what is farther, or nearer, is not looked at more closely
 _BORDER = 15  # nearest pairs of these
 _NEARLY_ALL = 95  # percent
-_HARDLY = 0.01  # hollow
+_HARDLY = 0.01  # hollow: less counts as this
 
 
 class Wholes:
