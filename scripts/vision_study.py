@@ -37,9 +37,11 @@ DISTANCES = (1.0, 1.2, 1.4)  # m from the camera
 SMALLEST = 100  # px of a thing on a rendered table that have a depth within reach, or it does not count
 
 
-def summary(scores: list[ObjectScore]) -> dict:
+def summary(frames: list[list[ObjectScore]]) -> dict:
     """Of all clicks: how good, how often unsure, and whether one that is wrong says so."""
+    scores = [score for frame in frames for score in frame]
     clicks = [click for score in scores for click in score.clicks]
+    alone = [1e3 * frame[0].middle.seconds for frame in frames]
     wrong = [click for click in clicks if click.overlap < 0.5 and not click.refused]
     first = [1e3 * score.middle.seconds for score in scores]
     return {
@@ -55,6 +57,8 @@ def summary(scores: list[ObjectScore]) -> dict:
         "below_half_but_offered": sum(click.best >= 0.5 for click in wrong),
         "warned": float(np.mean([click.unsure for click in clicks])),
         "warned_above_0.8": float(np.mean([click.unsure and click.overlap > 0.8 for click in clicks])),
+        "first_click_in_frame_processor_ms_median": float(np.median(alone)),
+        "first_click_in_frame_processor_ms_90_percent": float(np.percentile(alone, 90)),
         "first_click_processor_ms_median": float(np.median(first)),
         "first_click_processor_ms_90_percent": float(np.percentile(first, 90)),
     }
@@ -69,7 +73,7 @@ def score_recorded(folder: Path, seed: int) -> dict:
             labels = np.where(labels < 20, 0, labels).astype(np.uint8)  # 1 is the table
             found, _ = score_frame(source.named(name), labels, default_settings(), generator, fill=fill)
             _, seconds = score_frame(source.named(name), labels, default_settings(), generator, clicks=1)
-            scores += found
+            scores.append(found)
             times.append(seconds)
         result[fill.value] = summary(scores) | {
             "frame_processor_ms_mean": 1e3 * float(np.mean(times)),
@@ -86,7 +90,7 @@ def score_clutter(first: int, last: int) -> dict:
         shown = cluttered_frame(generator)
         labels = np.where(reach_mask(shown.frame.depth, default_settings()), shown.labels, 0).astype(np.uint8)
         found, _ = score_frame(shown.frame, labels, default_settings(), generator, clicks=3, least=SMALLEST)
-        scores += found
+        scores.append(found)
         for score in found:
             for click in score.clicks:
                 if click.overlap < 0.5 and not click.unsure:

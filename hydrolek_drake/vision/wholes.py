@@ -18,14 +18,15 @@ Mask = NDArray[np.bool_]
 Window = tuple[slice, slice]
 
 _BESIDE = 9  # px across: pieces this near to each other may belong together
-_BEHIND = 41  # px across: a thing hides its neighbours
-_ACROSS = 11  # px across: the same of what has no depth, halves of which belong to those around it
-_SHADED = 30  # px: half of the shadow of what is at 0.6 m on what is at 1.5 m
+_STRIDE = 2  # px: what is behind something is looked for at half resolution; the following are of that
+_BEHIND = 21  # px across: a thing hides its neighbours
+_ACROSS = 5  # px across: the same of what has no depth, halves of which belong to those around it
+_SHADED = 15  # px: half of the shadow of what is at 0.6 m on what is at 1.5 m
 _RIM = 5  # px across, of what is left out at the edge of a piece
 _CLOSED = 4  # px around a region, for closing its gaps
 _FITTED = 200  # points of a piece
 _FEWEST = 30  # points of a piece that is judged
-_FAR_APART, _SURELY = 3.0, 0.5  # thresholds: what is farther, or nearer, is not looked at more closely
+_FAR_APART, _SURELY = 2.0, 0.5  # thresholds: what is farther, or nearer, is not looked at more closely
 _BORDER = 15  # nearest pairs of these
 _NEARLY_ALL = 95  # percent
 _HARDLY = 0.01  # hollow: less counts as this
@@ -51,9 +52,10 @@ class Wholes:
     def __init__(self, surfaces: Surfaces, pieces: Pieces) -> None:
         self._depth, self._surfaces, self._numbers = surfaces.depth, surfaces, pieces.numbers
         self._boxes = find_objects(pieces.numbers)
-        self._shaded = pieces.numbers.copy()  # and what has no depth around them, such as their shadows
-        dark = cv2.dilate((surfaces.depth == 0.0).astype(np.uint8), np.ones((_BESIDE, _BESIDE), np.uint8))
-        grow(self._shaded, dark, 0, _SHADED)
+        self._coarse = np.ascontiguousarray(pieces.numbers[::_STRIDE, ::_STRIDE])
+        self._shaded = self._coarse.copy()  # and what has no depth around them, such as their shadows
+        no_depth = (surfaces.depth[::_STRIDE, ::_STRIDE] == 0.0).astype(np.uint8)
+        grow(self._shaded, cv2.dilate(no_depth, np.ones((5, 5), np.uint8)), 0, _SHADED)
         self._near: dict[tuple[int, int], frozenset[int]] = {}
         self._before: dict[tuple[int, int], bool] = {}
         self._candidates_of: dict[frozenset[int], list[tuple[int, bool]]] = {}
@@ -106,6 +108,14 @@ class Wholes:
             edges.append(slice(max(0, first - margin), min(end, last + margin)))
         return edges[0], edges[1]
 
+    def _coarse_window(self, members: Iterable[int], margin: int) -> Window:
+        """The same at half resolution."""
+        rows, columns = (
+            slice(each.start // _STRIDE, -(-each.stop // _STRIDE))
+            for each in self._window(members, _STRIDE * margin)
+        )
+        return rows, columns
+
     def _within(self, window: Window, members: Iterable[int]) -> Mask:
         numbers = self._numbers[window]
         return np.logical_or.reduce([numbers == number for number in members])
@@ -113,23 +123,23 @@ class Wholes:
     def _nearby(self, piece: int, size: int) -> frozenset[int]:
         """Other pieces within so many px across of a piece."""
         if (piece, size) not in self._near:
-            numbers, margin = (self._numbers, 0) if size == _BESIDE else (self._shaded, _SHADED)
-            window = self._window({piece}, size // 2 + 1 + margin)
-            it = (numbers[window] == piece).astype(np.uint8)
+            if size == _BESIDE:
+                numbers = self._numbers[self._window({piece}, size // 2 + 1)]
+            else:
+                numbers = self._shaded[self._coarse_window({piece}, size // 2 + 1 + _SHADED)]
+            it = (numbers == piece).astype(np.uint8)
             around = cv2.dilate(it, np.ones((size, size), np.uint8)) > 0
-            found = np.flatnonzero(np.bincount(numbers[window][around]))
+            found = np.flatnonzero(np.bincount(numbers[around]))
             self._near[piece, size] = frozenset(found.tolist()) - {0, piece}
         return self._near[piece, size]
 
     def _is_before(self, piece: int, other: int) -> bool:
         """Whether a piece near another is nearer to the camera where they border."""
         if (piece, other) not in self._before:
-            window = self._window({piece, other}, 1)
-            a, b = self._within(window, {other}), self._within(window, {piece})
-            near = _BEHIND + 2 * _SHADED
-            self._before[piece, other] = (
-                _step(self._depth[window], a, b, near) > kinect_entries("wholes")["flush"]
-            )
+            window = self._coarse_window({piece, other}, 1)
+            numbers, depth = self._coarse[window], self._depth[::_STRIDE, ::_STRIDE][window]
+            step = _step(depth, numbers == other, numbers == piece, _BEHIND + 2 * _SHADED)
+            self._before[piece, other] = step > kinect_entries("wholes")["flush"]
         return self._before[piece, other]
 
     def _candidates(self, members: frozenset[int]) -> list[tuple[int, bool]]:
@@ -202,6 +212,10 @@ def _off_going_on(a: Array, b: Array) -> float:
     """How far the depth is from going on from one region to another, where they are nearest; below 1 it does."""
     values = kinect_entries("wholes")
     seen_a, seen_b = (each[:, :2] / each[:, 2:] for each in (a, b))
+    least = max(a[:, 2].min() - b[:, 2].max(), b[:, 2].min() - a[:, 2].max())
+    most_aside = np.linalg.norm(seen_a.mean(axis=0) - seen_b.mean(axis=0)) * max(a[:, 2].max(), b[:, 2].max())
+    if least > _FAR_APART * (values["receding"] * most_aside + values["gap"]):
+        return np.inf
     distance, index = cKDTree(seen_b).query(seen_a)
     nearest = np.argpartition(distance, min(_BORDER, len(distance) - 1))[:_BORDER]
     depth_a, depth_b = np.median(a[nearest, 2]), np.median(b[index[nearest], 2])
@@ -215,8 +229,8 @@ def _off_convex(points: Array, depth: Floats, a: Mask, b: Mask) -> float:
     hidden = _hidden(depth, a, b)
     all_of_it = a | b | hidden
     unseen = np.count_nonzero(hidden & ~a & ~b) / np.count_nonzero(all_of_it)
-    unfilled = 1.0 - _convexity(all_of_it)
-    return max(_hollow(points), unfilled / values["unfilled"], unseen / values["unseen"])
+    off = max(unseen / values["unseen"], (1.0 - _convexity(all_of_it)) / values["unfilled"])
+    return off if off > _FAR_APART else max(off, _hollow(points))
 
 
 def _hollow(points: Array) -> float:
