@@ -24,7 +24,7 @@ class RealSenseCamera(FrameSource):
     """A RealSense camera with the depth aligned onto the colour.
 
     The first one that answers, or a recording of one, which librealsense plays through the same pipeline. A lens's
-    distortion is left in; the factory calibration of most models has none for the colour picture.
+    distortion is left in.
 
     Args:
         recording: What to play instead of a camera, if given.
@@ -52,13 +52,13 @@ class RealSenseCamera(FrameSource):
             self._start()
         try:
             try:
-                frames = self._pipeline.wait_for_frames(self._patience())
+                frames = self._newest()
             except RuntimeError:
                 if self._recording is None or not self._again:
                     raise
                 self.close()  # it has ended: from its beginning
                 self._start()
-                frames = self._pipeline.wait_for_frames(self._patience())
+                frames = self._newest()
             if not self._aligned:
                 frames = self._align.process(frames)
             colour, depth = frames.get_color_frame(), frames.get_depth_frame()
@@ -108,7 +108,7 @@ class RealSenseCamera(FrameSource):
             started = pipeline.start(config)
         except RuntimeError as error:
             raise InputError(f"{self._what} cannot be started: {_in_one_line(error)}") from None
-        self._pipeline, self._align = pipeline, library.align(library.stream.color)
+        self._pipeline, self._align, self._seen = pipeline, library.align(library.stream.color), False
         depth, colour = (
             started.get_stream(stream).as_video_stream_profile()
             for stream in (library.stream.depth, library.stream.color)
@@ -124,8 +124,11 @@ class RealSenseCamera(FrameSource):
             return np.ascontiguousarray(picture[:, :, ::-1])
         raise InputError(f"{self._what} holds colour as {form.name}; record it as rgb8 or bgr8")
 
-    def _patience(self) -> int:
-        return round(1e3 * kinect_entries("camera")["patience"])
+    def _newest(self) -> Any:
+        patience = kinect_entries("camera")["patience" if self._seen else "start"]
+        frames = self._pipeline.wait_for_frames(round(1e3 * patience))
+        self._seen = True
+        return frames
 
 
 _PICTURES_A_SECOND = 30  # what every model gives at 640 x 480
