@@ -125,7 +125,7 @@ class RealSenseCamera(FrameSource):
         raise InputError(f"{self._what} holds colour as {form.name}; record it as rgb8 or bgr8")
 
     def _newest(self) -> Any:
-        patience = kinect_entries("camera")["patience" if self._seen else "start"]
+        patience = kinect_entries("camera")["patience" if self._seen or self._recording else "start"]
         frames = self._pipeline.wait_for_frames(round(1e3 * patience))
         self._seen = True
         return frames
