@@ -191,6 +191,8 @@ def _tries(snapshot: Snapshot, pixel: tuple[int, int], fill: Fill) -> list[_Outl
         wholes = snapshot.wholes(1.0)
         for other in wholes.plausible(piece, values["spread"]):
             found.append(_joined(wholes, 1.0, wholes.members(piece, 1.0, other)))
+        members = wholes.members(piece, 1.0)
+        found.append(_Outline(("with leftovers", members), lambda: wholes.with_leftovers(members)))
     return found
 
 

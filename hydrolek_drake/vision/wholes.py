@@ -52,6 +52,8 @@ class Wholes:
     def __init__(self, surfaces: Surfaces, pieces: Pieces) -> None:
         self._depth, self._surfaces, self._numbers = surfaces.depth, surfaces, pieces.numbers
         self._boxes = find_objects(pieces.numbers)
+        self._standing_out = pieces.standing_out
+        self._left: NDArray[np.int32] | None = None
         self._coarse = np.ascontiguousarray(pieces.numbers[::_STRIDE, ::_STRIDE])
         self._shaded = self._coarse.copy()  # and what has no depth around them, such as their shadows
         no_depth = (surfaces.depth[::_STRIDE, ::_STRIDE] == 0.0).astype(np.uint8)
@@ -84,13 +86,32 @@ class Wholes:
             members |= {nearest[1]}
 
     def plausible(self, piece: int, leniency: float) -> list[int]:
-        """Pieces that may each belong to a piece, by thresholds times `leniency`."""
+        """Pieces that may each belong to a piece, beyond two things, too, by thresholds times `leniency`."""
         members = frozenset({piece})
+        candidates = dict(self._candidates(members))
+        for before in self._nearby(piece, _BEHIND):
+            if self._hides(before, piece):
+                for further in self._nearby(before, _BEHIND):
+                    candidates |= {
+                        n: False for n in self._nearby(further, _BEHIND) - members - set(candidates)
+                    }
         return [
             other
-            for other, beside in self._candidates(members)
+            for other, beside in candidates.items()
             if self._apartness(members, other, beside) < leniency
         ]
+
+    def with_leftovers(self, members: frozenset[int]) -> Mask:
+        """The outline of an object with what stands out beside it, but is too small for a piece; shape (h, w)."""
+        mask = self.mask(members)
+        window = self._window(members, _BESIDE)
+        around = cv2.dilate(mask[window].astype(np.uint8), np.ones((_BESIDE, _BESIDE), np.uint8)) > 0
+        if self._left is None:
+            left = (self._standing_out & (self._numbers == 0)).astype(np.uint8)
+            self._left = cv2.connectedComponents(left)[1]
+        touching = np.bincount(self._left[window][around], minlength=int(self._left.max()) + 1) > 0
+        touching[0] = False
+        return mask | touching[self._left]
 
     def mask(self, members: frozenset[int]) -> Mask:
         """The outline of an object that consists of these pieces, filled; shape (h, w)."""
