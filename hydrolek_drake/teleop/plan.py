@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.kinematics.chain import SIDES
 from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.vision.camera import CameraModel, camera_pose, direction_to_frame, to_frame
@@ -18,6 +19,8 @@ from hydrolek_drake.workcell.grasp import ToolPath, cut_path, grasp_path, with_a
 from hydrolek_drake.workcell.pipe import Pipe, make_pipe, workcell_entries
 from hydrolek_drake.workcell.planner import plan_path
 from hydrolek_drake.workcell.scene import home_posture
+from hydrolek_drake.workcell.surroundings import Surroundings
+from hydrolek_drake.workcell.table import Table
 from hydrolek_drake.workcell.trajectory import smooth_trajectory, time_parametrised
 
 Array = NDArray[np.float64]
@@ -101,26 +104,110 @@ def plan_task(
     Raises:
         InputError: A point out of reach, nothing but collisions, no path; says which step and why.
     """
-    if grasping not in ("right", "left"):
-        raise InputError(f"arm '{grasping}' is unknown; choose from right, left")
-    cutting = "left" if grasping == "right" else "right"
-    start = np.asarray(posture, dtype=float)
-    pipe, sight = pipe_in_world(targets, camera), direction_to_frame(targets.grasp, "world")
-    grasp_point, cut_point = to_frame(targets.grasp, "world"), to_frame(targets.cut, "world")
+    return plan_grasp_and_cut(
+        pipe_in_world(targets, camera),
+        to_frame(targets.grasp, "world"),
+        to_frame(targets.cut, "world"),
+        direction_to_frame(targets.grasp, "world"),
+        posture,
+        generator,
+        grasping=grasping,
+        on_step=on_step,
+    )
+
+
+@dataclass(frozen=True)
+class ToolPaths:
+    """How a pipe is grasped and cut, without the ways there, and what says what touches meanwhile.
+
+    Attributes:
+        grasp: The grasping arm's way onto the pipe.
+        cut: The cutting arm's way across it.
+        closed: Both arms with the gripper on the pipe, in rad, shape (14,).
+        clear: Collisions where nothing may touch.
+        held: Collisions where the grasping gripper may touch the pipe.
+    """
+
+    grasp: ToolPath
+    cut: ToolPath
+    closed: Array
+    clear: CollisionWorld
+    held: CollisionWorld
+
+
+def tool_paths(
+    pipe: Pipe,
+    grasp_point: ArrayLike,
+    cut_point: ArrayLike,
+    sight: ArrayLike,
+    posture: ArrayLike,
+    *,
+    grasping: str = "right",
+    around: Surroundings | None = None,
+    table: Table | None = None,
+    on_step: Any = lambda name: None,
+) -> ToolPaths:
+    """Ways of the tools onto and across a pipe; see `plan_grasp_and_cut`.
+
+    Raises:
+        InputError: A point out of reach, or nothing but collisions; says why.
+    """
+    cutting, start = other_side(grasping), np.asarray(posture, dtype=float)
     values, sizes = workcell_entries()["grasp"], kinect_entries("targets")
-    clear = CollisionWorld(pipe)
-    touching = CollisionWorld(thinner(pipe), padding=0.0)
-    held = CollisionWorld(pipe, holding=(grasping,))
+    clear = CollisionWorld(pipe, table=table, around=around)
+    touching = CollisionWorld(thinner(pipe), padding=0.0, table=table, around=around)
+    held = CollisionWorld(pipe, holding=(grasping,), table=table, around=around)
 
     on_step("grasp")
     distance = pipe.radius + sizes["approach"] + values["farther"]
     grasp = grasp_path(grasp_point, pipe.axis, sight, distance, start, grasping, clear, touching)
-    opened = with_jaw(start, grasping, math.radians(values["open_deg"]))
-    before, on_pipe = (with_arm(opened, grasping, grasp.angles[i]) for i in (0, -1))
+    on_pipe = with_arm(start, grasping, grasp.angles[-1])
     closed = with_jaw(on_pipe, grasping, math.radians(values["closed_deg"]))
     on_step("cut")
     reach = pipe.radius + sizes["clearance"]
     cut = cut_path(cut_point, pipe.axis, sight, reach, sizes["blade_reach"], closed, cutting, held)
+    return ToolPaths(grasp, cut, closed, clear, held)
+
+
+def plan_grasp_and_cut(
+    pipe: Pipe,
+    grasp_point: ArrayLike,
+    cut_point: ArrayLike,
+    sight: ArrayLike,
+    posture: ArrayLike,
+    generator: np.random.Generator,
+    *,
+    grasping: str = "right",
+    around: Surroundings | None = None,
+    table: Table | None = None,
+    on_step: Any = lambda name: None,
+) -> TaskPlan:
+    """Plan grasp and cut of a pipe whose place is known.
+
+    Args:
+        pipe: In the world frame, as all points.
+        grasp_point: On its axis, in m, shape (3,).
+        cut_point: Likewise.
+        sight: From the camera to the grasp, shape (3,).
+        posture: Both arms as they stand, in rad, shape (14,).
+        generator: For the path planner.
+        grasping: Arm that grasps, `right` or `left`; the other one cuts.
+        around: What else stands around the machine, or None.
+        table: What stands below, or None.
+        on_step: Called with each step's name before it is planned.
+
+    Raises:
+        InputError: A point out of reach, nothing but collisions, no path; says which step and why.
+    """
+    start, cutting = np.asarray(posture, dtype=float), other_side(grasping)
+    values = workcell_entries()["grasp"]
+    ways = tool_paths(
+        pipe, grasp_point, cut_point, sight, start,
+        grasping=grasping, around=around, table=table, on_step=on_step,
+    )  # fmt: skip
+    grasp, cut, closed, clear, held = ways.grasp, ways.cut, ways.closed, ways.clear, ways.held
+    opened = with_jaw(start, grasping, math.radians(values["open_deg"]))
+    before, on_pipe = (with_arm(opened, grasping, grasp.angles[i]) for i in (0, -1))
     shut = with_jaw(closed, cutting, math.radians(values["closed_deg"]))
     cut_postures = [with_arm(shut, cutting, row) for row in cut.angles]
     on_step("approach")
@@ -151,6 +238,17 @@ def plan_task(
         for name in STEPS
     ]
     return TaskPlan(tuple(steps), pipe, grasp, cut)
+
+
+def other_side(side: str) -> str:
+    """The other arm.
+
+    Raises:
+        InputError: There is no such arm.
+    """
+    if side not in SIDES:
+        raise InputError(f"arm '{side}' is unknown; choose from {', '.join(SIDES)}")
+    return SIDES[1 - SIDES.index(side)]
 
 
 def plan_release(plan: TaskPlan, posture: ArrayLike, generator: np.random.Generator) -> TaskPlan:

@@ -6,16 +6,19 @@ import numpy as np
 from pydrake.geometry import Box, Cylinder
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.plant import CoulombFriction
+from pydrake.multibody.tree import SpatialInertia, default_model_instance
 from pydrake.planning import RobotDiagramBuilder, SceneGraphCollisionChecker
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.arms import arm_joint_names, arms_urdf_path, position_indices
 from hydrolek_drake.kinematics.chain import SIDES
 from hydrolek_drake.workcell.pipe import Pipe, workcell_entries
+from hydrolek_drake.workcell.surroundings import Surroundings
 from hydrolek_drake.workcell.table import Table
 
 _NAMED = 2
 """Pairs of bodies that a message names."""
+_BASE = "base"
 _WORLD = "world"
 """Drake's name for what pipe and table are fixed to."""
 
@@ -28,6 +31,7 @@ class CollisionWorld:
         padding: Distance in m within which two shapes count as touching.
         holding: Sides (`right`, `left`) whose gripper may touch the pipe.
         table: What stands below, or None.
+        around: What else stands around, and where the base is under the plate.
     """
 
     def __init__(
@@ -37,7 +41,9 @@ class CollisionWorld:
         padding: float | None = None,
         holding: tuple[str, ...] = (),
         table: Table | None = None,
+        around: Surroundings | None = None,
     ) -> None:
+        around = Surroundings() if around is None else around
         values = workcell_entries()["motion"]
         stands = [name for name, thing in (("pipe", pipe), ("table", table)) if thing is not None]
         self._surroundings = " or ".join(stands)
@@ -45,8 +51,14 @@ class CollisionWorld:
         builder = RobotDiagramBuilder(time_step=0.0)
         parser = builder.parser()
         parser.package_map().AddPackageXml(str(arms_urdf_path().parent / "package.xml"))
-        instances = parser.AddModels(str(arms_urdf_path()))
+        instances = parser.AddModelsFromString(around.urdf(), "urdf")
         plant = builder.plant()
+        for block in around.blocks:  # each a body of its own, which messages call by its name
+            body = plant.AddRigidBody(block.name, default_model_instance(), SpatialInertia.Zero())
+            plant.WeldFrames(plant.world_frame(), body.body_frame(), block.pose())
+            plant.RegisterCollisionGeometry(
+                body, RigidTransform(), Box(*block.size), block.name, CoulombFriction()
+            )
         if pipe is not None:
             pose = RigidTransform(RotationMatrix(pipe.rotation()), pipe.point)
             plant.RegisterCollisionGeometry(
@@ -57,6 +69,7 @@ class CollisionWorld:
             board = Box(*table.size, table.thickness)
             plant.RegisterCollisionGeometry(plant.world_body(), pose, board, "table", CoulombFriction())
         plant.Finalize()
+        self._machine = set(instances)
         self._order = position_indices(plant, list(arm_joint_names()))
         model = builder.Build()
         self._checker = SceneGraphCollisionChecker(
@@ -119,6 +132,30 @@ class CollisionWorld:
                 one, other = sorted(self._called(plant.get_body(index)) for index in indices)
                 pairs.add((one, other))
         return sorted(pairs)
+
+    def clearance(self, posture: Any, within: float) -> float:
+        """Smallest distance in m between an arm and what is neither that arm nor the machine's base.
+
+        Args:
+            posture: Of both arms.
+            within: Distance in m beyond which nothing is looked for; the answer is at most this.
+        """
+        found = self._checker.CalcRobotClearance(self._positions(posture), within)
+        least = within
+        for row in range(found.size()):
+            one, other = (self._part(each[row]) for each in (found.robot_indices(), found.other_indices()))
+            inside = one is not None and other is not None  # the machine
+            if not (inside and (one == other or _BASE in (one, other))):
+                least = min(least, float(found.distances()[row]))
+        return least
+
+    def _part(self, index: Any) -> str | None:
+        """Part of the machine that a body belongs to: an arm, or the base; None for what stands around."""
+        body = self._checker.plant().get_body(index)
+        if body.model_instance() not in self._machine:
+            return None
+        side = str(body.name()).partition("_")[0]
+        return side if side in SIDES else _BASE
 
     def what_touches(self, posture: Any) -> str:
         """The first of the bodies that touch, for a message."""
