@@ -64,6 +64,13 @@ def teleop(
     pipe_axis: Annotated[
         _Vector | None, typer.Option(metavar="X Y Z", help="simulated pipe's axis, world")
     ] = None,
+    stand: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="stand.json of `hydrolek stand --out`: the simulated pipe as its best place has it",
+        ),
+    ] = None,
     loose: Annotated[
         bool, typer.Option("--loose", help="simulated pipe stands loose on a table, for pick and place")
     ] = False,
@@ -94,7 +101,7 @@ def teleop(
         raise InputError("teleop: --link-token belongs to --controllers HOST:PORT; leave it out")
     if settings and (plant == "simple" or address is not None):
         raise InputError("teleop: --set is the full plant's; leave it out")
-    _check_camera(camera, pipe_point, pipe_axis, loose)
+    _check_camera(camera, pipe_point, pipe_axis, loose, stand)
 
     from hydrolek_drake.teleop.console.server import Console
     from hydrolek_drake.teleop.controllers.plant_process import PlantProcess
@@ -107,6 +114,11 @@ def teleop(
     pipe = None
     if camera == "sim":
         pipe = make_pipe(pipe_point, pipe_axis) if table is None else make_loose_pipe(table)
+        if stand is not None:
+            from hydrolek_drake.standing.report import read_place
+
+            placement, there = read_place(stand)
+            pipe = placement.pipe_seen(there)
     process = None
     if plant == "full" and address is None:
         with output().status("starting the hydraulic plant: step tests of all joints"):
@@ -196,7 +208,9 @@ def _session(
     return OperatorSession(lambda: FolderSource(Path(camera)), machine, seed=seed)
 
 
-def _check_camera(camera: str, point: _Vector | None, axis: _Vector | None, loose: bool) -> None:
+def _check_camera(
+    camera: str, point: _Vector | None, axis: _Vector | None, loose: bool, stand: Path | None
+) -> None:
     """Refuse what would be refused only after the plant has been started."""
     from hydrolek_drake.vision.frames import FolderSource
 
@@ -206,6 +220,8 @@ def _check_camera(camera: str, point: _Vector | None, axis: _Vector | None, loos
         raise InputError(
             "teleop: --loose puts the simulated camera's pipe on the table; leave the others out"
         )
+    if stand is not None and (camera != "sim" or loose or point is not None or axis is not None):
+        raise InputError("teleop: --stand says where the simulated camera's pipe is; leave the others out")
     if camera not in ("sim", "live"):
         FolderSource(Path(camera))
 

@@ -24,7 +24,7 @@ _SI = {
     "wanted": {"joint_margin": "rad", "clearance": "m"},
     "search": {
         "distance_step": "m", "heading_step": "rad", "boom_step": "rad", "rounds": "", "refined": "",
-        "apart": "m", "looked_at": "", "enough": "",
+        "apart": "m", "looked_at": "",
     },
 }  # fmt: skip
 """Part -> name -> SI unit of `base.yaml`; what is a range has two values, the lower first."""
@@ -136,7 +136,9 @@ class Base:
         low, high = self.heading
         turned = (placement.heading - low) % math.tau
         around = turned <= high - low + _ROUNDING or turned >= math.tau - _ROUNDING
-        return around and all(lower - _ROUNDING <= value <= upper + _ROUNDING for value, (lower, upper) in pairs)
+        return around and all(
+            lower - _ROUNDING <= value <= upper + _ROUNDING for value, (lower, upper) in pairs
+        )
 
 
 def load_base(path: Path | None = None) -> Base:
@@ -152,10 +154,17 @@ def load_base(path: Path | None = None) -> Base:
     for part, name in _RANGES:
         low, high = values[part][name]
         if not low <= high:
-            raise InputError(f"{path or 'base.yaml'}: {part}.{name} is [{low:g}, {high:g}]; give the lower value first")
-    for part, name in (*(("wanted", name) for name in _SI["wanted"]), *(("search", name) for name in _SI["search"])):
+            raise InputError(
+                f"{path or 'base.yaml'}: {part}.{name} is [{low:g}, {high:g}]; give the lower value first"
+            )
+    for part, name in (
+        *(("wanted", name) for name in _SI["wanted"]),
+        *(("search", name) for name in _SI["search"]),
+    ):
         if not values[part][name] > 0.0:
-            raise InputError(f"{path or 'base.yaml'}: {part}.{name} is {values[part][name]:g}; give a positive number")
+            raise InputError(
+                f"{path or 'base.yaml'}: {part}.{name} is {values[part][name]:g}; give a positive number"
+            )
     if not -_STEEP < values["boom"]["angle"][0] <= values["boom"]["angle"][1] < _STEEP:
         raise InputError(f"{path or 'base.yaml'}: boom.angle must lie between -90 and 90 deg")
     tracks, wanted = values["tracks"], values["wanted"]
@@ -177,7 +186,10 @@ def _values(data: Any, where: str) -> dict[str, dict[str, Any]]:
             place = f"{where}: {part}.{name}"
             if name not in _SI[part]:
                 raise InputError(f"{place} is unknown; choose from {', '.join(_SI[part])}")
-            if not isinstance(entry, dict) or not {"value", "unit", "source"} >= set(entry) >= {"value", "unit"}:
+            if not isinstance(entry, dict) or not {"value", "unit", "source"} >= set(entry) >= {
+                "value",
+                "unit",
+            }:
                 raise InputError(f"{place}: give value, unit and source")
             unit, wanted = str(entry["unit"]), _SI[part][name]
             factor = si_factor(unit, wanted) if wanted else 1.0
@@ -188,7 +200,8 @@ def _values(data: Any, where: str) -> dict[str, dict[str, Any]]:
 def _number(value: Any, factor: float, place: str, *, pair: bool) -> Any:
     given = value if pair and isinstance(value, list) else [value]
     if len(given) != (2 if pair else 1) or not all(
-        isinstance(each, (int, float)) and not isinstance(each, bool) and math.isfinite(each) for each in given
+        isinstance(each, (int, float)) and not isinstance(each, bool) and math.isfinite(each)
+        for each in given
     ):
         raise InputError(f"{place}: value is {value}; give {'[lower, upper]' if pair else 'a finite number'}")
     numbers = [factor * float(each) for each in given]

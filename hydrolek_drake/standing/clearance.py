@@ -33,8 +33,12 @@ class BaseClearance:
         self._plant, self._scene = AddMultibodyPlantSceneGraph(builder, 0.0)
         plant, friction = self._plant, CoulombFriction()
         self._boxes = []
-        for index, (_, size) in enumerate(_base_boxes(drawn_boom_angle())):
-            body = plant.AddRigidBody(f"machine{index}", default_model_instance(), SpatialInertia.SolidBoxWithMass(1.0, 1.0, 1.0, 1.0))
+        for index, (_, size) in enumerate(base_boxes(drawn_boom_angle())):
+            body = plant.AddRigidBody(
+                f"machine{index}",
+                default_model_instance(),
+                SpatialInertia.SolidBoxWithMass(1.0, 1.0, 1.0, 1.0),
+            )
             plant.RegisterCollisionGeometry(body, RigidTransform(), Box(*size), f"machine{index}", friction)
             self._boxes.append(body)
         pipe = site.pipe
@@ -43,7 +47,9 @@ class BaseClearance:
             plant.world_body(), place, Cylinder(pipe.radius, pipe.length), "pipe", friction
         )
         for block in site.blocks:
-            plant.RegisterCollisionGeometry(plant.world_body(), block.pose(), Box(*block.size), block.name, friction)
+            plant.RegisterCollisionGeometry(
+                plant.world_body(), block.pose(), Box(*block.size), block.name, friction
+            )
         plant.Finalize()
         self._diagram = builder.Build()
         self._context = self._diagram.CreateDefaultContext()
@@ -53,7 +59,7 @@ class BaseClearance:
         turn, _ = placement.machine_in_site()
         base = RigidTransform(RotationMatrix(turn), [placement.x, placement.y, 0.0])
         own = self._plant.GetMyMutableContextFromRoot(self._context)
-        for body, (pose, _) in zip(self._boxes, _base_boxes(placement.boom), strict=True):
+        for body, (pose, _) in zip(self._boxes, base_boxes(placement.boom), strict=True):
             self._plant.SetFreeBodyPose(own, body, base @ pose)
         port: Any = self._scene.get_query_output_port()
         query = port.Eval(self._scene.GetMyContextFromRoot(self._context))
@@ -67,7 +73,7 @@ class BaseClearance:
 
 
 @cache
-def _base_boxes(boom: float) -> list[tuple[RigidTransform, Array]]:
+def base_boxes(boom: float) -> list[tuple[RigidTransform, Array]]:
     """Pose in the base's frame and size of each collision box of base, boom and plate."""
     shift = Placement(0.0, 0.0, 0.0, boom).plate_shift()
     robot = ElementTree.fromstring(Surroundings((), shift, boom - drawn_boom_angle()).urdf())

@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 
 _NO_AIM = np.zeros(3)
 _ROUNDED = 6  # decimals of m: places of the pipe before the machine that count as one
+_COARSER = 2  # than the planner's directions
 _END_ON = 0.05  # sine of the angle between sight and pipe below which it has no side to grasp, as for vision
 
 
@@ -87,12 +88,19 @@ class ReachMap:
 
     def of(self, placement: Placement, grasping: str) -> Reach:
         """Reach from a placement with one arm grasping."""
-        grasp = placement.point_seen(self._site.grasp_point())
-        cut = placement.point_seen(self._site.cut_point())
-        key = (*np.round(grasp, _ROUNDED), *np.round(cut, _ROUNDED), float(grasping == "left"))
+        key = self.key(placement, grasping)
         if key not in self._known:
+            grasp, cut = self._seen(placement)
             self._known[key] = _reach(grasp, cut, self._site.pipe.radius, grasping)
         return self._known[key]
+
+    def key(self, placement: Placement, grasping: str) -> tuple[float, ...]:
+        """The same for placements from which the pipe looks alike."""
+        grasp, cut = self._seen(placement)
+        return (*np.round(grasp, _ROUNDED), *np.round(cut, _ROUNDED), float(grasping == "left"))
+
+    def _seen(self, placement: Placement) -> tuple[Array, Array]:
+        return placement.point_seen(self._site.grasp_point()), placement.point_seen(self._site.cut_point())
 
 
 def in_picture(point: ArrayLike) -> bool:
@@ -137,23 +145,21 @@ def _reach(grasp: Array, cut: Array, radius: float, grasping: str) -> Reach:
         return Reach(Stage.VIEW)
     if np.linalg.norm(np.cross(axis, sight / np.linalg.norm(sight))) < _END_ON:
         return Reach(Stage.GRASP)
-    directions = np.array([each for _, each in directions_onto(axis, sight)])
+    directions = np.array([each for _, each in directions_onto(axis, sight, coarser=_COARSER)])
     across = np.cross(axis, directions)
     across /= np.linalg.norm(across, axis=1)[:, np.newaxis]
     enter, distance = math.radians(values["enter_deg"]), radius + sizes["approach"] + values["farther"]
     before = -distance * (math.cos(enter) * directions)
     beside = distance * math.sin(enter) * across
-    margins = []
-    for way in (-1.0, 1.0):
-        points = np.stack([np.broadcast_to(grasp, directions.shape), grasp + before + way * beside], axis=1)
-        margins.append(_first(holder, points, directions))
-    held = max(margins)
+    there = np.broadcast_to(grasp, directions.shape)
+    points = np.stack([there, grasp + before - beside, grasp + before + beside], axis=1)
+    held = _first(holder, points, directions, any_of_rest=True)
     if held < 0.0:
         return Reach(Stage.GRASP)
     reach = radius + sizes["clearance"]
     middle = cut - blade * directions
     points = np.stack([middle, middle - reach * across, middle + reach * across], axis=1)
-    cuts = _first(cutter, points, directions)
+    cuts = _first(cutter, points, directions, any_of_rest=False)
     if cuts < 0.0:
         return Reach(Stage.CUT)
     return Reach(Stage.REACHED, min(held, cuts))
@@ -170,22 +176,33 @@ def _at(chain: Chain, point: Array) -> bool:
     pose = fixed_pose(f"{chain.side}_base", "world")
     target = pose[:3, :3] @ point + pose[:3, 3] - chain.base
     q = np.empty(8)
-    return bool(solve_position(target, chain.links, chain.limits, ON_LIMIT, chain.middle[:5], _NO_AIM, q) == 0.0)
+    return bool(
+        solve_position(target, chain.links, chain.limits, ON_LIMIT, chain.middle[:5], _NO_AIM, q) == 0.0
+    )
 
 
-def _first(chain: Chain, points: Array, directions: Array) -> float:
-    """Margin in rad of the first direction from which all its points (n, k, 3) are reached; -1 if none."""
+def _first(chain: Chain, points: Array, directions: Array, *, any_of_rest: bool) -> float:
+    """Margin in rad of the first direction from which its points (n, k, 3) are reached; -1 if none.
+
+    Args:
+        chain: The arm.
+        points: Of its tool, world frame, in m.
+        directions: Of its tool, world frame, shape (n, 3).
+        any_of_rest: Whether one of those behind the first point is enough.
+    """
     pose = fixed_pose(f"{chain.side}_base", "world")
-    targets = points @ pose[:3, :3].T + pose[:3, 3] - chain.base
+    targets = np.ascontiguousarray(points @ pose[:3, :3].T + pose[:3, 3] - chain.base)
     aims = directions @ pose[:3, :3].T
-    return float(_first_reached(np.ascontiguousarray(targets), aims, chain.links, chain.limits, ON_LIMIT))
+    return float(_first_reached(targets, aims, any_of_rest, chain.links, chain.limits, ON_LIMIT))
 
 
 @njit(cache=True)
-def _first_reached(targets: Any, aims: Any, links: Any, limits: Any, tolerance: float) -> float:
+def _first_reached(
+    targets: Any, aims: Any, any_of_rest: bool, links: Any, limits: Any, tolerance: float
+) -> float:
     found = np.empty((32, 5))
     for i in range(aims.shape[0]):
-        least = np.inf
+        least, most_of_rest = np.inf, -1.0
         for j in range(targets.shape[1]):
             count = solve_direction(targets[i, j], aims[i], links, limits, tolerance, found)
             best = -1.0
@@ -196,9 +213,14 @@ def _first_reached(targets: Any, aims: Any, links: Any, limits: Any, tolerance: 
                         margin, found[row, joint] - limits[0, joint], limits[1, joint] - found[row, joint]
                     )
                 best = max(best, margin)
-            least = min(least, best)
-            if count == 0:
-                break
+            if any_of_rest and j > 0:
+                most_of_rest = max(most_of_rest, best)
+            else:
+                least = min(least, best)
+                if count == 0:
+                    break
+        if any_of_rest:
+            least = min(least, most_of_rest)
         if least >= 0.0:
             return least
     return -1.0

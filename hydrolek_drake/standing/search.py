@@ -14,7 +14,14 @@ from hydrolek_drake.standing.base import Base, Placement
 from hydrolek_drake.standing.clearance import BaseClearance
 from hydrolek_drake.standing.reach import ReachMap, Stage, why_not
 from hydrolek_drake.standing.site import FLOOR, Site
-from hydrolek_drake.teleop.plan import TaskPlan, ToolPaths, camera_in_world, plan_grasp_and_cut, tool_paths
+from hydrolek_drake.teleop.plan import (
+    TaskPlan,
+    TaskWorlds,
+    ToolPaths,
+    camera_in_world,
+    plan_grasp_and_cut,
+    tool_paths,
+)
 from hydrolek_drake.vision.camera import thesis_camera
 from hydrolek_drake.vision.configuration import kinect_entries
 from hydrolek_drake.workcell.grasp import ToolPath, with_arm
@@ -24,6 +31,7 @@ Array = NDArray[np.float64]
 
 EITHER = "either"
 _LOOK = 4.0  # of the wanted clearance: nothing farther is looked for
+_MOST_BUILT = 12  # worlds of collisions kept
 _SAMPLES = 25  # of each step of a plan, for its margin
 
 
@@ -132,6 +140,7 @@ class StandingSearch:
         self._site, self._base, self._generator, self._tell = site, base, generator, tell
         self._sides = SIDES if grasping == EITHER else (grasping,)
         self._reach, self._base_clearance = ReachMap(site), BaseClearance(site)
+        self._built: dict[tuple[float, str], TaskWorlds] = {}
         self._refusals: Counter[str] = Counter()
 
     def answer(self, count: int = 3) -> Answer:
@@ -143,17 +152,14 @@ class StandingSearch:
         settings = self._base.search
         points = self.coarse_map()
         reached = [point for point in points if point.stage is Stage.REACHED]
-        # equal ones: the shorter way for the tracks
-        reached.sort(key=lambda point: (-round(point.margin, 3), _way(point.placement), point.grasping == "left"))
+        reached = self._in_turn(reached)
         self._tell(f"{len(points)} places: {len(reached)} by kinematics; checking collisions")
         looked: list[_Looked] = []
         for index, point in enumerate(reached[: int(settings["looked_at"])]):
             found = self._look(point.placement, point.grasping)
             if found is not None:
                 looked.append(found)
-            if len(looked) >= settings["enough"]:
-                break
-            if index % 10 == 9:
+            if index % 20 == 19:
                 self._tell(f"checked {index + 1} places, {len(looked)} free")
         if not looked:
             return Answer((), points, self._why_none(points, reached))
@@ -181,19 +187,14 @@ class StandingSearch:
         base, what = self._base_clearance.of(placement, _LOOK * max(self._base.keep, self._base.clearance))
         if base < self._base.keep:
             raise InputError(f"base or boom would be {1e3 * base:.0f} mm from {what}")
-        ways = tool_paths(
-            placement.pipe_seen(self._site.pipe),
-            *self._points_seen(placement),
-            home_posture(),
-            grasping=grasping,
-            around=self.surroundings(placement),
-        )
+        worlds = self._worlds(placement, grasping)
+        ways = tool_paths(worlds, *self._points_seen(placement), home_posture())
         joint, name = min(_joint_margin(each) for each in (ways.grasp, ways.cut))
         within = _LOOK * self._base.clearance
         opened = home_posture()
         postures = [with_arm(opened, grasping, row) for row in ways.grasp.angles]
         postures += [with_arm(ways.closed, ways.cut.side, row) for row in ways.cut.angles]
-        clearance = min(ways.held.clearance(each, within) for each in postures)
+        clearance = min(worlds.held.clearance(each, within) for each in postures)
         score = min(joint / self._base.joint_margin, clearance / self._base.clearance)
         return Margins(joint, name, clearance, base, score), ways
 
@@ -204,20 +205,29 @@ class StandingSearch:
             InputError: It cannot be planned; says which step and why.
         """
         return plan_grasp_and_cut(
-            placement.pipe_seen(self._site.pipe),
+            self._worlds(placement, grasping),
             *self._points_seen(placement),
             home_posture(),
             self._generator,
-            grasping=grasping,
-            around=self.surroundings(placement),
         )
 
-    def surroundings(self, placement: Placement):  # type: ignore[no-untyped-def]
-        """Blocks and floor around the machine there."""
-        return placement.surroundings((*self._site.blocks, FLOOR))
+    def _worlds(self, placement: Placement, grasping: str) -> TaskWorlds:
+        """Pipe, blocks and floor as the machine has them there; those of one height are moved, not built anew."""
+        pipe = placement.pipe_seen(self._site.pipe)
+        around = placement.surroundings((*self._site.blocks, FLOOR))
+        key = (placement.boom, grasping)
+        if key in self._built:
+            self._built[key].put(pipe, around.blocks)
+        else:
+            if len(self._built) >= _MOST_BUILT:
+                self._built.pop(next(iter(self._built)))
+            self._built[key] = TaskWorlds(pipe, grasping, around)
+        return self._built[key]
 
     def _points_seen(self, placement: Placement) -> tuple[Array, Array, Array]:
-        grasp, cut = (placement.point_seen(each) for each in (self._site.grasp_point(), self._site.cut_point()))
+        grasp, cut = (
+            placement.point_seen(each) for each in (self._site.grasp_point(), self._site.cut_point())
+        )
         return grasp, cut, grasp - camera_in_world()
 
     def _grid(self) -> Iterator[Placement]:
@@ -243,9 +253,22 @@ class StandingSearch:
     def _point(self, placement: Placement, side: str) -> MapPoint:
         reach = self._reach.of(placement, side)
         stage = reach.stage
-        if stage is Stage.REACHED and self._base_clearance.of(placement, self._base.keep)[0] < self._base.keep:
+        if (
+            stage is Stage.REACHED
+            and self._base_clearance.of(placement, self._base.keep)[0] < self._base.keep
+        ):
             stage = Stage.BASE
         return MapPoint(placement, side, stage, reach.margin if stage is Stage.REACHED else 0.0)
+
+    def _in_turn(self, points: list[MapPoint]) -> list[MapPoint]:
+        """One of each that the arms see alike, by the shortest way of the tracks, before a second one of any."""
+        alike: dict[tuple[float, ...], list[MapPoint]] = {}
+        for point in sorted(points, key=lambda each: (_way(each.placement), each.grasping == "left")):
+            key = self._reach.key(point.placement, point.grasping)
+            alike.setdefault(key, []).append(point)
+        turns = [(turn, point) for group in alike.values() for turn, point in enumerate(group)]
+        turns.sort(key=lambda each: (each[0], -round(each[1].margin, 3), _way(each[1].placement)))
+        return [point for _, point in turns]
 
     def _look(self, placement: Placement, grasping: str) -> _Looked | None:
         try:
@@ -284,7 +307,9 @@ class StandingSearch:
         for each in looked:
             if len(standings) >= count:
                 break
-            if any(_apart(each.placement, other.placement) < self._base.search["apart"] for other in standings):
+            if any(
+                _apart(each.placement, other.placement) < self._base.search["apart"] for other in standings
+            ):
                 continue
             self._tell(f"planning the task from place {len(standings) + 1}")
             try:
@@ -301,17 +326,23 @@ class StandingSearch:
             return "no place within the ranges of tracks and boom has the pipe before the arms; widen them"
         if reached:
             said, times = self._refusals.most_common(1)[0]
+            looked = sum(self._refusals.values())
             return (
-                f"{len(reached)} of {len(points)} places would do by kinematics, but at the {sum(self._refusals.values())} "
+                f"{len(reached)} of {len(points)} places would do by kinematics, but at the {looked} "
                 f"best of them something would touch or stop short; most often ({times}): {said}"
             )
         count = Counter(point.stage for point in points)
         last = max(count)
         nearest = min(
-            (point for point in points if point.stage is last), key=lambda point: (_way(point.placement), point.grasping)
+            (point for point in points if point.stage is last),
+            key=lambda point: (_way(point.placement), point.grasping),
         )
         told = "; ".join(f"{stage.told()} ({count[stage]})" for stage in sorted(count))
-        why = "" if last in (Stage.VIEW, Stage.BASE) else why_not(self._site, nearest.placement, nearest.grasping)
+        why = (
+            ""
+            if last in (Stage.VIEW, Stage.BASE)
+            else why_not(self._site, nearest.placement, nearest.grasping)
+        )
         return f"of {len(points)} places none will do: {told}" + (f"; such as: {why}" if why else "")
 
 
@@ -329,7 +360,9 @@ def _plan_margin(plan: TaskPlan) -> float:
             posture = step.trajectory.value(time)[:, 0]
             for index, side in enumerate(SIDES):
                 angles, chain = posture[7 * index : 7 * index + 5], arm_chain(side)
-                least = min(least, float(np.min(np.minimum(angles - chain.lower[:5], chain.upper[:5] - angles))))
+                least = min(
+                    least, float(np.min(np.minimum(angles - chain.lower[:5], chain.upper[:5] - angles)))
+                )
     return least
 
 

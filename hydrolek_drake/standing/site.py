@@ -50,9 +50,13 @@ class Site:
                     f"{self.pipe.length:g} m long"
                 )
         if self.grasp == self.cut:
-            raise InputError(f"grasp and cut are both at {self.cut:g} m; the pipe cannot be cut where it is held")
+            raise InputError(
+                f"grasp and cut are both at {self.cut:g} m; the pipe cannot be cut where it is held"
+            )
         if self.pipe.lowest() < 0.0:
-            raise InputError(f"the pipe reaches {-self.pipe.lowest():.3g} m into the floor; z is upwards from the floor")
+            raise InputError(
+                f"the pipe reaches {-self.pipe.lowest():.3g} m into the floor; z is upwards from the floor"
+            )
 
     def grasp_point(self) -> Array:
         """On the pipe's axis, shape (3,)."""
@@ -89,7 +93,7 @@ def read_site(path: Path) -> dict[str, Any]:
     if "pipe" in found:
         given = _mapping(found["pipe"], f"{path}: pipe", _PIPE)
         parts["pipe"] = {
-            name: _vector(value, f"{path}: pipe.{name}") if name in ("point", "axis") else _number(value, f"{path}: pipe.{name}")
+            name: (_vector if name in ("point", "axis") else _number)(value, f"{path}: pipe.{name}")
             for name, value in given.items()
         }  # fmt: skip
     for name in ("grasp", "cut"):
@@ -110,10 +114,19 @@ def _block(data: Any, where: str) -> Block:
     entry = _mapping(data, where, _BLOCK)
     for name in _BLOCK[:3]:
         if name not in entry:
-            raise InputError(f"{where}: {name} is missing; give name, middle, size, and heading_deg if it is turned")
+            raise InputError(
+                f"{where}: {name} is missing; give name, middle, size, and heading_deg if it is turned"
+            )
     name = entry["name"]
-    if not isinstance(name, str) or not name.isprintable() or not 0 < len(name) <= 40 or name.startswith(_TAKEN):
-        raise InputError(f"{where}: give a name of at most 40 letters that does not begin with {', '.join(_TAKEN)}")
+    if (
+        not isinstance(name, str)
+        or not name.isprintable()
+        or not 0 < len(name) <= 40
+        or name.startswith(_TAKEN)
+    ):
+        raise InputError(
+            f"{where}: give a name of at most 40 letters that does not begin with {', '.join(_TAKEN)}"
+        )
     size = _vector(entry["size"], f"{where}: size")
     if not np.all(size > 0.0):
         raise InputError(f"{where}: size is {size.tolist()}; give three positive lengths in m")

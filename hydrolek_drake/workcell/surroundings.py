@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from functools import cache
 from xml.etree import ElementTree
 
 import numpy as np
@@ -93,6 +94,7 @@ class Surroundings:
         return ElementTree.tostring(robot, encoding="unicode")
 
 
+@cache
 def boom_pins() -> tuple[Array, Array]:
     """Where the URDF draws the boom's pivot on the base and its pin at the plate, world frame, in m, each (3,)."""
     robot = ElementTree.parse(arms_urdf_path()).getroot()
@@ -103,6 +105,8 @@ def boom_pins() -> tuple[Array, Array]:
             found[shape.get("name")] = _numbers(origin.get("xyz", "0 0 0"))
     if len(found) != 2:
         raise InputError("hydrolek.urdf: the visuals boom_pivot and boom_pin are missing")
+    for point in found.values():
+        point.flags.writeable = False  # shared by all callers through the cache
     return found["boom_pivot"], found["boom_pin"]
 
 
