@@ -76,11 +76,11 @@ def read_place(path: Path) -> tuple[Placement, Pipe]:
         first = places[0]
         numbers = [first["x"], first["y"], first["heading_deg"], first["boom_deg"]]
         x, y, heading, boom = (_finite(each) for each in numbers)
-        sizes = [_finite(pipe[name]) for name in ("radius", "length")]
-        vectors = [[_finite(each) for each in pipe[name]] for name in ("point", "axis")]
+        radius, length = (_finite(pipe[name]) for name in ("radius", "length"))
+        point, axis = ([_finite(each) for each in pipe[name]] for name in ("point", "axis"))
     except (KeyError, TypeError, IndexError, AttributeError, ValueError, OverflowError):
         raise InputError(f"{path} is no stand.json of `hydrolek stand --out`") from None
-    return Placement(x, y, math.radians(heading), math.radians(boom)), make_pipe(*vectors, *sizes)
+    return Placement(x, y, math.radians(heading), math.radians(boom)), make_pipe(point, axis, radius, length)
 
 
 def _finite(value: Any) -> float:

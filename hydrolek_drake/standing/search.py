@@ -175,7 +175,7 @@ class StandingSearch:
         points = []
         for placement in self._grid():
             for side in self._sides:
-                points.append(self._point(placement, side))
+                points.append(self.point(placement, side))
         return tuple(points)
 
     def look(self, placement: Placement, grasping: str) -> tuple[Margins, ToolPaths]:
@@ -250,7 +250,8 @@ class StandingSearch:
                         if self._base.allows(placement):
                             yield placement
 
-    def _point(self, placement: Placement, side: str) -> MapPoint:
+    def point(self, placement: Placement, side: str) -> MapPoint:
+        """What kinematics and the base's shape say of one placement."""
         reach = self._reach.of(placement, side)
         stage = reach.stage
         if (
@@ -293,7 +294,7 @@ class StandingSearch:
                     nearby = replace(best.placement, **{name: getattr(best.placement, name) + sign * step})
                     if not self._base.allows(nearby):
                         continue
-                    if self._point(nearby, best.grasping).stage is not Stage.REACHED:
+                    if self.point(nearby, best.grasping).stage is not Stage.REACHED:
                         continue
                     found = self._look(nearby, best.grasping)
                     if found is not None and found.margins.score > best.margins.score:
