@@ -1,7 +1,8 @@
 """A pipe that can be carried: it stands, follows the hand that grips it, or falls.
 
-Kinematic: no force moves the pipe. Not held, it stands like a rock on what carries it; held, it is part of the hand;
-let go, it falls straight down with the attitude that it has and stops on the table, or on the floor.
+Kinematic: no force moves the pipe. Not held, it stands like a rock on what carries it; held, it is part of the hand
+that took it first, and what a second hand does to it goes on to that one (`grip_contact.GripContact`); let go, it falls
+straight down with the attitude that it has and stops on the table, or on the floor.
 """
 
 from collections.abc import Sequence
@@ -31,12 +32,23 @@ class LoosePipe:
         holder: `right`, `left`, or empty.
         taken: Pose of the hand when it took the pipe; None while nobody holds it.
         falling: Speed downwards in m/s.
+        second: Place of the other hand against the pipe when that took it too: along the axis in m, about it in rad;
+            None while at most one hand holds it.
     """
 
     pipe: Pipe
     holder: str = ""
     taken: Pose | None = None
     falling: float = 0.0
+    second: tuple[float, float] | None = None
+
+    def beside(self, hands: Sequence[Pose]) -> tuple[float, float]:
+        """Where the hand that is not the holder's is against the pipe: along its axis in m, about it in rad."""
+        (before, _), (turned, _) = self.taken or hands[0], hands[SIDES.index(self.holder)]
+        pipe, (rotation, here) = self.now(hands), hands[1 - SIDES.index(self.holder)]
+        frame = turned @ before.T @ self.pipe.rotation()  # goes with the pipe
+        seen = frame.T @ rotation[:, 0]
+        return float((here - pipe.point) @ pipe.axis), float(np.arctan2(seen[1], seen[0]))
 
     def now(self, hands: Sequence[Pose]) -> Pipe:
         """Where the pipe is while the hands (right, left) are there."""
@@ -59,7 +71,10 @@ class LoosePipe:
         """
         pipe = self.now(hands)
         if self.holder and gripped[SIDES.index(self.holder)]:
-            return self
+            both = gripped[1 - SIDES.index(self.holder)]
+            if both == (self.second is not None):
+                return self
+            return replace(self, second=self.beside(hands) if both else None)
         for side, hand, grips in zip(SIDES, hands, gripped, strict=True):
             if grips:
                 return LoosePipe(pipe, side, hand)

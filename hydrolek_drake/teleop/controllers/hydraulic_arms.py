@@ -244,6 +244,16 @@ class HydraulicArms:
         context = self._contact.GetMyContextFromRoot(self._root)
         return np.array(self._contact.pipe_place.Eval(context))
 
+    def internal_force(self) -> Array:
+        """What the second hand on a pipe that both hold does to it: force, moment, share of friction; shape (7,).
+
+        See `GripContact`'s port of that name.
+        """
+        if self._contact is None:
+            return np.zeros(7)
+        context = self._contact.GetMyContextFromRoot(self._root)
+        return np.array(self._contact.internal_force.Eval(context))
+
     @property
     def _root(self):  # type: ignore[no-untyped-def]
         return self._simulator.get_context()
