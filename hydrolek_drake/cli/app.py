@@ -56,6 +56,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "stand": CommandEntry(
         "hydrolek_drake.cli.stand", "stand", "where to stand so that a pipe can be grasped and cut"
     ),
+    "carry": CommandEntry("hydrolek_drake.cli.carry", "carry", "both arms hold one pipe and move it"),
     "vision": CommandEntry(
         "hydrolek_drake.cli.vision", "vision", "edges, selected object and targets of one camera frame"
     ),

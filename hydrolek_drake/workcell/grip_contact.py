@@ -14,7 +14,8 @@ from pydrake.systems.framework import BasicVector, Context, LeafSystem, State
 from hydrolek_drake.compiled import read_only
 from hydrolek_drake.kinematics.chain import SIDES
 from hydrolek_drake.workcell.fingers import FIXED, MOVING, fingers
-from hydrolek_drake.workcell.loose_pipe import GRAVITY, LoosePipe, Pose
+from hydrolek_drake.workcell.held_by_both import Pose
+from hydrolek_drake.workcell.loose_pipe import GRAVITY, LoosePipe
 from hydrolek_drake.workcell.pipe import Pipe, workcell_entries
 from hydrolek_drake.workcell.table import Table
 
@@ -36,19 +37,18 @@ class GripContact(LeafSystem):
     one body: the moving finger's force acts on the hand with opposite sign, and its weight at its middle; its inertia
     is left out. What lets go of it drops it (`loose_pipe.LoosePipe`).
 
-    Both grippers on a loose pipe close a chain. The pipe is part of the hand that took it first; the second one's
-    fingers press against it by the law above, and friction holds that hand along the axis and about it: from where it
-    took the pipe, a spring of the contact's tangential stiffness k_t with the damping c F, up to mu F of the normal
-    forces F in all (both directions together, the turning one by the pipe's radius), beyond which it slips. Whatever
-    the second hand feels, the first one feels with opposite sign, since the pipe has no inertia.
+    Both grippers on a loose pipe close a chain: what is off in their joints passes through the pipe from hand to hand,
+    by the springs of `held_by_both`, with damping as in the contact, c times the force over the stiffness. Until it
+    holds too, a second gripper finds a pipe that does not give way, as a clamped one; the force between the hands
+    counts from there.
 
     Ports:
         in `plant_state` (all positions and velocities of the plant).
         out `contact_force`: list of forces on bodies, for the plant's `applied_spatial_force`.
         out `grip_force` (2): on the right and the left gripper's moving finger [N].
         out `pipe_place` (6): middle of the pipe in m and its axis, world frame.
-        out `internal_force` (7): of the second hand on the pipe, world frame: force [N], moment about the middle of the
-            pipe [N m]; then the share of its friction that is used [1]. Zeros unless both hold.
+        out `internal_force` (7): of the left hand on a pipe that both hold, world frame: force [N], moment about the
+            pipe's middle [N m]; the larger share of the grips' friction that is used [1]. Else zeros.
     """
 
     def __init__(self, plant: MultibodyPlant, pipe: Pipe, table: Table | None = None) -> None:
@@ -66,7 +66,6 @@ class GripContact(LeafSystem):
         values = workcell_entries()["contact"]
         self._stiffness, self._damping = float(values["stiffness"]), float(values["damping"])
         self._reach = float(values["reach"])
-        self._tangential, self._friction = float(values["tangential"]), float(loose["friction"])
         self.fingers = [(side, finger) for side in SIDES for finger in fingers(side)]
         self._own = plant.CreateDefaultContext()
         self._sides = [
@@ -126,25 +125,31 @@ class GripContact(LeafSystem):
         points, forces = np.zeros((len(self.fingers), 3)), np.zeros((len(self.fingers), 3))
         self._plant.SetPositionsAndVelocities(self._own, state)
         loose = self._first if loose is None else loose
-        pipe = loose.now(self._hands())
-        carrier = SIDES.index(loose.holder) if loose.holder else None
-        for side, (hand, parts) in zip(SIDES, self._sides, strict=True):
+        hands = self._hands()
+        pipe, with_both = (
+            loose.now(hands),
+            () if loose.both is None else loose.both.places((hands[0], hands[1])),
+        )
+        for index, (side, (hand, parts)) in enumerate(zip(SIDES, self._sides, strict=True)):
+            holds = loose.holder == side or bool(with_both)
+            if (
+                with_both
+            ):  # each hand's fingers press the pipe as that hand took it; the rest is in its spring
+                turned, point = with_both[index]
+                pipe = replace(pipe, point=point, axis=turned[:, 2])
             pose = self._plant.EvalBodyPoseInWorld(self._own, hand)
             if np.linalg.norm(_square_to(pipe, pose.translation() - pipe.point)) > self._reach:
                 continue
+            carried = self._plant.EvalBodySpatialVelocityInWorld(self._own, hand)
             for body, chosen, ends, radii in parts:
-                if loose.holder == side and body is hand:  # they move as one
-                    continue
                 place = self._plant.EvalBodyPoseInWorld(self._own, body)
                 velocity = self._plant.EvalBodySpatialVelocityInWorld(self._own, body)
                 turning, sliding = velocity.rotational(), velocity.translational()
-                if carrier is not None:  # the pipe moves with the hand that holds it
-                    holder = self._sides[carrier][0]
-                    carried = self._plant.EvalBodySpatialVelocityInWorld(self._own, holder)
+                if holds:  # the pipe moves with the hand; only the moving finger moves against it
+                    if body is hand:
+                        continue
                     turning = turning - carried.rotational()
-                    arm = (
-                        place.translation() - self._plant.EvalBodyPoseInWorld(self._own, holder).translation()
-                    )
+                    arm = place.translation() - pose.translation()
                     sliding = sliding - carried.translational() - np.cross(carried.rotational(), arm)
                 _touch(
                     ends,
@@ -188,28 +193,13 @@ class GripContact(LeafSystem):
                 mine = [(owner, finger.link) == (side, part) for owner, finger in self.fingers]
                 pressed.append(float(sizes[mine].sum()) >= self._carries)
             takes = pressed[1] and self._jaws[side].get_angular_rate(self._own) <= 0.0
-            has = loose.holder and (loose.holder == side or loose.second is not None)
-            gripped.append(pressed[0] and (takes or bool(has)))
+            holds = loose.holder == side or loose.both is not None
+            gripped.append(pressed[0] and (takes or holds))
         after = loose.step(self._hands(), gripped, self._table, self._period)
-        if after.second is not None and loose.second is not None:
-            after = self._slipped(after, self.plant_state.Eval(context))
         if loose.holder and not after.holder:
             after = self._sprung_off(after, self.plant_state.Eval(context))
         if after is not loose:
             state.get_mutable_abstract_state(int(self._loose)).set_value(after)
-
-    def _slipped(self, loose: LoosePipe, state: Array) -> LoosePipe:
-        """Where friction is not enough, the second hand slides on until the spring is as strong as that."""
-        at_rest = np.array(state)
-        at_rest[self._plant.num_positions() :] = 0.0
-        _, pushes = self.touches(at_rest, loose)
-        share = self._held_by_friction(loose, pushes)[3]
-        if share <= 1.0 or loose.second is None:
-            return loose
-        along, about = loose.beside(self._hands())
-        turn = (about - loose.second[1] + np.pi) % (2.0 * np.pi) - np.pi
-        kept = 1.0 / share
-        return replace(loose, second=(along - kept * (along - loose.second[0]), about - kept * turn))
 
     def _sprung_off(self, loose: LoosePipe, state: Array) -> LoosePipe:
         """A pipe that has just been let go, as far aside as the fingers that still stand had been pressed into it.
@@ -236,70 +226,53 @@ class GripContact(LeafSystem):
             force.p_BoBq_B = points[index]
             force.F_Bq_W = SpatialForce(_NO_TORQUE, pushes[index])
             forces.append(force)
-            if loose.holder:  # what a finger presses, the hand that has the pipe holds against
-                where = self._where(index, points[index])
-                forces.append(self._on_hand(loose.holder, where, -pushes[index]))
-        if loose.second is not None:
-            push, twist, where, _ = self._held_by_friction(loose, pushes)
-            forces.append(self._on_hand(_other(loose.holder), where, push, twist))
-            forces.append(self._on_hand(loose.holder, where, -push, -twist))
-        if loose.holder:
+            side = self.fingers[index][0]
+            if (
+                loose.both is not None or loose.holder == side
+            ):  # what the finger presses, the hand holds against
+                finger = self._sides[SIDES.index(side)][1][1][0]
+                where = self._plant.EvalBodyPoseInWorld(self._own, finger).multiply(points[index])
+                forces.append(self._on_hand(side, where, -pushes[index]))
+        if loose.both is not None:
+            push, twist, (_, middle) = self._internal(loose, pushes)
+            half = np.array([0.0, 0.0, -0.5 * self._weight])  # as both grips are alike
+            forces.append(self._on_hand("right", middle, push + half, twist))
+            forces.append(self._on_hand("left", middle, half - push, -twist))
+        elif loose.holder:
             middle = loose.now(self._hands()).point
             forces.append(self._on_hand(loose.holder, middle, np.array([0.0, 0.0, -self._weight])))
         output.set_value(forces)
 
-    def _where(self, index: int, point: Array) -> Array:
-        """A point of a finger's link in the world frame, the plant as in this system's own context."""
-        side, finger = self.fingers[index]
-        body = self._sides[SIDES.index(side)][1][(FIXED, MOVING).index(finger.link)][0]
-        return np.array(self._plant.EvalBodyPoseInWorld(self._own, body).multiply(point))
+    def _internal(self, loose: LoosePipe, pushes: Array) -> tuple[Array, Array, Pose]:
+        """What the left hand does to a pipe that both hold; the plant as in this system's own context."""
+        assert loose.both is not None  # else this is not called
+        right, left = self._hands()
+        rates = []
+        for (hand, _), (_, middle) in zip(self._sides, loose.both.places((right, left)), strict=True):
+            velocity = self._plant.EvalBodySpatialVelocityInWorld(self._own, hand)
+            arm = middle - self._plant.EvalBodyPoseInWorld(self._own, hand).translation()
+            sliding = velocity.translational() + np.cross(velocity.rotational(), arm)
+            rates.append(np.concatenate([sliding, velocity.rotational()]))
+        damping_time = self._damping * self._pressed(pushes) / self._stiffness
+        return loose.both.internal((right, left), (rates[0], rates[1]), damping_time)
 
-    def _held_by_friction(self, loose: LoosePipe, pushes: Array) -> tuple[Array, Array, Array, float]:
-        """Friction on the second hand: force in N, moment in N m, the point of both, and the share of mu F used.
-
-        A share above 1 is what would be needed; the force is that of 1.
-        """
-        assert loose.second is not None  # else this is not called
-        side, pipe = _other(loose.holder), loose.now(self._hands())
-        hand, holder = (self._sides[SIDES.index(each)][0] for each in (side, loose.holder))
-        along, about = loose.beside(self._hands())
-        where = pipe.point + along * pipe.axis
-        own, carried = (
-            self._plant.EvalBodySpatialVelocityInWorld(self._own, body) for body in (hand, holder)
-        )
-        places = [self._plant.EvalBodyPoseInWorld(self._own, body).translation() for body in (hand, holder)]
+    def _pressed(self, pushes: Array) -> float:
+        """The smaller force of both moving fingers in N."""
+        sizes = np.linalg.norm(pushes, axis=1)
         moving = [
-            velocity.translational() + np.cross(velocity.rotational(), where - place)
-            for velocity, place in zip((own, carried), places, strict=True)
+            [owner == side and finger.link == MOVING for owner, finger in self.fingers] for side in SIDES
         ]
-        normal = float(
-            sum(np.linalg.norm(pushes[i]) for i, (owner, _) in enumerate(self.fingers) if owner == side)
-        )
-        turn = (about - loose.second[1] + np.pi) % (2.0 * np.pi) - np.pi
-        slid = np.array([along - loose.second[0], turn * pipe.radius])
-        rate = np.array([
-            (moving[0] - moving[1]) @ pipe.axis,
-            (own.rotational() - carried.rotational()) @ pipe.axis * pipe.radius,
-        ])  # fmt: skip
-        wanted = -self._tangential * slid - self._damping * normal * rate
-        most, size = self._friction * normal, float(np.linalg.norm(wanted))
-        share = size / most if most > 0.0 else 0.0
-        held = wanted * (1.0 / share if share > 1.0 else 1.0) if most > 0.0 else np.zeros(2)
-        return held[0] * pipe.axis, held[1] * pipe.radius * pipe.axis, where, share
+        return float(min(sizes[each].sum() for each in moving))
 
     def _calc_internal(self, context: Context, output: BasicVector) -> None:
         loose = self.pipe_in(context)
-        if loose.second is None:
+        if loose.both is None:
             output.SetFromVector(np.zeros(7))
             return
-        points, pushes = self.touches(self.plant_state.Eval(context), loose)
-        middle = loose.now(self._hands()).point
-        push, twist, where, share = self._held_by_friction(loose, pushes)
-        force, moment = -push, -twist - np.cross(where - middle, push)
-        for index, (side, _) in enumerate(self.fingers):
-            if side != loose.holder:
-                force = force - pushes[index]
-                moment = moment - np.cross(self._where(index, points[index]) - middle, pushes[index])
+        _, pushes = self.touches(self.plant_state.Eval(context), loose)
+        force, moment, (turned, _) = self._internal(loose, pushes)
+        normal = 2.0 * self._pressed(pushes)  # the fixed fingers press as much as the moving one
+        share = loose.both.friction_used(force, moment, turned[:, 2], normal)
         output.SetFromVector([*force, *moment, share])
 
     def _on_hand(
@@ -323,10 +296,6 @@ class GripContact(LeafSystem):
         self._plant.SetPositionsAndVelocities(self._own, self.plant_state.Eval(context))
         pipe = self.pipe_in(context).now(self._hands())
         output.SetFromVector([*pipe.point, *pipe.axis])
-
-
-def _other(side: str) -> str:
-    return SIDES[1 - SIDES.index(side)]
 
 
 @njit(cache=True)

@@ -1,8 +1,8 @@
 """A pipe that can be carried: it stands, follows the hand that grips it, or falls.
 
-Kinematic: no force moves the pipe. Not held, it stands like a rock on what carries it; held, it is part of the hand
-that took it first, and what a second hand does to it goes on to that one (`grip_contact.GripContact`); let go, it falls
-straight down with the attitude that it has and stops on the table, or on the floor.
+Kinematic: no force moves the pipe. Not held, it stands like a rock on what carries it; held, it is part of the hand;
+held by both, it lies where their grips agree (`held_by_both`); let go, it falls straight down with the attitude that it
+has and stops on the table, or on the floor.
 """
 
 from collections.abc import Sequence
@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 from pydrake.multibody.tree import UniformGravityFieldElement
 
 from hydrolek_drake.kinematics.chain import SIDES
+from hydrolek_drake.workcell.held_by_both import HeldByBoth, Pose, take
 from hydrolek_drake.workcell.pipe import Pipe, workcell_entries
 from hydrolek_drake.workcell.table import Table
 
 Array = NDArray[np.float64]
-Pose = tuple[Array, Array]
-"""Rotation matrix (3, 3) and position in m (3,) of a hand in the world frame."""
 
 GRAVITY = float(UniformGravityFieldElement.kDefaultStrength)  # m/s^2
 
@@ -32,28 +31,24 @@ class LoosePipe:
         holder: `right`, `left`, or empty.
         taken: Pose of the hand when it took the pipe; None while nobody holds it.
         falling: Speed downwards in m/s.
-        second: Place of the other hand against the pipe when that took it too: along the axis in m, about it in rad;
-            None while at most one hand holds it.
+        both: How both hands have it; None while at most one holds it.
     """
 
     pipe: Pipe
     holder: str = ""
     taken: Pose | None = None
     falling: float = 0.0
-    second: tuple[float, float] | None = None
-
-    def beside(self, hands: Sequence[Pose]) -> tuple[float, float]:
-        """Where the hand that is not the holder's is against the pipe: along its axis in m, about it in rad."""
-        (before, _), (turned, _) = self.taken or hands[0], hands[SIDES.index(self.holder)]
-        pipe, (rotation, here) = self.now(hands), hands[1 - SIDES.index(self.holder)]
-        frame = turned @ before.T @ self.pipe.rotation()  # goes with the pipe
-        seen = frame.T @ rotation[:, 0]
-        return float((here - pipe.point) @ pipe.axis), float(np.arctan2(seen[1], seen[0]))
+    both: HeldByBoth | None = None
 
     def now(self, hands: Sequence[Pose]) -> Pipe:
         """Where the pipe is while the hands (right, left) are there."""
         if self.taken is None:
             return self.pipe
+        if self.both is not None:
+            right, left = hands
+            still = np.zeros(6)
+            turn, point = self.both.internal((right, left), (still, still), 0.0)[2]
+            return replace(self.pipe, point=point, axis=turn[:, 2])
         (before, there), (turned, here) = self.taken, hands[SIDES.index(self.holder)]
         rotation = turned @ before.T
         return self.pipe.moved(rotation, here - rotation @ there)
@@ -72,9 +67,12 @@ class LoosePipe:
         pipe = self.now(hands)
         if self.holder and gripped[SIDES.index(self.holder)]:
             both = gripped[1 - SIDES.index(self.holder)]
-            if both == (self.second is not None):
+            if both == (self.both is not None):
                 return self
-            return replace(self, second=self.beside(hands) if both else None)
+            if both:
+                right, left = hands
+                return replace(self, both=take(pipe, (right, left)))
+            return LoosePipe(pipe, self.holder, hands[SIDES.index(self.holder)])
         for side, hand, grips in zip(SIDES, hands, gripped, strict=True):
             if grips:
                 return LoosePipe(pipe, side, hand)

@@ -244,8 +244,15 @@ class HydraulicArms:
         context = self._contact.GetMyContextFromRoot(self._root)
         return np.array(self._contact.pipe_place.Eval(context))
 
+    def holders(self) -> int:
+        """How many hands hold a loose pipe."""
+        if self._contact is None:
+            return 0
+        loose = self._contact.pipe_in(self._contact.GetMyContextFromRoot(self._root))
+        return int(bool(loose.holder)) + int(loose.both is not None)
+
     def internal_force(self) -> Array:
-        """What the second hand on a pipe that both hold does to it: force, moment, share of friction; shape (7,).
+        """What the left hand does to a pipe that both hold: force, moment, share of friction; shape (7,).
 
         See `GripContact`'s port of that name.
         """
