@@ -49,7 +49,6 @@ def carry(
 
     from hydrolek_drake.control.names import check_names
 
-    logging.getLogger("drake").setLevel(logging.WARNING)
     if plant not in ("full", "none"):
         raise InputError(f"carry: --plant {plant} is unknown; choose full or none")
     check_names([controller])
@@ -58,6 +57,7 @@ def carry(
     from hydrolek_drake.cli.output import console, progress
     from hydrolek_drake.files import write_results
 
+    logging.getLogger("drake").setLevel(logging.WARNING)  # once pydrake has set it up
     way = carry_entries("move")["shift"] if shift is None else shift
     move = Move(np.array(way, dtype=float), np.array(turn_axis, dtype=float), math.radians(turn))
     pipe = pipe_to_carry(pipe_point, pipe_axis, pipe_length)

@@ -83,7 +83,7 @@ def object_path(pose: ArrayLike, shift: ArrayLike, axis: ArrayLike, angle: float
         raise InputError(
             "the object is to turn about an axis without length; give three numbers, not all zero"
         )
-    count = max(2, int(np.ceil(max(np.linalg.norm(way), abs(angle)) / step)) + 1)
+    count = max(2, int(np.ceil(max(float(np.linalg.norm(way)), abs(angle)) / step)) + 1)
     path = np.tile(start, (count, 1, 1))
     for index, share in enumerate(np.linspace(0.0, 1.0, count)):
         if angle:

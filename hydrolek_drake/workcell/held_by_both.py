@@ -48,7 +48,7 @@ class HeldByBoth:
     @cached_property
     def stiffness(self) -> Array:
         """Of both grips one behind the other, shape (6, 6)."""
-        return np.linalg.inv(self.compliances.sum(axis=0))
+        return np.asarray(np.linalg.inv(self.compliances.sum(axis=0)), dtype=float)
 
     def _compliance(self, along: float) -> Array:
         values = workcell_entries()["contact"]
@@ -63,7 +63,7 @@ class HeldByBoth:
         # a displacement of the middle moves the grip, `along` beyond it on the axis, by u + theta x a
         to_grip = np.eye(6)
         to_grip[:3, 3:] = -_cross([0.0, 0.0, along])
-        return np.linalg.inv(to_grip.T @ own @ to_grip)
+        return np.asarray(np.linalg.inv(to_grip.T @ own @ to_grip), dtype=float)
 
     def places(self, hands: tuple[Pose, Pose]) -> tuple[Pose, Pose]:
         """Where the pipe would be if each hand had it alone, world frame."""
