@@ -1,6 +1,7 @@
 """One planned task for all tests, from a rendered frame as the console plans it; a console in a thread; a browser."""
 
 import asyncio
+import contextlib
 import os
 import shutil
 import threading
@@ -54,6 +55,19 @@ def planner():
 @pytest.fixture
 def browser():
     """Debian's Chromium, or Chrome, driven by Playwright; a test that asks for it is skipped where one is absent."""
+    with _chromium() as context:
+        yield context
+
+
+@pytest.fixture(scope="module")
+def one_browser():
+    """The same for all tests of a file."""
+    with _chromium() as context:
+        yield context
+
+
+@contextlib.contextmanager
+def _chromium():
     playwright = pytest.importorskip(
         "playwright.sync_api", reason="Playwright drives the browser and is absent: pip install playwright"
     )

@@ -2,13 +2,13 @@
 // sent again each 100 ms, and the machine stops by itself when the messages cease.
 "use strict";
 const HAND_PERIOD = 100; // ms
-const STICK_PLAY = 0.15; // of a gamepad's sticks around their middle
 
 function makeManual(send) {
   const $ = id => document.getElementById(id), JOINTS = 14;
   const held = new Array(JOINTS).fill(0), sliders = [], readings = [], touched = new Array(JOINTS).fill(false), buttons = [];
   let allowed = false, going = false, sliding = false, state = null;
-  const release = () => { held.fill(0); sliding = false; document.querySelectorAll("#hand button, #hold").forEach(b => b.classList.remove("held")); tell(); };
+  const gamepad = makeGamepad($("gamepad"));
+  const release = () => { held.fill(0); gamepad.ignore(); sliding = false; document.querySelectorAll("#hand button, #hold").forEach(b => b.classList.remove("held")); tell(); };
   function holds(button, begin, end) { // pointer, or Space and Enter on the focused button
     const start = event => { event.preventDefault(); if (!allowed) return; begin(); button.classList.add("held"); tell(); };
     const stop = () => { end(); button.classList.remove("held"); tell(); };
@@ -37,30 +37,20 @@ function makeManual(send) {
   document.addEventListener("visibilitychange", () => { if (document.hidden) release(); });
   document.addEventListener("keydown", event => { if (event.key === "Escape") release(); }, true);
 
-  function gamepad() { // L1 held moves the left arm, R1 the right one; deflections in shares, or null
-    const pads = navigator.getGamepads ? [...navigator.getGamepads()].filter(Boolean) : [];
-    $("gamepad").textContent = pads.length ? "Gamepad: hold L1 for the left arm, R1 for the right; sticks joints 1 to 4, cross 5 and 6, A and B the jaw." : "";
-    if (!pads.length) return null;
-    const pad = pads[0], down = i => pad.buttons[i] && pad.buttons[i].pressed;
-    if (down(4) === down(5)) return null; // none, or both
-    const stick = i => Math.abs(pad.axes[i] || 0) > STICK_PLAY ? pad.axes[i] : 0;
-    const wish = new Array(JOINTS).fill(0), at = down(4) ? 7 : 0;
-    [stick(0), -stick(1), -stick(3), stick(2), down(12) - down(13), down(15) - down(14), down(1) - down(0)].forEach((value, i) => { wish[at + i] = value; });
-    return wish;
-  }
   function want(message) { // a new wish first says that the last one has ended: after a stop only that counts
     if (!going) send({do: "let_go"});
     going = true; send(message);
   }
   function tell() {
-    const pad = gamepad(), full = Number($("deflection").value);
+    const pad = gamepad.wish(), full = Number($("deflection").value);
     const wish = held.map((value, j) => full * (value || (pad ? pad[j] : 0)));
     if (allowed && sliding) want({do: "sliders_to", angles_deg: sliders.map(s => Number(s.value))});
-    else if (allowed && wish.some(Boolean)) want({do: "joystick", deflection: wish});
+    else if (allowed && (wish.some(Boolean) || going && pad)) want({do: "joystick", deflection: wish}); // a stick in its middle is not yet let go
     else if (going) { going = false; send({do: "let_go"}); }
   }
   setInterval(tell, HAND_PERIOD);
   return {
+    release,
     draw(next, mayMove) {
       state = next;
       if (allowed && !mayMove) { allowed = false; release(); }

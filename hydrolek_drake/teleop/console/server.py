@@ -81,7 +81,7 @@ class Console:
             [
                 (r"/", Page, settings),
                 (r"/(colour|edges)\.jpg", Picture, settings),
-                (r"/(charts|manual|trial)\.js", Script, settings),
+                (r"/(charts|gamepad|manual|trial)\.js", Script, settings),
                 (r"/icon\.svg", Icon, settings),
                 (r"/socket", Socket, settings),
                 (r".*", Nothing, settings),
