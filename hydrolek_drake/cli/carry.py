@@ -82,6 +82,12 @@ def carry(
         print(json.dumps(found))
         return
     console().print(_table(found))
+    if "plant" in found:
+        off, most = (found["plant"][name] for name in ("chain_error_mm", "tolerance_mm"))
+        console().print(
+            f"the hands came {off:.1f} mm off their hold, {'within' if off <= most else 'beyond'} the {most:g} mm "
+            "that are tolerated"
+        )
     if out is not None:
         console().print(
             f"wrote {', '.join(str(out / name) for name in contents)}", markup=False, soft_wrap=True

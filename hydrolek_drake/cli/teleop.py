@@ -101,7 +101,16 @@ def teleop(
         raise InputError("teleop: --link-token belongs to --controllers HOST:PORT; leave it out")
     if settings and (plant == "simple" or address is not None):
         raise InputError("teleop: --set is the full plant's; leave it out")
-    _check_camera(camera, pipe_point, pipe_axis, loose, stand)
+    place = None
+    if stand is not None:
+        if camera != "sim" or loose or pipe_point is not None or pipe_axis is not None:
+            raise InputError(
+                "teleop: --stand says where the simulated camera's pipe is; leave the others out"
+            )
+        from hydrolek_drake.standing.place_file import read_place
+
+        place = read_place(stand)
+    _check_camera(camera, pipe_point, pipe_axis, loose)
 
     from hydrolek_drake.teleop.console.server import Console
     from hydrolek_drake.teleop.controllers.plant_process import PlantProcess
@@ -114,11 +123,8 @@ def teleop(
     pipe = None
     if camera == "sim":
         pipe = make_pipe(pipe_point, pipe_axis) if table is None else make_loose_pipe(table)
-        if stand is not None:
-            from hydrolek_drake.standing.report import read_place
-
-            placement, there = read_place(stand)
-            pipe = placement.pipe_seen(there)
+        if place is not None:
+            pipe = place[0].pipe_seen(place[1])
     process = None
     if plant == "full" and address is None:
         with output().status("starting the hydraulic plant: step tests of all joints"):
@@ -208,9 +214,7 @@ def _session(
     return OperatorSession(lambda: FolderSource(Path(camera)), machine, seed=seed)
 
 
-def _check_camera(
-    camera: str, point: _Vector | None, axis: _Vector | None, loose: bool, stand: Path | None
-) -> None:
+def _check_camera(camera: str, point: _Vector | None, axis: _Vector | None, loose: bool) -> None:
     """Refuse what would be refused only after the plant has been started."""
     from hydrolek_drake.vision.frames import FolderSource
 
@@ -220,8 +224,6 @@ def _check_camera(
         raise InputError(
             "teleop: --loose puts the simulated camera's pipe on the table; leave the others out"
         )
-    if stand is not None and (camera != "sim" or loose or point is not None or axis is not None):
-        raise InputError("teleop: --stand says where the simulated camera's pipe is; leave the others out")
     if camera not in ("sim", "live"):
         FolderSource(Path(camera))
 

@@ -29,6 +29,16 @@ _SI = {
 }  # fmt: skip
 """Part -> name -> SI unit of `base.yaml`; what is a range has two values, the lower first."""
 _RANGES = (("tracks", "x"), ("tracks", "y"), ("tracks", "heading"), ("boom", "angle"))
+_WITHIN = {
+    "distance_step": (0.01, 1.0),
+    "heading_step": (math.radians(1.0), math.tau),
+    "boom_step": (math.radians(1.0), math.pi),
+    "rounds": (0, 10),
+    "refined": (1, 100),
+    "looked_at": (1, 100_000),
+    "apart": (0.0, 10.0),
+}
+"""What a search can be set to, in SI: beyond, it would take forever or see nothing."""
 _STEEP = math.pi / 2  # rad: a boom beyond the vertical would lean back over the base
 _ROUNDING = 1e-9
 
@@ -147,26 +157,24 @@ def load_base(path: Path | None = None) -> Base:
     Raises:
         InputError: The file cannot be read, or an entry is unknown, no number, of another unit, or turned round.
     """
-    values = _values(package_yaml(__package__, "base.yaml"), "base.yaml")
+    values, where = _values(package_yaml(__package__, "base.yaml"), "base.yaml"), str(path or "base.yaml")
     if path is not None:
         for part, entries in _values(read_yaml(path, "base file"), str(path)).items():
             values[part] |= entries
     for part, name in _RANGES:
         low, high = values[part][name]
         if not low <= high:
+            raise InputError(f"{where}: {part}.{name} is [{low:g}, {high:g}]; give the lower value first")
+    for name in _SI["wanted"]:
+        if not values["wanted"][name] > 0.0:
+            raise InputError(f"{where}: wanted.{name} is {values['wanted'][name]:g}; give a positive number")
+    for name, (low, high) in _WITHIN.items():
+        if not low <= values["search"][name] <= high:
             raise InputError(
-                f"{path or 'base.yaml'}: {part}.{name} is [{low:g}, {high:g}]; give the lower value first"
-            )
-    for part, name in (
-        *(("wanted", name) for name in _SI["wanted"]),
-        *(("search", name) for name in _SI["search"]),
-    ):
-        if not values[part][name] > 0.0:
-            raise InputError(
-                f"{path or 'base.yaml'}: {part}.{name} is {values[part][name]:g}; give a positive number"
+                f"{where}: search.{name} is {values['search'][name]:g} in SI; give {low:g} to {high:g}"
             )
     if not -_STEEP < values["boom"]["angle"][0] <= values["boom"]["angle"][1] < _STEEP:
-        raise InputError(f"{path or 'base.yaml'}: boom.angle must lie between -90 and 90 deg")
+        raise InputError(f"{where}: boom.angle must lie between -90 and 90 deg")
     tracks, wanted = values["tracks"], values["wanted"]
     return Base(
         tracks["x"], tracks["y"], tracks["heading"], values["boom"]["angle"], tracks["keep"],

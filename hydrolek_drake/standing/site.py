@@ -24,6 +24,7 @@ _BLOCK = ("name", "middle", "size", "heading_deg")
 _TAKEN = ("world", "plate", "floor", "brokk", "right", "left")
 """How the names of what is there already begin."""
 _MOST_BLOCKS = 100
+_FARTHEST = 100.0  # m: what is farther or larger is a mistake
 
 
 @dataclass(frozen=True)
@@ -43,6 +44,11 @@ class Site:
     blocks: tuple[Block, ...] = ()
 
     def __post_init__(self) -> None:
+        lengths = [*self.pipe.point, self.pipe.radius, self.pipe.length]
+        for block in self.blocks:
+            lengths += [*block.middle, *block.size]
+        if not all(abs(length) <= _FARTHEST for length in lengths):
+            raise InputError(f"a length or place of the site is beyond {_FARTHEST:g} m; give metres")
         for name, along in (("grasp", self.grasp), ("cut", self.cut)):
             if not abs(along) <= 0.5 * self.pipe.length:
                 raise InputError(

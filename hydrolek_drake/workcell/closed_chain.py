@@ -21,6 +21,7 @@ from hydrolek_drake.kinematics.inverse import inverse_pose
 Array = NDArray[np.float64]
 
 _BRANCH = 0.5  # rad between neighbouring postures: more is another branch of the inverse kinematics
+_LONGEST = 10_000  # steps of a path
 _TURNED = 1e-6  # largest entry by which a tool's attitude may miss the wanted one
 
 
@@ -82,6 +83,10 @@ def object_path(pose: ArrayLike, shift: ArrayLike, axis: ArrayLike, angle: float
     if angle and length < 1e-9:
         raise InputError(
             "the object is to turn about an axis without length; give three numbers, not all zero"
+        )
+    if max(float(np.linalg.norm(way)), abs(angle)) > _LONGEST * step:
+        raise InputError(
+            f"the object is to go {np.linalg.norm(way):.3g} m and turn {abs(angle):.3g} rad; no arm reaches so far"
         )
     count = max(2, int(np.ceil(max(float(np.linalg.norm(way)), abs(angle)) / step)) + 1)
     path = np.tile(start, (count, 1, 1))

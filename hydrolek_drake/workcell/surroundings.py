@@ -3,14 +3,16 @@
 import math
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydrake.math import RigidTransform, RollPitchYaw
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.kinematics.arms import arms_urdf_path
+
+if TYPE_CHECKING:
+    from pydrake.math import RigidTransform
 
 Array = NDArray[np.float64]
 
@@ -33,8 +35,13 @@ class Block:
     size: Array
     heading: float = 0.0
 
-    def pose(self) -> RigidTransform:
+    def pose(self) -> "RigidTransform":
         """Of its middle."""
+        from pydrake.math import (
+            RigidTransform,
+            RollPitchYaw,
+        )  # takes a while to load, which bad input need not wait for
+
         return RigidTransform(RollPitchYaw(0.0, 0.0, self.heading), self.middle)
 
     def moved(self, heading: float, translation: ArrayLike) -> "Block":
@@ -66,6 +73,10 @@ class Surroundings:
 
     def urdf(self) -> str:
         """Text of the arms' URDF with base and boom in their places."""
+        from pydrake.math import RigidTransform, RollPitchYaw
+
+        from hydrolek_drake.kinematics.arms import arms_urdf_path
+
         text = arms_urdf_path().read_text(encoding="utf-8")
         if self.plate_shift == (0.0, 0.0) and self.boom_turn == 0.0:
             return text
@@ -97,6 +108,8 @@ class Surroundings:
 @cache
 def boom_pins() -> tuple[Array, Array]:
     """Where the URDF draws the boom's pivot on the base and its pin at the plate, world frame, in m, each (3,)."""
+    from hydrolek_drake.kinematics.arms import arms_urdf_path
+
     robot = ElementTree.parse(arms_urdf_path()).getroot()
     found = {}
     for shape in robot.iter("visual"):

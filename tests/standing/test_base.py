@@ -80,6 +80,8 @@ def test_base_clearance_is_the_distance_of_a_block_from_the_tracks():
         ("boom: {angle: {value: [0, 120], unit: deg}}", "between -90 and 90"),
         ("tracks: {x: {value: 3, unit: m}}", "lower, upper"),
         ("search: {rounds: {value: .nan, unit: '1'}}", "finite"),
+        ("search: {heading_step: {value: 1.0e-6, unit: deg}}", "heading_step"),
+        ("wanted: {clearance: {value: 0, unit: mm}}", "positive"),
         ("[]", "give the parts"),
     ],
 )

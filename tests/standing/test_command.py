@@ -23,6 +23,8 @@ from hydrolek_drake.cli.app import run
         ),
         ("grasp: .inf", "finite"),
         ("- 1", "give pipe"),
+        ("pipe: {length: 1.0e+300}", "beyond 100 m"),
+        ("pipe: {point: [1.0e+200, 0, 1]}", "beyond 100 m"),
     ],
 )
 def test_a_bad_site_is_refused_in_one_line(tmp_path, capsys, text, said):

@@ -11,8 +11,9 @@ from hydrolek_drake.kinematics.chain import SIDES, arm_chain
 from hydrolek_drake.standing import reach
 from hydrolek_drake.standing.base import Placement, drawn_boom_angle, load_base
 from hydrolek_drake.standing.picture import standing_png
+from hydrolek_drake.standing.place_file import read_place
 from hydrolek_drake.standing.reach import Stage
-from hydrolek_drake.standing.report import answer_json, read_place
+from hydrolek_drake.standing.report import answer_json
 from hydrolek_drake.standing.search import StandingSearch
 from hydrolek_drake.standing.site import FLOOR, Site
 from hydrolek_drake.teleop.plan import STEPS

@@ -73,7 +73,12 @@ def test_a_way_out_of_reach_is_refused_with_arm_place_and_reason(posture):
 
 @pytest.mark.parametrize(
     ("shift", "axis", "angle"),
-    [((0, 0), (0, 0, 1), 0.0), ((0, 0, np.nan), (0, 0, 1), 0.0), ((0, 0, 0), (0, 0, 0), 0.1)],
+    [
+        ((0, 0), (0, 0, 1), 0.0),
+        ((0, 0, np.nan), (0, 0, 1), 0.0),
+        ((0, 0, 0), (0, 0, 0), 0.1),
+        ((1e9, 0, 0), (0, 0, 1), 0.0),
+    ],
 )
 def test_a_way_that_is_none_is_refused(shift, axis, angle):
     with pytest.raises(InputError):
