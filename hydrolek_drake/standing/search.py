@@ -32,6 +32,7 @@ Array = NDArray[np.float64]
 EITHER = "either"
 _LOOK = 4.0  # of the wanted clearance: nothing farther is looked for
 _MOST_BUILT = 12  # worlds of collisions kept
+_TOLD = 8  # times that the progress of a map is told
 _SAMPLES = 25  # of each step of a plan, for its margin
 
 
@@ -153,7 +154,7 @@ class StandingSearch:
         points = self.coarse_map()
         reached = [point for point in points if point.stage is Stage.REACHED]
         reached = self._in_turn(reached)
-        self._tell(f"{len(points)} places: {len(reached)} by kinematics; checking collisions")
+        self._tell(f"{len(points)} places: {len(reached)} by kinematics" + ("; checking collisions" if reached else ""))
         looked: list[_Looked] = []
         for index, point in enumerate(reached[: int(settings["looked_at"])]):
             found = self._look(point.placement, point.grasping)
@@ -172,10 +173,12 @@ class StandingSearch:
 
     def coarse_map(self) -> tuple[MapPoint, ...]:
         """All places of the grid within the ranges, each with what kinematics and the base's shape say of it."""
-        points = []
-        for placement in self._grid():
-            for side in self._sides:
-                points.append(self.point(placement, side))
+        points: list[MapPoint] = []
+        grid = list(self._grid())
+        for index, placement in enumerate(grid):
+            if index % max(1, len(grid) // _TOLD) == 0 and index:
+                self._tell(f"kinematics: {index} of {len(grid)} places")
+            points += [self.point(placement, side) for side in self._sides]
         return tuple(points)
 
     def look(self, placement: Placement, grasping: str) -> tuple[Margins, ToolPaths]:
