@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from hydrolek_drake.standing.search import Answer
 
 _Vector = tuple[float, float, float]
-_GRASP, _CUT = -0.05, 0.12  # m along the pipe from its middle, unless said otherwise
 
 
 def stand(
@@ -50,21 +49,16 @@ def stand(
     import numpy as np
 
     from hydrolek_drake.standing.base import load_base
-    from hydrolek_drake.standing.site import Site, read_site
+    from hydrolek_drake.standing.site import make_site, read_site
 
     logging.getLogger("drake").setLevel(logging.WARNING)
     parts = {} if site is None else read_site(site)
     given = {"point": pipe_point, "axis": pipe_axis, "radius": pipe_radius, "length": pipe_length}
-    pipe_parts = parts.get("pipe", {}) | {name: value for name, value in given.items() if value is not None}
-
-    from hydrolek_drake.workcell.pipe import make_pipe
-
-    place = Site(
-        make_pipe(**pipe_parts),
-        parts.get("grasp", _GRASP) if grasp is None else grasp,
-        parts.get("cut", _CUT) if cut is None else cut,
-        parts.get("blocks", ()),
-    )
+    parts["pipe"] = parts.get("pipe", {}) | {
+        name: value for name, value in given.items() if value is not None
+    }
+    parts |= {name: value for name, value in (("grasp", grasp), ("cut", cut)) if value is not None}
+    place = make_site(parts, "" if site is None else str(site))
     ranges = load_base(base)
 
     from hydrolek_drake.cli.output import console, progress

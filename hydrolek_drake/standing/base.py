@@ -199,8 +199,11 @@ def _values(data: Any, where: str) -> dict[str, dict[str, Any]]:
                 "unit",
             }:
                 raise InputError(f"{place}: give value, unit and source")
-            unit, wanted = str(entry["unit"]), _SI[part][name]
-            factor = si_factor(unit, wanted) if wanted else 1.0
+            wanted = _SI[part][name]
+            try:
+                factor = si_factor(str(entry["unit"]), wanted) if wanted else 1.0
+            except InputError as error:
+                raise InputError(f"{place}: {error}") from None
             found[part][name] = _number(entry["value"], factor, place, pair=(part, name) in _RANGES)
     return found
 

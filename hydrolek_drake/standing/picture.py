@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hydrolek_drake.kinematics.chain import SIDES
-from hydrolek_drake.kinematics.forward import arm_geometry
+from hydrolek_drake.kinematics.forward import joint_positions
 from hydrolek_drake.kinematics.frames import fixed_pose
 from hydrolek_drake.standing.base import Placement
 from hydrolek_drake.standing.clearance import base_boxes
@@ -133,7 +133,8 @@ def _draw_machine(axis: Any, standing: Standing, plane: tuple[int, int], faint: 
     cut = standing.plan.cut
     shown[cut.side] = cut.angles[len(cut.angles) // 2]
     for side in SIDES:
-        points = _joints_of(side, shown[side]) @ turn.T + origin
+        pose = fixed_pose("world", f"{side}_base")
+        points = (joint_positions(shown[side]) @ pose[:3, :3].T + pose[:3, 3]) @ turn.T + origin
         role = "grasps" if side == standing.grasping else "cuts"
         axis.plot(
             points[:, plane[0]], points[:, plane[1]], "o-", color=_ARMS[side], linewidth=2.5, markersize=3.5,
@@ -143,23 +144,6 @@ def _draw_machine(axis: Any, standing: Standing, plane: tuple[int, int], faint: 
             blade = points[-1] + kinect_entries("targets")["blade_reach"] * (turn @ cut.direction)
             ends = np.array([points[-1], blade])
             axis.plot(ends[:, plane[0]], ends[:, plane[1]], ":", color=_ARMS[side], linewidth=2.0)
-
-
-def _joints_of(side: str, angles: Array) -> Array:
-    """Joints and tool of an arm in the arms' world frame, thesis (5.3) link by link, shape (n, 3)."""
-    geometry, pose = arm_geometry(), fixed_pose("world", f"{side}_base")
-    turn, here, points = np.eye(3), np.array(geometry.link_vectors[0]), [np.zeros(3)]
-    for joint, angle in enumerate(angles):
-        points.append(here)
-        c, s, axis = math.cos(angle), math.sin(angle), geometry.axes[joint]
-        step = np.eye(3)
-        first, second = (axis + 1) % 3, (axis + 2) % 3
-        step[first, first] = step[second, second] = c
-        step[first, second], step[second, first] = -s, s
-        turn = turn @ step
-        here = here + turn @ geometry.link_vectors[joint + 1]
-    points.append(here + turn @ geometry.tool_vector)
-    return np.array(points) @ pose[:3, :3].T + pose[:3, 3]
 
 
 def _draw_pipe(axis: Any, site: Site, plane: tuple[int, int]) -> None:

@@ -7,8 +7,10 @@ from typing import Any
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.standing.base import Placement
+from hydrolek_drake.standing.site import FARTHEST
 from hydrolek_drake.workcell.pipe import Pipe, make_pipe
 
+_UPRIGHT = 90.0  # deg
 _LARGEST = 10_000_000  # bytes; a map has some 2 MB
 
 
@@ -39,7 +41,13 @@ def read_place(path: Path) -> tuple[Placement, Pipe]:
         point, axis = ([_finite(each) for each in pipe[name]] for name in ("point", "axis"))
     except (KeyError, TypeError, IndexError, AttributeError, ValueError, OverflowError):
         raise InputError(f"{path} is no stand.json of `hydrolek stand --out`") from None
-    return Placement(x, y, math.radians(heading), math.radians(boom)), make_pipe(point, axis, radius, length)
+    try:
+        there = make_pipe(point, axis, radius, length)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    if not max(abs(each) for each in (x, y, *point, radius, length)) <= FARTHEST or not abs(boom) < _UPRIGHT:
+        raise InputError(f"{path}: places must be within {FARTHEST:g} m, the boom within {_UPRIGHT:g} deg")
+    return Placement(x, y, math.radians(heading), math.radians(boom)), there
 
 
 def _finite(value: Any) -> float:

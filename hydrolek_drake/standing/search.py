@@ -154,7 +154,10 @@ class StandingSearch:
         points = self.coarse_map()
         reached = [point for point in points if point.stage is Stage.REACHED]
         reached = self._in_turn(reached)
-        self._tell(f"{len(points)} places: {len(reached)} by kinematics" + ("; checking collisions" if reached else ""))
+        self._tell(
+            f"{len(points)} places: {len(reached)} by kinematics"
+            + ("; checking collisions" if reached else "")
+        )
         looked: list[_Looked] = []
         for index, point in enumerate(reached[: int(settings["looked_at"])]):
             found = self._look(point.placement, point.grasping)

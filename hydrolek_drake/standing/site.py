@@ -18,13 +18,14 @@ Array = NDArray[np.float64]
 FLOOR = Block("floor", np.array([0.0, 0.0, -0.5]), np.array([40.0, 40.0, 1.0]))
 """Which the arms must not touch; its upper face is the site's z = 0."""
 
+_GRASP, _CUT = -0.05, 0.12  # m along the pipe from its middle, where nothing else is said
 _PARTS = ("pipe", "grasp", "cut", "blocks")
 _PIPE = ("point", "axis", "radius", "length")
 _BLOCK = ("name", "middle", "size", "heading_deg")
 _TAKEN = ("world", "plate", "floor", "brokk", "right", "left")
 """How the names of what is there already begin."""
 _MOST_BLOCKS = 100
-_FARTHEST = 100.0  # m: what is farther or larger is a mistake
+FARTHEST = 100.0  # m: what is farther or larger is a mistake
 
 
 @dataclass(frozen=True)
@@ -47,8 +48,8 @@ class Site:
         lengths = [*self.pipe.point, self.pipe.radius, self.pipe.length]
         for block in self.blocks:
             lengths += [*block.middle, *block.size]
-        if not all(abs(length) <= _FARTHEST for length in lengths):
-            raise InputError(f"a length or place of the site is beyond {_FARTHEST:g} m; give metres")
+        if not all(abs(length) <= FARTHEST for length in lengths):
+            raise InputError(f"a length or place of the site is beyond {FARTHEST:g} m; give metres")
         for name, along in (("grasp", self.grasp), ("cut", self.cut)):
             if not abs(along) <= 0.5 * self.pipe.length:
                 raise InputError(
@@ -78,6 +79,23 @@ class Site:
         pipe = make_pipe(flip * self.pipe.point, flip * self.pipe.axis, self.pipe.radius, self.pipe.length)
         blocks = tuple(Block(each.name, flip * each.middle, each.size, -each.heading) for each in self.blocks)
         return Site(pipe, self.grasp, self.cut, blocks)
+
+
+def make_site(parts: dict[str, Any], where: str = "") -> Site:
+    """A site of parts as `read_site` gives them; what is missing is the workcell's pipe and the places below.
+
+    Args:
+        parts: Of it.
+        where: They come from, for errors.
+
+    Raises:
+        InputError: They do not make a site.
+    """
+    try:
+        pipe = make_pipe(**parts.get("pipe", {}))
+        return Site(pipe, parts.get("grasp", _GRASP), parts.get("cut", _CUT), parts.get("blocks", ()))
+    except InputError as error:
+        raise InputError(f"{where}: {error}" if where else str(error)) from None
 
 
 def read_site(path: Path) -> dict[str, Any]:
@@ -127,7 +145,7 @@ def _block(data: Any, where: str) -> Block:
     if (
         not isinstance(name, str)
         or not name.isprintable()
-        or not 0 < len(name) <= 40
+        or not 0 < len(name.strip()) <= len(name) <= 40
         or name.startswith(_TAKEN)
     ):
         raise InputError(

@@ -136,7 +136,7 @@ class GripContact(LeafSystem):
                 with_both
             ):  # each hand's fingers press the pipe as that hand took it; the rest is in its spring
                 turned, point = with_both[index]
-                pipe = replace(pipe, point=point, axis=turned[:, 2])
+                pipe = replace(pipe, point=point, axis=np.array(turned[:, 2]))
             pose = self._plant.EvalBodyPoseInWorld(self._own, hand)
             if np.linalg.norm(_square_to(pipe, pose.translation() - pipe.point)) > self._reach:
                 continue

@@ -48,7 +48,7 @@ class LoosePipe:
             right, left = hands
             still = np.zeros(6)
             turn, point = self.both.internal((right, left), (still, still), 0.0)[2]
-            return replace(self.pipe, point=point, axis=turn[:, 2])
+            return replace(self.pipe, point=point, axis=np.array(turn[:, 2]))
         (before, there), (turned, here) = self.taken, hands[SIDES.index(self.holder)]
         rotation = turned @ before.T
         return self.pipe.moved(rotation, here - rotation @ there)

@@ -16,6 +16,8 @@ from hydrolek_drake.workcell.collision import CollisionWorld
 from hydrolek_drake.workcell.planner import path_is_free
 from hydrolek_drake.workcell.trajectory import joint_speeds
 
+pytestmark = pytest.mark.xdist_group("both arms")
+
 UP = Move(np.array([0.0, 0.0, 0.08]), np.array([0.0, 0.0, 1.0]), 0.0)
 TURNED = Move(np.array([0.0, 0.03, 0.04]), np.array([0.0, 0.0, 1.0]), np.radians(8.0))
 

@@ -21,6 +21,7 @@ from hydrolek_drake.cli.app import run
             "blocks: [{name: a, middle: [9, 9, 9], size: [1, 1, 1]}, {name: a, middle: [9, 9, 9], size: [1, 1, 1]}]",
             "name of its own",
         ),
+        ("blocks: [{name: ' ', middle: [9, 9, 9], size: [1, 1, 1]}]", "give a name"),
         ("grasp: .inf", "finite"),
         ("- 1", "give pipe"),
         ("pipe: {length: 1.0e+300}", "beyond 100 m"),

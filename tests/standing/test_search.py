@@ -23,6 +23,8 @@ from hydrolek_drake.workcell.grasp import tool_in_world
 from hydrolek_drake.workcell.pipe import make_pipe
 from hydrolek_drake.workcell.surroundings import Block
 
+pytestmark = pytest.mark.xdist_group("places to stand")
+
 SITE = Site(make_pipe([2.2, 0.6, 1.06]), -0.05, 0.12)
 HERE = Placement(0.33, 0.6, 0.0, drawn_boom_angle())
 
