@@ -4,14 +4,22 @@ import statistics
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from hydrolek_drake.identification.parameter_set import ParameterSet
+from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.identification.sensitivity.varied import varied_parameters
 from hydrolek_drake.physics.records import flat, position_of
+from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rollout import roll_out
-from hydrolek_drake.rollout.lanes import roll_out_lanes
+from hydrolek_drake.rollout.lane_view import LANES
+from hydrolek_drake.rollout.lanes import one_by_one, roll_out_lanes
+from hydrolek_drake.rollout.run import Run
 
 COUNTS = (1, 8, 20, 64)
 """Machines: one, a table of lanes, a Jacobian of twenty parameters, a population."""
@@ -22,6 +30,9 @@ RUBBING = {
     "linkage.backlash.gap_rad": 0.002,
 }
 """Effects of the second machine: shares of the largest oil force and of the solenoid's, and radians."""
+
+COLUMNS = 20
+"""Parameters of the Jacobians."""
 
 SPREAD = 0.02
 """By which the machines' numbers differ."""
@@ -58,13 +69,7 @@ def measure_lanes(
         report: told what is measured next.
     """
     rows = []
-    for label, rig in (
-        ("joint_bench", load_rig("joint_bench")),
-        (
-            "hydrolek_right_j2 with Coulomb friction, sticking spool and play",
-            rubbing(load_rig("hydrolek_right_j2")),
-        ),
-    ):
+    for label, rig in _machines():
         report(f"machines in lanes: {label}")
         records, step = _varied(rig, max(COUNTS)), rig.value("integration.longest_step")
 
@@ -72,7 +77,8 @@ def measure_lanes(
             return roll_out(records[i : i + 1], times, volts, times, longest_step=step)
 
         def together(count: int, records: np.ndarray = records, step: float = step) -> Any:
-            return roll_out_lanes(records[:count], times, volts, times, longest_step=step, at_once=True)
+            run = Run(records[:1], times, volts, times, step)
+            return roll_out_lanes(run.of(records[:count]), at_once=True)
 
         def every(count: int, alone: Callable[[int], Any] = alone) -> None:
             for i in range(count):
@@ -85,6 +91,57 @@ def measure_lanes(
             used, scalar = _median_seconds(together, count, repeats), _median_seconds(every, count, repeats)
             rows.append(LanesSpeed(label, count, used / one, scalar / one, count * float(times[-1]) / used))
     return rows
+
+
+def measure_jacobians(
+    times: np.ndarray, volts: np.ndarray, repeats: int, report: Callable[[str], None]
+) -> list[LanesSpeed]:
+    """Jacobians of `COLUMNS` parameters of the same two machines, residuals and records included.
+
+    Args:
+        times: as of `measure_lanes`.
+        volts: as of `measure_lanes`.
+        repeats: as of `measure_lanes`.
+        report: as of `measure_lanes`.
+    """
+    rows = []
+    for label, rig in _machines():
+        report(f"Jacobian: {label}")
+        record, step, joint = rig.records()[:1], rig.value("integration.longest_step"), rig.joints[0]
+        reading = roll_out(record, times, volts, times, longest_step=step).signals.reading
+        signals = {f"{joint}.command": volts, f"{joint}.angle": reading}
+        recording = Recording("made", times, signals, Path("made.csv"))
+        free = varied_parameters(rig, joint, SPREAD).free[:COLUMNS]
+        parameters = ParameterSet(rig, free)
+        problem = Problem(parameters, experiments_of(rig, recording))
+        place = parameters.unit()
+        base = problem.residuals(place)
+
+        def one(_: int, record: np.ndarray = record, step: float = step) -> None:
+            roll_out(record, times, volts, times, longest_step=step)
+
+        def whole(
+            _: int, problem: Problem = problem, at: np.ndarray = place, base: np.ndarray = base
+        ) -> None:
+            problem.jacobian(at, base)
+
+        roll_out_lanes(Run(record, times, volts, times, step).of(np.repeat(record, LANES)), at_once=True)
+        used, rollout = _median_seconds(whole, 1, repeats), _median_seconds(one, 1, repeats)
+        with one_by_one():
+            scalar = _median_seconds(whole, 1, repeats)
+        seconds = len(free) * float(times[-1]) / used
+        rows.append(LanesSpeed(label, len(free), used / rollout, scalar / rollout, seconds))
+    return rows
+
+
+def _machines() -> list[tuple[str, Rig]]:
+    return [
+        ("joint_bench", load_rig("joint_bench")),
+        (
+            "hydrolek_right_j2 with Coulomb friction, sticking spool and play",
+            rubbing(load_rig("hydrolek_right_j2")),
+        ),
+    ]
 
 
 def rubbing(rig: Rig) -> Rig:

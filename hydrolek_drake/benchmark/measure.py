@@ -7,11 +7,13 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.benchmark.lanes import measure_lanes
+from hydrolek_drake.benchmark.commands import measure_commands
+from hydrolek_drake.benchmark.lanes import measure_jacobians, measure_lanes
 from hydrolek_drake.benchmark.plain_bench import simulate_plainly
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
@@ -43,14 +45,18 @@ def random_voltage(
     return times, levels[(times / 0.5).astype(int)]
 
 
-def measure(seed: int, repeats: int, report: Callable[[str], None]) -> dict[str, Any]:
+def measure(
+    seed: int, repeats: int, report: Callable[[str], None], pairs: Path | None = None
+) -> dict[str, Any]:
     """All figures of the benchmark.
 
     Args:
         seed: of the random voltages.
         repeats: runs of each execution; the median counts.
         report: told what is measured next.
+        pairs: folder of recordings for `measure_commands`; None to leave these out.
     """
+    commands = [] if pairs is None else measure_commands(pairs, report)
     generator = np.random.default_rng(seed)
     speeds: list[Speed] = []
     whole = load_rig("hydrolek")
@@ -96,6 +102,7 @@ def measure(seed: int, repeats: int, report: Callable[[str], None]) -> dict[str,
     rollout()
     speeds.append(_speed(f"rollout, one joint, {step * 1e3:g} ms", times[-1], rollout, 5 * repeats))
     lanes = measure_lanes(times, command, 5, report)
+    jacobians = measure_jacobians(times, command, 5, report)
     report("error of the rollout against its reference")
     reference = rollout(REFERENCE_STEP)
     error = np.degrees(rollout() - reference)
@@ -116,6 +123,8 @@ def measure(seed: int, repeats: int, report: Callable[[str], None]) -> dict[str,
             if s is not fast
         },
         "lanes": [asdict(row) for row in lanes],
+        "jacobians": [asdict(row) for row in jacobians],
+        "commands": [asdict(row) for row in commands],
         "rollout_error_deg": {
             "rms": float(np.sqrt(np.mean(error**2))),
             "largest": float(np.abs(error).max()),

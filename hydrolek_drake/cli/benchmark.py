@@ -11,6 +11,10 @@ def benchmark(
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="folder for benchmark.json")] = None,
     repeats: Annotated[int, typer.Option(min=1, help="runs of each execution; the median counts")] = 3,
     seed: Annotated[int, typer.Option(help="of the random voltages")] = 1,
+    pairs: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="also fits and diagnoses of its practice_NN; takes minutes"),
+    ] = None,
 ) -> None:
     """Measure how fast the executions are against real time and each other, and how exact the rollout is."""
     from rich.table import Table
@@ -21,7 +25,7 @@ def benchmark(
 
     output = console()
     with progress("measuring") as tell:
-        figures = measure(seed, repeats, lambda what: tell(f"measuring: {what}"))
+        figures = measure(seed, repeats, lambda what: tell(f"measuring: {what}"), pairs)
     table = Table("execution", "times real time", "lowest to highest", "runs", "rollout is faster by")
     for speed in figures["speeds"]:
         ratio = figures["ratios"].get(f"rollout over {speed['name']}")
@@ -44,7 +48,24 @@ def benchmark(
             f"{row['one_by_one']:.2f}",
             f"{row['machine_seconds']:.4g}",
         )
+    for row in figures["jacobians"]:
+        lanes.add_row(
+            f"Jacobian: {row['machine']}",
+            str(row["count"]),
+            f"{row['in_lanes']:.2f}",
+            f"{row['one_by_one']:.2f}",
+            f"{row['machine_seconds']:.4g}",
+        )
     output.print(lanes)
+    if figures["commands"]:
+        whole = Table(
+            "command", "processor [s]", "clock [s]", "one by one: processor [s]", "clock [s]", "ratio"
+        )
+        for row in figures["commands"]:
+            seconds = [row[name] for name in ("in_lanes", "in_lanes_clock", "one_by_one", "one_by_one_clock")]
+            ratio = row["in_lanes"] / row["one_by_one"]
+            whole.add_row(row["name"], *(f"{each:.1f}" for each in seconds), f"{ratio:.2f}")
+        output.print(whole)
     error = figures["rollout_error_deg"]
     output.print(
         f"rollout against its 0.01 ms reference: {error['rms']:.4f} deg rms, {error['largest']:.4f} deg at most; "

@@ -17,7 +17,9 @@ from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.physics.law import PLACED
 from hydrolek_drake.replay.display import shown
+from hydrolek_drake.rollout.lanes import roll_out_lanes
 from hydrolek_drake.rollout.rollout import Signals
+from hydrolek_drake.rollout.run import Run
 
 SCAN_S = 12.0
 """Frequencies are first looked for in so many seconds."""
@@ -270,21 +272,14 @@ class LawProblem(Problem):
         places[reaches] = np.log(places[reaches] / FIRST_REACH) / math.log(WIDEST)
         return np.concatenate([nominal, np.clip(0.5 + 0.5 * own, 0.0, 1.0)])
 
-    def signals(self, unit: np.ndarray) -> list[Signals]:
-        """What the model with the law does in every experiment."""
+    def runs(self, unit: np.ndarray) -> list[Run]:
+        """As of `Problem`, with the law."""
         records = self.parameters.records(unit[: self._nominal])
         law = records_of(self.law, self.span, self.law_values(unit))
         return [
-            e.simulate(records, self.longest_step, pull_time=self.pull_time, law=law).signals
-            for e in self.experiments
+            e.run(records, self.longest_step, pull_time=self.pull_time, law=law) for e in self.experiments
         ]
 
-    def residuals(self, unit: np.ndarray) -> np.ndarray:
-        """Measured minus model over noise, of all experiments."""
-        self.evaluations += 1
-        return self.bounded(
-            [e.residuals(s) for e, s in zip(self.experiments, self.signals(unit), strict=True)]
-        )
-
-    def _keep(self, unit: np.ndarray, base: np.ndarray) -> None:
-        """Nothing is kept: a law's own parameters change every rollout."""
+    def signals(self, unit: np.ndarray) -> list[Signals]:
+        """What the model with the law does in every experiment."""
+        return [made.signals for made in roll_out_lanes(self.runs(unit))]

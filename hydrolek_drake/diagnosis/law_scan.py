@@ -17,6 +17,8 @@ from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.problem import PULL_S
+from hydrolek_drake.rollout.lane_view import LANES
+from hydrolek_drake.rollout.lanes import roll_out_lanes
 
 HIGHEST_HZ = 8.0
 """Frequencies up to this one are looked for; joints hardly follow faster ones."""
@@ -123,29 +125,35 @@ class Scan:
         off = self.left.fit.off_prior
         counted = self.left.fit.counted
 
-        def response(sine: float, cosine: float, frequency: float) -> np.ndarray:
-            term = None if frequency else TERMS[0]
-            law = law_record(
-                given.probe, self.span, term, given.scale * sine, given.scale * cosine, frequency
-            )
-            parts = [
-                e.residuals(e.simulate(records, self.step, pull_time=self.pull_time, law=law).signals)
-                for e in part.experiments
+        def responses(shaken: Sequence[tuple[float, float, float]]) -> list[np.ndarray]:
+            """Residuals under a sine and a cosine of a frequency each; NaN where a rollout diverged."""
+            runs = []
+            for sine, cosine, frequency in shaken:
+                term = None if frequency else TERMS[0]
+                law = law_record(
+                    given.probe, self.span, term, given.scale * sine, given.scale * cosine, frequency
+                )
+                runs += [
+                    e.run(records, self.step, pull_time=self.pull_time, law=law) for e in part.experiments
+                ]
+            made = iter(roll_out_lanes(runs))
+            found = [
+                np.concatenate([e.residuals(next(made).signals) for e in part.experiments]) for _ in shaken
             ]
-            residuals = np.concatenate(parts)
-            return residuals if np.isfinite(residuals).all() else np.full_like(residuals, np.nan)
+            return [each if np.isfinite(each).all() else np.full_like(each, np.nan) for each in found]
 
-        here = response(0.0, 0.0, 0.0)
+        (here,) = responses([(0.0, 0.0, 0.0)])
         rest = part.across(np.concatenate([here, off]))
+        still = np.zeros(off.size)
         found = []
-        for frequency in frequencies.tolist():
+        for begin in range(0, len(frequencies), LANES):
             self.bench.alive()
-            columns = []
-            for sine, cosine in ((TRIED, 0.0), (0.0, TRIED)):
-                moved = response(sine, cosine, frequency) - here
-                columns.append(part.across(np.concatenate([moved, np.zeros(off.size)])))
-            gain, amplitudes = gain_along(np.stack(columns, axis=1), rest)
-            found.append(Law(given, (), frequency, gain * counted / max(part.counted, 1), amplitudes))
+            some = frequencies[begin : begin + LANES].tolist()
+            moved = responses([(*pair, f) for f in some for pair in ((TRIED, 0.0), (0.0, TRIED))])
+            changes = [part.across(np.concatenate([each - here, still])) for each in moved]
+            for k, frequency in enumerate(some):
+                gain, amplitudes = gain_along(np.stack(changes[2 * k : 2 * k + 2], axis=1), rest)
+                found.append(Law(given, (), frequency, gain * counted / max(part.counted, 1), amplitudes))
         return found
 
 

@@ -9,6 +9,7 @@ from hydrolek_drake.diagnosis.law_inputs import Input
 from hydrolek_drake.diagnosis.laws import CONSTANT, TERMS, Span, Term, law_record
 from hydrolek_drake.diagnosis.score import Across, gain_of
 from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.rollout.lanes import roll_out_lanes
 
 TRIED = 1e-3
 """Amplitude of a trial, as a fraction of the input's scale: small enough to be linear."""
@@ -69,35 +70,49 @@ def terms_scored(bench: Workbench, model: Fitted, given: Input, terms: Sequence[
     bench.alive()
     still = np.zeros(model.off.size)
 
-    def response(term: Term, size: float) -> np.ndarray:
-        law = law_record(given.probe, model.span, term, given.scale * size)
-        if model.has is not None:
-            law = np.concatenate([model.has, law])
-        parts = [e.residuals(e.simulate(model.records, model.step, law=law).signals) for e in bench.training]
-        return np.concatenate(parts)
+    def responses(asked: Sequence[tuple[Term, float]]) -> list[np.ndarray]:
+        """Residuals with a term of a size each, of the input's scale."""
+        runs = []
+        for term, size in asked:
+            law = law_record(given.probe, model.span, term, given.scale * size)
+            if model.has is not None:
+                law = np.concatenate([model.has, law])
+            runs += [e.run(model.records, model.step, law=law) for e in bench.training]
+        made = iter(roll_out_lanes(runs))
+        return [np.concatenate([e.residuals(next(made).signals) for e in bench.training]) for _ in asked]
 
-    here = response(TERMS[0], 0.0)
+    (here,) = responses([(TERMS[0], 0.0)])
     rest = model.across(np.concatenate([here, model.off]))
-    found, columns = [], []
-    for term in (term for term in terms if term.meant_for(given)):
 
-        def moved(size: float, term: Term = term) -> np.ndarray:
-            there = response(term, size)
-            if not np.isfinite(there).all():
-                return np.full_like(rest, np.nan)
-            return model.across(np.concatenate([there - here, still]))
+    def changes(asked: Sequence[tuple[Term, float]]) -> list[np.ndarray]:
+        """What these change of what is left; NaN where a rollout diverged."""
+        return [
+            model.across(np.concatenate([there - here, still]))
+            if np.isfinite(there).all()
+            else np.full_like(rest, np.nan)
+            for there in responses(asked)
+        ]
 
-        columns.append(moved(TRIED))
-        gain, amplitudes = gain_along(columns[-1][:, None], rest)
+    tried = [term for term in terms if term.meant_for(given)]
+    columns = changes([(term, TRIED) for term in tried])
+    promised = []
+    for column in columns:
+        gain, amplitudes = gain_along(column[:, None], rest)
         if given.one_sided and amplitudes[0] < 0.0:
             gain, amplitudes = 0.0, (0.0,)
-        start, least = amplitudes[0], float(np.sum((rest + moved(amplitudes[0])) ** 2))
-        for size in (sign * s for s in SIZES for sign in ((1.0,) if given.one_sided else (1.0, -1.0))):
-            change = moved(size)
-            remaining = float(np.sum((rest + change) ** 2))
-            gain = max(gain, gain_of(change, rest))
-            if remaining < least:
-                least, start = remaining, size
+        promised.append((gain, amplitudes[0]))
+    others = [sign * s for s in SIZES for sign in ((1.0,) if given.one_sided else (1.0, -1.0))]
+    found = []
+    for term, (gain, first) in zip(tried, promised, strict=True):
+        bench.alive()
+        sizes = [first, *others]
+        moved = changes([(term, size) for size in sizes])
+        remaining = [float(np.sum((rest + change) ** 2)) for change in moved]
+        gain = max([gain, *(gain_of(change, rest) for change in moved[1:])])
+        start, least = first, remaining[0]
+        for size, left in zip(others, remaining[1:], strict=True):
+            if left < least:
+                least, start = left, size
         found.append(Promise((term,), gain, (start,)))
     return found + only_together(found, columns, rest)
 

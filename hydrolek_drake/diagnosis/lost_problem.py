@@ -18,6 +18,8 @@ from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.rollout.lanes import roll_out_lanes
+from hydrolek_drake.rollout.run import Run
 
 
 class LostProblem(Problem):
@@ -86,23 +88,23 @@ class LostProblem(Problem):
             kept[number] = float(without @ without) > most
         return kept
 
-    def residuals(self, unit: np.ndarray) -> np.ndarray:
-        """Measured minus model over noise, of all experiments."""
-        return self.left(self.parameters.records(unit[: self._nominal]), self.windows(unit))
+    def runs(self, unit: np.ndarray) -> list[Run]:
+        """As of `Problem`, with commands that were lost."""
+        return self._runs(self.parameters.records(unit[: self._nominal]), self.windows(unit))
 
     def left(self, records: np.ndarray, windows: Mapping[str, Windows]) -> np.ndarray:
         """Measured minus model over noise, of all experiments, with some windows."""
         self.evaluations += 1
-        return self.bounded(
-            [
-                e.residuals(
-                    e.without_command(windows.get(recording_of(e), NONE), self.neutral)
-                    .simulate(records, self.longest_step)
-                    .signals
-                )
-                for e in self.experiments
-            ]
-        )
+        made = roll_out_lanes(self._runs(records, windows))
+        return self.bounded([e.residuals(m.signals) for e, m in zip(self.experiments, made, strict=True)])
+
+    def _runs(self, records: np.ndarray, windows: Mapping[str, Windows]) -> list[Run]:
+        return [
+            e.without_command(windows.get(recording_of(e), NONE), self.neutral).run(
+                records, self.longest_step
+            )
+            for e in self.experiments
+        ]
 
     def _to_the_next_step(self, unit: np.ndarray) -> np.ndarray:
         """As of `Problem`; windows begin and end with steps of the integration."""
@@ -110,6 +112,3 @@ class LostProblem(Problem):
         own = self._longest_step * np.array([0.5 / WINDOW_S, 2.0 / LONGEST_S])
         changes[self._nominal :] = np.tile(own, (unit.size - self._nominal) // 2)
         return changes
-
-    def _keep(self, unit: np.ndarray, base: np.ndarray) -> None:
-        """Nothing is kept: windows are no part of a joint's record."""

@@ -1,6 +1,5 @@
 """One recording of one joint, prepared so that a rollout can be held against it again and again."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,8 +9,8 @@ from hydrolek_drake.identification.neighbours import rows_at
 from hydrolek_drake.identification.start import without_offset
 from hydrolek_drake.identification.thinning import Blocks, block_size
 from hydrolek_drake.rollout.kernel import PULLED
-from hydrolek_drake.rollout.lanes import roll_out_lanes
-from hydrolek_drake.rollout.rollout import Outcome, Signals, rest_state_at_reading, roll_out
+from hydrolek_drake.rollout.rollout import Outcome, Signals, rest_state_at_reading
+from hydrolek_drake.rollout.run import Run
 
 
 @dataclass(frozen=True)
@@ -82,47 +81,29 @@ class Experiment:
                 rollout.
             law: for an unknown input, as in `rollout.roll_out`.
         """
+        return self.run(records, longest_step, probes, pull_time, law).outcome()
+
+    def run(
+        self,
+        records: np.ndarray,
+        longest_step: float | None = None,
+        probes: tuple[float, np.ndarray] | None = None,
+        pull_time: float | None = None,
+        law: np.ndarray | None = None,
+    ) -> Run:
+        """The rollout that `simulate` makes, to be made beside others (`rollout.lanes`); arguments as there."""
         record = records[self.index : self.index + 1]
-        state = None if self.start is None else rest_state_at_reading(record, self.start)
-        return roll_out(
+        return Run(
             record,
             self.command_times,
             self.command,
             self.time,
-            state=state,
-            longest_step=longest_step or self.longest_step,
-            spool_steps=self.spool_steps,
+            longest_step or self.longest_step,
+            self.spool_steps,
+            state=None if self.start is None else rest_state_at_reading(record, self.start),
             probes=self._with_others(probes),
             pull=None if pull_time is None else (pull_time, self._to_follow()),
             law=law,
-        )
-
-    def simulate_all(
-        self,
-        machines: Sequence[np.ndarray],
-        longest_step: float | None = None,
-        pull_time: float | None = None,
-    ) -> list[Outcome]:
-        """What several machines do under the recorded command, rolled out in lanes.
-
-        Args:
-            machines: records of all joints of the rig, of each machine. # (joints,) each
-            longest_step: as of `simulate`.
-            pull_time: as of `simulate`.
-        """
-        own = np.concatenate([records[self.index : self.index + 1] for records in machines])
-        starts = None
-        if self.start is not None:
-            starts = [rest_state_at_reading(own[i : i + 1], self.start) for i in range(len(own))]
-        return roll_out_lanes(
-            own,
-            self.command_times,
-            self.command,
-            self.time,
-            states=starts,
-            longest_step=longest_step or self.longest_step,
-            spool_steps=self.spool_steps,
-            pull=None if pull_time is None else (pull_time, self._to_follow()),
         )
 
     def _with_others(self, probes: tuple[float, np.ndarray] | None) -> tuple[float, np.ndarray] | None:

@@ -11,6 +11,8 @@ from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.sharing import shared_map
 from hydrolek_drake.rollout.lane_view import LANES
+from hydrolek_drake.rollout.lanes import roll_out_lanes
+from hydrolek_drake.rollout.run import Run
 
 DIFFERENCE = 1e-6
 """Step of the forward differences, as a fraction of a parameter's range.
@@ -50,7 +52,13 @@ Own = TypeVar("Own", bound="Problem")
 
 
 class Problem:
-    """Weighted residuals of several experiments, all under the same parameters."""
+    """Weighted residuals of several experiments, all under the same parameters.
+
+    Attributes:
+        batch: so many places are best asked for at once.
+    """
+
+    batch = LANES
 
     def __init__(
         self,
@@ -85,7 +93,7 @@ class Problem:
         self._prior_weight = np.zeros(len(parameters)) if prior is None else 1.0 / prior
         self.pull_time = pull_time
         self.difference = difference
-        self._anchor: list[tuple[bytes, np.ndarray]] | None = None
+        self._anchor: list[tuple[tuple[bytes, ...], np.ndarray]] | None = None
         self._longer_does = True
         self.evaluations = 0
         self.counted = sum(experiment.counted for experiment in self.experiments)
@@ -112,56 +120,45 @@ class Problem:
         Returns:
             Experiment after experiment, channel after channel. # (values,)
         """
-        self.evaluations += 1
-        records = self.parameters.records(unit)
-        return self.bounded([self._part(i, records) for i in range(len(self.experiments))])
+        return self.residuals_of_all([unit])[0]
 
-    def _part(self, i: int, records: np.ndarray) -> np.ndarray:
-        """Residuals of one experiment; those of the anchor if its joint's record is the same."""
-        experiment = self.experiments[i]
-        if self._anchor is not None and records[experiment.index].tobytes() == self._anchor[i][0]:
-            return self._anchor[i][1]
-        done = experiment.simulate(records, self.longest_step, pull_time=self.pull_time)
-        return experiment.residuals(done.signals)
+    def runs(self, unit: np.ndarray) -> list[Run]:
+        """The rollouts of a place, one for each experiment.
+
+        Args:
+            unit: place in the unit cube. # (n,)
+        """
+        records = self.parameters.records(unit)
+        return [e.run(records, self.longest_step, pull_time=self.pull_time) for e in self.experiments]
 
     def residuals_of_all(self, units: Sequence[np.ndarray]) -> list[np.ndarray]:
-        """Residuals at several places, each as of `residuals`: joints that move alone are rolled out in lanes.
+        """Residuals at several places, each as of `residuals`; they are rolled out in lanes.
 
         Args:
             units: places in the unit cube. # (n,) each
         """
-        if not self._in_lanes:
-            return [self.residuals(unit) for unit in units]
         self.evaluations += len(units)
-        machines = [self.parameters.records(unit) for unit in units]
-        parts: list[list[np.ndarray]] = [[] for _ in units]
-        for i, experiment in enumerate(self.experiments):
-            known = None if self._anchor is None else self._anchor[i]
-            own = [records[experiment.index].tobytes() for records in machines]
-            moved = [k for k, record in enumerate(own) if known is None or record != known[0]]
-            chosen = [machines[k] for k in moved]
-            done = experiment.simulate_all(chosen, self.longest_step, self.pull_time) if chosen else []
-            signals = dict(zip(moved, (outcome.signals for outcome in done), strict=True))
-            for k in range(len(units)):
-                if k in signals:
-                    parts[k].append(experiment.residuals(signals[k]))
-                elif known is not None:
-                    parts[k].append(known[1])
-        return [self.bounded(found) for found in parts]
+        wanted = [run for unit in units for run in self.runs(unit)]
+        count = len(self.experiments)
+        known = [self._known(i % count, run) for i, run in enumerate(wanted)]
+        made = iter(roll_out_lanes([run for run, part in zip(wanted, known, strict=True) if part is None]))
+        parts = [
+            self.experiments[i % count].residuals(next(made).signals) if part is None else part
+            for i, part in enumerate(known)
+        ]
+        return [self.bounded(parts[i : i + count]) for i in range(0, len(parts), count)]
 
-    @property
-    def _in_lanes(self) -> bool:
-        """Whether several places can be rolled out at once: joints that move alone, by `Problem`'s own residuals."""
-        own = type(self).residuals is Problem.residuals
-        return own and all(experiment.others is None for experiment in self.experiments)
+    def _known(self, i: int, run: Run) -> np.ndarray | None:
+        """Residuals of an experiment at the anchor, if this rollout is the same as there."""
+        if self._anchor is None or _all_of(run) != self._anchor[i][0]:
+            return None
+        return self._anchor[i][1]
 
     def _keep(self, unit: np.ndarray, base: np.ndarray) -> None:
         """Keep the residuals at a place: a column of the Jacobian changes few joints of a machine."""
-        records = self.parameters.records(unit)
         ends = np.cumsum([len(e.channels) * e.time.size for e in self.experiments])
         self._anchor = [
-            (records[e.index].tobytes(), part)
-            for e, part in zip(self.experiments, np.split(base, ends[:-1]), strict=True)
+            (_all_of(run), part) for run, part in zip(self.runs(unit), np.split(base, ends[:-1]), strict=True)
         ]
 
     @staticmethod
@@ -224,8 +221,7 @@ class Problem:
             return [(there - base) / steps[i] for i, there in zip(indices, found, strict=True)]
 
         indices = list(range(len(unit))) if moving is None else np.flatnonzero(moving).tolist()
-        batch = LANES if self._in_lanes else 1
-        batches = [indices[k : k + batch] for k in range(0, len(indices), batch)]
+        batches = [indices[k : k + self.batch] for k in range(0, len(indices), self.batch)]
         shared = list(map(some, batches)) if self.pool is None else shared_map(self.pool, some, batches)
         columns = [column for found in shared for column in found]
         whole = np.zeros((base.size, len(unit)))
@@ -291,3 +287,9 @@ class Problem:
     def prior_jacobian(self) -> np.ndarray:
         """Change of the prior residuals with each parameter's place. # (n, n)."""
         return np.diag(self._prior_weight)
+
+
+def _all_of(run: Run) -> tuple[bytes, ...]:
+    """What tells one of an experiment's rollouts from another."""
+    law = b"" if run.law is None else run.law.tobytes()
+    return run.joint.tobytes(), law, run.command_times.tobytes(), run.command_values.tobytes()

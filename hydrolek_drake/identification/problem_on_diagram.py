@@ -19,14 +19,19 @@ class ProblemOnDiagram(Problem):
     There are no pulled rollouts: an observer's corrections are not wired into the Diagram.
     """
 
+    batch = 1
+
     def __init__(self, parameters: ParameterSet, experiments: Sequence[Experiment]) -> None:
         """Prepare; arguments as of `Problem`."""
         super().__init__(parameters, experiments)
         self._groups = recordings_of(self.experiments)
 
-    def residuals(self, unit: np.ndarray) -> np.ndarray:
-        """See `Problem.residuals`."""
-        self.evaluations += 1
+    def residuals_of_all(self, units: Sequence[np.ndarray]) -> list[np.ndarray]:
+        """See `Problem.residuals_of_all`."""
+        self.evaluations += len(units)
+        return [self._residuals(unit) for unit in units]
+
+    def _residuals(self, unit: np.ndarray) -> np.ndarray:
         rig = self.parameters.with_rig_values(unit)
         parts = []
         for group in self._groups:

@@ -29,6 +29,8 @@ def problem_of(
 class ProblemTogether(Problem):
     """Weighted residuals of joints that move together, of which all are rolled out at once."""
 
+    batch = 1
+
     def __init__(self, *given: Any, **named: Any) -> None:
         """Prepare; what is given is that of `Problem`."""
         super().__init__(*given, **named)
@@ -37,23 +39,27 @@ class ProblemTogether(Problem):
         self._all_move = True
         self._at_anchor: list[tuple[bytes, np.ndarray]] = []
 
-    def residuals(self, unit: np.ndarray) -> np.ndarray:
-        """Measured minus model over noise, of all experiments. # (values,).
+    def residuals_of_all(self, units: Sequence[np.ndarray]) -> list[np.ndarray]:
+        """As of `Problem`.
 
         Joints that could move and do not at the first place are held from then on. Pulled rollouts hold every joint to
         what was measured, and with them what it does to the others: they are each joint's own.
 
         Args:
-            unit: place in the unit cube.
+            units: places in the unit cube. # (n,) each
         """
         if self.pull_time is not None:
-            return super().residuals(unit)
-        self.evaluations += 1
-        records = self.parameters.records(unit)
-        if self._all_move:
-            self._recordings = [recording.without_still(records) for recording in self._recordings]
-            self._all_move = False
-        return self.bounded([self._of_recording(i, records) for i in range(len(self._recordings))])
+            return super().residuals_of_all(units)
+        self.evaluations += len(units)
+        found = []
+        for unit in units:
+            records = self.parameters.records(unit)
+            if self._all_move:
+                self._recordings = [recording.without_still(records) for recording in self._recordings]
+                self._all_move = False
+            parts = [self._of_recording(i, records) for i in range(len(self._recordings))]
+            found.append(self.bounded(parts))
+        return found
 
     def _of_recording(self, i: int, records: np.ndarray) -> np.ndarray:
         """Residuals of one recording; those of the anchor if the records of all joints that could move are the same."""

@@ -11,8 +11,10 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import types
+from numba.extending import overload
 
-from hydrolek_drake.compiling import njit
+from hydrolek_drake.compiling import COMPILED, njit
 from hydrolek_drake.physics.probes import (
     AMPLIFIER,
     COIL_TIME,
@@ -24,7 +26,11 @@ from hydrolek_drake.physics.probes import (
     Probe,
     added,
 )
-from hydrolek_drake.physics.smooth import hyperbolic_tangent
+from hydrolek_drake.physics.smooth import (
+    cosine_up_to_quarter,
+    hyperbolic_tangent,
+    sine_and_cosine_of_turns,
+)
 
 TIMES = ("1", "t/T", "(t/T)^2")
 NEAR = "near"
@@ -110,7 +116,7 @@ def _place_factor(law: Any, seen: Seen) -> float:
     if shape >= 6.0:
         off = (place - law.centre) / law.reach
         if shape == 6.0:
-            return math.cos(0.5 * math.pi * off) ** 2 if abs(off) < 1.0 else 0.0
+            return cosine_up_to_quarter(0.5 * math.pi * min(abs(off), 1.0)) ** 2 if abs(off) < 1.0 else 0.0
         return max(off, 0.0) if shape == 7.0 else max(-off, 0.0)
     z = 2.0 * (place - law.low) / (law.high - law.low) - 1.0
     if shape == 1.0:
@@ -126,15 +132,12 @@ def _place_factor(law: Any, seen: Seen) -> float:
 def _other_factor(law: Any, seen: Seen) -> float:
     """A factor of `OTHERS`."""
     shape = law.other
-    if shape == 0.0:
-        return 1.0
-    if shape == 1.0:
-        return seen.p_a / law.pressure
-    if shape == 2.0:
-        return seen.p_b / law.pressure
-    if shape == 3.0:
-        return (seen.p_a - seen.p_b) / law.pressure
-    return seen.x / law.opening if shape == 4.0 else abs(seen.x) / law.opening
+    of_pressure = seen.p_a if shape == 1.0 else seen.p_b if shape == 2.0 else seen.p_a - seen.p_b
+    of_spool = seen.x if shape == 4.0 else abs(seen.x)
+    # Both are formed: of numbers that are loaded in either branch the compiler makes a load from one of two places,
+    # which keeps machines in lanes from vector instructions.
+    relative_pressure, relative_opening = of_pressure / law.pressure, of_spool / law.opening
+    return 1.0 if shape == 0.0 else relative_pressure if shape <= 3.0 else relative_opening
 
 
 @njit
@@ -160,8 +163,8 @@ def _value_and_slope(law: Any, seen: Seen) -> tuple[float, float]:
     """A term's value, and its secant slope over the speed where it changes its sign with it, else 0."""
     size = law.sine
     if law.frequency > 0.0:
-        angle = 2.0 * math.pi * law.frequency * seen.time
-        size = law.sine * math.sin(angle) + law.cosine * math.cos(angle)
+        sine, cosine = sine_and_cosine_of_turns(law.frequency * seen.time)
+        size = law.sine * sine + law.cosine * cosine
     size *= _time_factor(law, seen) * _place_factor(law, seen) * _other_factor(law, seen)
     factor, secant = _speed_factor(law, seen)
     return size * factor, size * secant
@@ -179,12 +182,44 @@ def law_value(law: Any, seen: Seen) -> float:
 
 
 @njit
-def felt(probe: Probe, laws: np.ndarray | None, lever: float, seen: Seen) -> tuple[Probe, float]:
+def _with_term(law: Any, probe: Probe, slope: float, lever: float, seen: Seen) -> tuple[Probe, float]:
+    """Probes and slope of `felt` with those of one more term."""
+    value, secant = _value_and_slope(law, seen)
+    arm = lever if law.at_rod > 0.0 else 1.0
+    brakes = law.probe == CYLINDER or law.probe == LOAD
+    return added(probe, law.probe, value), slope + (secant * arm * arm if brakes else 0.0)
+
+
+def _with_terms(laws: Any, probe: Any, slope: Any, lever: Any, seen: Any) -> Any:
+    """Probes and slope with those of all terms; compiled code takes one of the forms below."""
+    for row in range(len(laws)):
+        probe, slope = _with_term(laws[row], probe, slope, lever, seen)
+    return probe, slope
+
+
+def _without_terms(laws: Any, probe: Any, slope: Any, lever: Any, seen: Any) -> Any:
+    return probe, slope
+
+
+def _unrolled(laws: Any, probe: Any, slope: Any, lever: Any, seen: Any) -> Any:
+    probe, slope = _with_term(laws[0], probe, slope, lever, seen)
+    return _with_terms(laws[1:], probe, slope, lever, seen)
+
+
+@overload(_with_terms, jit_options=COMPILED)
+def _form_of_terms(laws: Any, probe: Any, slope: Any, lever: Any, seen: Any) -> Any:
+    if not isinstance(laws, types.BaseTuple):
+        return _with_terms
+    return _unrolled if len(laws) else _without_terms  # a loop would keep lanes from vector instructions
+
+
+@njit
+def felt(probe: Probe, laws: Any, lever: float, seen: Seen) -> tuple[Probe, float]:
     """Probes with what the terms of a law add, if there is one, and how a stiff integrator sees its frictions.
 
     Args:
         probe: from outside.
-        laws: records of `LAW`, or None.
+        laws: records of `LAW` in an array or a tuple, or None.
         lever: of the rod at the joint [m/rad].
         seen: what the law depends on.
 
@@ -194,14 +229,7 @@ def felt(probe: Probe, laws: np.ndarray | None, lever: float, seen: Seen) -> tup
     """
     if laws is None:  # known when this is compiled: the rollout without a law is a program of its own
         return probe, 0.0
-    slope = 0.0
-    for row in range(len(laws)):
-        law = laws[row]
-        value, secant = _value_and_slope(law, seen)
-        probe = added(probe, law.probe, value)
-        if law.probe == CYLINDER or law.probe == LOAD:
-            arm = lever if law.at_rod > 0.0 else 1.0
-            slope += secant * arm * arm
+    probe, slope = _with_terms(laws, probe, 0.0, lever, seen)
     return probe, min(slope, 0.0)
 
 

@@ -1,8 +1,9 @@
-"""Exponential and hyperbolic tangent in plain arithmetic, for loops over machines in lanes.
+"""Exponential, hyperbolic tangent, sine and cosine in plain arithmetic, for loops over machines in lanes.
 
 The mathematical library's functions are calls, of which no compiler makes vector instructions. e^x = 2^n e^r with n the
 nearest whole number to x / ln 2 and |r| <= ln 2 / 2, for which the series (Abramowitz, Stegun, Handbook of Mathematical
-Functions, 4.2.1) is at rounding after thirteen terms; tanh x = (1 - e^(-2x)) / (1 + e^(-2x)) (4.5.26).
+Functions, 4.2.1) is at rounding after thirteen terms; tanh x = (1 - e^(-2x)) / (1 + e^(-2x)) (4.5.26). Sine and cosine
+by their series (4.3.65, 4.3.66) up to a quarter turn, and of twice the angle by 4.3.24 and 4.3.25.
 """
 
 import math
@@ -59,3 +60,29 @@ def hyperbolic_tangent(x: float) -> float:
     """Tanh x, to 3e-16."""
     fading = exponential(-2.0 * abs(x))
     return math.copysign((1.0 - fading) / (1.0 + fading), x)
+
+
+@njit
+def cosine_up_to_quarter(a: float) -> float:
+    """Cosine of an angle of at most a quarter turn [rad], to 2e-16."""
+    b = a * a
+    return 1.0 - b * (1.0 / 2 - b * (1.0 / 24 - b * (1.0 / 720 - b * (1.0 / 40320 - b * (1.0 / 3628800 - b * (
+        1.0 / 479001600 - b * (1.0 / 87178291200 - b * (1.0 / 20922789888000 - b * (1.0 / 6402373705728000
+        - b * (1.0 / 2432902008176640000))))))))))  # fmt: skip
+
+
+@njit
+def _sine_up_to_quarter(a: float) -> float:
+    b = a * a
+    return a * (1.0 - b * (1.0 / 6 - b * (1.0 / 120 - b * (1.0 / 5040 - b * (1.0 / 362880 - b * (1.0 / 39916800
+        - b * (1.0 / 6227020800 - b * (1.0 / 1307674368000 - b * (1.0 / 355687428096000
+        - b * (1.0 / 121645100408832000))))))))))  # fmt: skip
+
+
+@njit
+def sine_and_cosine_of_turns(turns: float) -> tuple[float, float]:
+    """Sine and cosine of an angle in full turns, to 4e-16 beside the rounding of the number of turns."""
+    whole = turns + _ROUNDING
+    half = math.pi * (turns - (whole - _ROUNDING))
+    s, c = _sine_up_to_quarter(half), cosine_up_to_quarter(half)
+    return 2.0 * s * c, 1.0 - 2.0 * s * s

@@ -7,7 +7,7 @@ the delayed command changes, so that a fit sees the transport delay as a smooth 
 """
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -167,6 +167,52 @@ def pulled(s: State, share: float, reading: float, measured: np.ndarray) -> tupl
     return moved, by
 
 
+class Stretch(NamedTuple):
+    """Time over which one command acts, in equal steps."""
+
+    until: float  # [s]
+    held: int  # place of the command that acts
+    volts: float  # that command [V]
+    steps: int
+    h: float  # their length [s]; 0 for none
+
+
+@njit
+def next_stretch(
+    t: float,
+    target: float,
+    held: int,
+    delay: float,
+    command_times: np.ndarray,
+    command_values: np.ndarray,
+    longest_step: float,
+    joint: Any,
+) -> Stretch:
+    """From `t` on as far as the command stays the same, at most to `target`.
+
+    Args:
+        t: [s].
+        target: [s].
+        held: place of the command that has acted, -1 for none.
+        delay: of the commands [s].
+        command_times: [s], shape (m,).
+        command_values: [V], shape (m,).
+        longest_step: [s].
+        joint: parameter record.
+    """
+    last = len(command_times) - 1
+    while held < last and command_times[held + 1] + delay <= t + 1e-12:
+        held += 1
+    following = held + 1
+    while held >= 0 and following <= last and command_values[following] == command_values[held]:
+        following += 1
+    until = target
+    if following <= last and command_times[following] + delay < target:
+        until = max(command_times[following] + delay, t)
+    steps = max(math.ceil((until - t) / longest_step - 1e-9), 1)
+    return Stretch(until, held, arrived(command_values, held, joint), steps, (until - t) / steps)
+
+
 @njit(cache=True, nogil=True)
 def integrate(
     joints: np.ndarray,
@@ -216,7 +262,6 @@ def integrate(
     delay = command.transport_delay(joint)
     rod = load.reflected_rod_inertia(joint)
     begin = times[0]
-    last = len(command_times) - 1
     held = -1  # nothing has arrived yet
     play = state[11]
     on = begin - state[12]
@@ -225,19 +270,11 @@ def integrate(
         target = times[row]
         near = kept(turned(s, joint))
         while t < target:
-            while held < last and command_times[held + 1] + delay <= t + 1e-12:
-                held += 1
-            following = held + 1
-            while held >= 0 and following <= last and command_values[following] == command_values[held]:
-                following += 1
-            until = target
-            if following <= last and command_times[following] + delay < target:
-                until = max(command_times[following] + delay, t)
+            until, held, volts, steps, h = next_stretch(
+                t, target, held, delay, command_times, command_values, longest_step, joint
+            )
             probe = probe_at(t, begin, probe_spacing, probe_values)
-            volts = arrived(command_values, held, joint)
             voltage = command.drive_voltage(volts + probe.command, joint)
-            steps = max(math.ceil((until - t) / longest_step - 1e-9), 1)
-            h = (until - t) / steps
             if h > 0.0:
                 for i in range(steps):
                     time = t + i * h - on

@@ -16,7 +16,8 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from hydrolek_drake.physics.records import JOINT, flat
+from hydrolek_drake.physics.law import LAW
+from hydrolek_drake.physics.records import JOINT
 from hydrolek_drake.rollout.lane_view import Kind
 
 WORTH = 200
@@ -28,12 +29,13 @@ _asked: Counter[str] = Counter()
 _running: list[subprocess.Popen[bytes]] = []
 
 
-def ready(kind: Kind, joint: np.ndarray, count: int, spool_steps: int) -> bool:
+def ready(kind: Kind, joint: np.ndarray, law: np.ndarray | None, count: int, spool_steps: int) -> bool:
     """Whether the loop of a kind is there; if it is not and has become worth it, a process begins to compile it.
 
     Args:
         kind: of the machines.
         joint: record of one of them, shape (1,).
+        law: of that one, rows of `law.LAW`, or None.
         count: how many are to be rolled out now.
         spool_steps: as of `roll_out`.
     """
@@ -46,7 +48,7 @@ def ready(kind: Kind, joint: np.ndarray, count: int, spool_steps: int) -> bool:
         if _asked[kind.name] >= WORTH and not _running:
             _asked[kind.name] = 0  # should it fail, it is tried again after as many
             with contextlib.suppress(OSError):
-                _running.append(_begin(joint, spool_steps))
+                _running.append(_begin(joint, law, spool_steps))
         return False
 
 
@@ -62,7 +64,7 @@ def _mark(kind: Kind) -> Path:
     return Path(numba.config.CACHE_DIR or ".") / f"lanes_{kind.name}"
 
 
-def _begin(joint: np.ndarray, spool_steps: int) -> "subprocess.Popen[bytes]":
+def _begin(joint: np.ndarray, law: np.ndarray | None, spool_steps: int) -> "subprocess.Popen[bytes]":
     """A process that compiles the loop for machines of a joint's kind, and outlives this one if need be."""
     process = subprocess.Popen(
         [sys.executable, "-m", "hydrolek_drake.rollout.lane_compiling", str(spool_steps)],
@@ -73,21 +75,23 @@ def _begin(joint: np.ndarray, spool_steps: int) -> "subprocess.Popen[bytes]":
     )
     assert process.stdin is not None  # it is a pipe
     with contextlib.suppress(BrokenPipeError), process.stdin as to:
-        to.write(flat(joint).tobytes())
+        to.write(joint.tobytes() + (b"" if law is None else law.tobytes()))
     return process
 
 
 def main() -> None:
-    """Compile the loop for the joint whose numbers are on standard input."""
+    """Compile the loop for the joint whose record, and the law whose terms, are on standard input."""
     from hydrolek_drake.rollout.lanes import roll_out_lanes
+    from hydrolek_drake.rollout.run import Run
 
     with contextlib.suppress(OSError, AttributeError):
         os.nice(10)
-    joint = np.frombuffer(sys.stdin.buffer.read(), dtype=JOINT)
+    given = sys.stdin.buffer.read()
+    joint, law = np.frombuffer(given[: JOINT.itemsize], JOINT), np.frombuffer(given[JOINT.itemsize :], LAW)
     step = 1e-3
     times = np.array([0.0, step])
-    volts = np.zeros(2)
-    roll_out_lanes(joint, times, volts, times, longest_step=step, spool_steps=int(sys.argv[1]), at_once=True)
+    run = Run(joint, times, np.zeros(2), times, step, int(sys.argv[1]), law=law if len(law) else None)
+    roll_out_lanes([run], at_once=True)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
 """Machines in lanes: the chain of `kernel`, stepped in lockstep, with the lanes as the innermost loop.
 
-Each machine has its own moments at which commands arrive, and so its own steps between two rows of signals; a lane that
-needs fewer than another stands still for the rest. No lane reads what another one writes.
+Each machine has its own command, moments at which it arrives, and times at which signals are wanted, and so its own
+steps between two rows of signals; a lane that needs fewer than another, or has ended, stands still for the rest. No
+lane reads what another one writes.
 """
 
 import math
@@ -17,6 +18,7 @@ from hydrolek_drake.rollout.drive import Drive, driven_on
 from hydrolek_drake.rollout.kernel import (
     arrived,
     inertia_at,
+    next_stretch,
     one_step,
     out_of_bounds,
     pulled,
@@ -29,8 +31,8 @@ from hydrolek_drake.rollout.lane_table import (
     NEXT,
     NUMBERS_OF_JOINT,
     ROD,
-    ROWS,
     STATE,
+    TERMS,
     TIME,
     VOLTS,
     H,
@@ -40,62 +42,10 @@ from hydrolek_drake.rollout.lane_table import (
     put_near,
     state_in,
 )
-from hydrolek_drake.rollout.lane_view import LANES, NUMBERS, lane_joint, spool_steps_of
+from hydrolek_drake.rollout.lane_view import LANES, NUMBERS, early_of, lane_joint, lane_law, spool_steps_of
 from hydrolek_drake.rollout.rates import State, carried_on, turned
 
 _L = LANES
-
-
-@njit
-def planned(
-    target: float,
-    begin: float,
-    held: int,
-    delay: float,
-    command_times: np.ndarray,
-    command_values: np.ndarray,
-    longest_step: float,
-    lane: int,
-    steps: np.ndarray,
-    joint: Any,
-) -> tuple[int, int]:
-    """Steps of one machine from `begin` to `target`, ending where a command arrives.
-
-    Args:
-        target: [s].
-        begin: [s].
-        held: place of the command that acts, -1 for none.
-        delay: of the commands [s].
-        command_times: [s], shape (m,).
-        command_values: [V], shape (m,).
-        longest_step: [s].
-        lane: of the machine.
-        steps: receives length [s], command [V] and beginning [s] of each step, shape (k, 3, lanes).
-        joint: its record.
-
-    Returns:
-        How many steps, and the command that acts at the end.
-    """
-    last = len(command_times) - 1
-    t, count = begin, 0
-    while t < target:
-        while held < last and command_times[held + 1] + delay <= t + 1e-12:
-            held += 1
-        following = held + 1
-        while held >= 0 and following <= last and command_values[following] == command_values[held]:
-            following += 1
-        until = target
-        if following <= last and command_times[following] + delay < target:
-            until = max(command_times[following] + delay, t)
-        volts = arrived(command_values, held, joint)
-        number = max(math.ceil((until - t) / longest_step - 1e-9), 1)
-        h = (until - t) / number
-        if h > 0.0:
-            for i in range(number):
-                steps[count, 0, lane], steps[count, 1, lane], steps[count, 2, lane] = h, volts, t + i * h
-                count += 1
-        t = until
-    return count, held
 
 
 @njit
@@ -115,11 +65,12 @@ def _loop(kind: Any, b: np.ndarray) -> None:
         near = near_in(b, NEAR, lane)
         h, volts, time = b[H * _L + lane], b[VOLTS * _L + lane], b[TIME * _L + lane]
         voltage = command.drive_voltage(volts, joint)
+        law = lane_law(kind, b, TERMS * _L + lane)
         e, drive = driven_on(
-            d, s, volts, voltage, time, h, spool_steps_of(kind), False, probe, probe, None, joint
+            d, s, volts, voltage, time, h, spool_steps_of(kind), early_of(kind), probe, probe, law, joint
         )
         inertia = inertia_at(time, b[ROD * _L + lane], joint)
-        n = one_step(s, d.x, e.x, drive, time, h, inertia, probe, probe, None, near, joint)
+        n = one_step(s, d.x, e.x, drive, time, h, inertia, probe, probe, law, near, joint)
         played = sensor.played(play, n.q - n.tilt, joint)
         after = carried_on(near, n, joint)
         position, included = after.position, after.included
@@ -152,108 +103,124 @@ def integrate_lanes(
     kind: Any,
     joints: np.ndarray,
     numbers: np.ndarray,
+    laws: np.ndarray | None,
     states: np.ndarray,
     command_times: np.ndarray,
     command_values: np.ndarray,
     times: np.ndarray,
-    longest_step: float,
+    rows: np.ndarray,
+    longest_step: np.ndarray,
     most_steps: int,
-    pull_time: float,
+    pull_time: np.ndarray,
     measured: np.ndarray,
     out: np.ndarray,
     done: np.ndarray,
 ) -> None:
-    """Integrate `LANES` joints through one command and write their signals at `times`.
+    """Integrate `LANES` joints, each through its command, and write their signals, each at its times.
 
     Args:
         kind: what is alike in all lanes, a `Kind`.
         joints: their records, shape (lanes,).
         numbers: the same as numbers, shape (lanes, n).
+        laws: terms of their laws, rows of `law.LAW`, shape (lanes, terms); None without.
         states: see `kernel.integrate`, shape (lanes, 16); hold the final states afterwards.
-        command_times: [s], shape (m,).
-        command_values: [V], shape (m,).
-        times: when to write [s], shape (k,).
-        longest_step: [s].
-        most_steps: at least as many as any machine takes between two of `times`.
-        pull_time: as of `kernel.integrate` [s].
-        measured: as of `kernel.integrate`, shape (k, 3).
+        command_times: [s], infinite behind the last one, shape (lanes, m).
+        command_values: [V], NaN there, shape (lanes, m).
+        times: when to write [s], shape (lanes, k).
+        rows: how many of these there are, shape (lanes,).
+        longest_step: [s], shape (lanes,).
+        most_steps: at least as many as any machine takes between two of its times.
+        pull_time: as of `kernel.integrate` [s], shape (lanes,).
+        measured: as of `kernel.integrate`, shape (lanes, k, 3), or (lanes, 0, 3) where none is pulled.
         out: signals, shape (lanes, k, 8).
-        done: rows written of each machine, shape (lanes,); fewer than k where one diverged at that row.
+        done: rows written of each machine, shape (lanes,); fewer than its `rows` where one diverged at that row.
     """
-    b, machines = np.zeros(ROWS * _L), np.zeros((_L, 2))
-    held, steps = np.full(_L, -1), np.zeros((most_steps, 3, _L))
-    _enter(joints, numbers, states, times[0], b, machines)
-    done[:] = len(times)
-    t = times[0]
-    for row in range(len(times)):
+    machines, held, steps = np.zeros((_L, 2)), np.full(_L, -1), np.zeros((most_steps, 3, _L))
+    b = _entered(joints, numbers, laws, states, times, machines)
+    done[:] = rows
+    for row in range(rows.max()):
         most = _plan(
-            joints, t, times[row], machines, command_times, command_values, longest_step, b, held, steps
-        )
+            joints, row, rows, times, machines, command_times, command_values, longest_step, b,
+            held, steps,
+        )  # fmt: skip
         for i in range(most):
             b[H * _L : (H + 3) * _L] = steps[i].ravel()
             _all_lanes(kind, b)
             b[STATE * _L : (STATE + KEPT) * _L] = b[NEXT * _L : (NEXT + KEPT) * _L]
             b[NEAR * _L : (NEAR + 6) * _L] = b[NEAR_NEXT * _L : (NEAR_NEXT + 6) * _L]
-        t = times[row]
-        until = times[row + 1] - t if row + 1 < len(times) else 0.0
-        share = 1.0 - math.exp(-until / pull_time) if pull_time > 0.0 and until > 0.0 else 0.0
-        _write(joints, t, row, len(times), machines, command_values, held, share, measured, b, out, done)
-    _leave(joints, times[-1], machines, b, states)
+        _write(
+            joints, laws, row, rows, times, machines, command_values, held, pull_time, measured, b, out, done
+        )
+    _leave(joints, times, rows, machines, b, states)
 
 
 @njit(cache=True)
-def _enter(
+def _entered(
     joints: np.ndarray,
     numbers: np.ndarray,
+    laws: np.ndarray | None,
     states: np.ndarray,
-    begin: float,
-    b: np.ndarray,
+    times: np.ndarray,
     machines: np.ndarray,
-) -> None:
-    """Put the machines' numbers and states into the table, and when each was switched on and its delay beside."""
+) -> np.ndarray:
+    """The table with the machines' numbers and states; when each was switched on, and its delay, in `machines`."""
+    b = np.zeros((TERMS + numbers.shape[1] - NUMBERS) * _L)
     for lane in range(_L):
         joint, v = joints[lane], states[lane]
-        for i in range(NUMBERS):
+        for i in range(numbers.shape[1]):
             b[(NUMBERS_OF_JOINT + i) * _L + lane] = numbers[lane, i]
         s = State(v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10])
         put(b, STATE, lane, s, Drive(v[13], Currents(v[14], v[15]), v[0], v[1]), v[11])
         b[ROD * _L + lane] = load.reflected_rod_inertia(joint)
-        machines[lane, 0], machines[lane, 1] = begin - v[12], command.transport_delay(joint)
+        machines[lane, 0], machines[lane, 1] = times[lane, 0] - v[12], command.transport_delay(joint)
+    return b
 
 
 @njit(cache=True)
 def _plan(
     joints: np.ndarray,
-    begin: float,
-    target: float,
+    row: int,
+    rows: np.ndarray,
+    times: np.ndarray,
     machines: np.ndarray,
     command_times: np.ndarray,
     command_values: np.ndarray,
-    longest_step: float,
+    longest_step: np.ndarray,
     b: np.ndarray,
     held: np.ndarray,
     steps: np.ndarray,
 ) -> int:
-    """Steps of all machines up to the next row, see `planned`: as many as that takes which needs most."""
+    """Steps of all machines up to their next row: as many as that takes which needs most.
+
+    Their lengths [s], commands [V] and beginnings [s] are written to `steps`, shape (k, 3, lanes).
+    """
     most, count = 0, np.zeros(_L, np.int64)
     for lane in range(_L):
         joint = joints[lane]
         put_near(b, NEAR, lane, turned(state_in(b, STATE, lane), joint))
-        count[lane], held[lane] = planned(
-            target,
-            begin,
-            held[lane],
-            machines[lane, 1],
-            command_times,
-            command_values,
-            longest_step,
-            lane,
-            steps,
-            joint,
-        )
+        if not 0 < row < rows[lane]:
+            continue
+        t, target = times[lane, row - 1], times[lane, row]
+        while t < target:
+            stretch = next_stretch(
+                t,
+                target,
+                held[lane],
+                machines[lane, 1],
+                command_times[lane],
+                command_values[lane],
+                longest_step[lane],
+                joint,
+            )
+            held[lane] = stretch.held
+            if stretch.h > 0.0:
+                for i in range(stretch.steps):
+                    k = count[lane]
+                    steps[k, 0, lane], steps[k, 1, lane] = stretch.h, stretch.volts
+                    steps[k, 2, lane] = t + i * stretch.h - machines[lane, 0]
+                    count[lane] += 1
+            t = stretch.until
         most = max(most, count[lane])
-        for i in range(count[lane]):
-            steps[i, 2, lane] -= machines[lane, 0]
     for lane in range(_L):
         for i in range(count[lane], most):
             steps[i, 0, lane] = 0.0
@@ -263,40 +230,50 @@ def _plan(
 @njit(cache=True)
 def _write(
     joints: np.ndarray,
-    t: float,
+    laws: np.ndarray | None,
     row: int,
-    rows: int,
+    rows: np.ndarray,
+    times: np.ndarray,
     machines: np.ndarray,
     command_values: np.ndarray,
     held: np.ndarray,
-    share: float,
+    pull_time: np.ndarray,
     measured: np.ndarray,
     b: np.ndarray,
     out: np.ndarray,
     done: np.ndarray,
 ) -> None:
-    """Write a row of every machine that has not diverged, and pull them to what was measured by a share."""
+    """Write a row of every machine that has not ended, and pull them to what was measured."""
     for lane in range(_L):
-        joint = joints[lane]
+        joint, last = joints[lane], rows[lane] - 1
         s, d, play = state_in(b, STATE, lane), drive_in(b, STATE, lane), b[(STATE + 14) * _L + lane]
-        if done[lane] < rows:
+        if row > last or done[lane] <= last:
             continue
         if out_of_bounds(d.x, s):
             done[lane] = row
             continue
+        t = times[lane, row]
         time = t - machines[lane, 0]
-        volts = arrived(command_values, held[lane], joint)
+        volts = arrived(command_values[lane], held[lane], joint)
         inertia = inertia_at(time, b[ROD * _L + lane], joint)
-        written(
-            d, s, play, volts, time, inertia, no_probe(), None, near_in(b, NEAR, lane), joint, out[lane, row]
-        )
-        if share > 0.0:
-            s, by = pulled(s, share, out[lane, row, 0], measured[row])
+        law = None if laws is None else laws[lane]
+        near = near_in(b, NEAR, lane)
+        written(d, s, play, volts, time, inertia, no_probe(), law, near, joint, out[lane, row])
+        if pull_time[lane] > 0.0 and row < last:
+            share = 1.0 - math.exp((t - times[lane, row + 1]) / pull_time[lane])
+            s, by = pulled(s, share, out[lane, row, 0], measured[lane, row])
             put(b, STATE, lane, s, d, play + by)
 
 
 @njit(cache=True)
-def _leave(joints: np.ndarray, end: float, machines: np.ndarray, b: np.ndarray, states: np.ndarray) -> None:
+def _leave(
+    joints: np.ndarray,
+    times: np.ndarray,
+    rows: np.ndarray,
+    machines: np.ndarray,
+    b: np.ndarray,
+    states: np.ndarray,
+) -> None:
     """The machines' final states."""
     for lane in range(_L):
         joint = joints[lane]
@@ -305,5 +282,5 @@ def _leave(joints: np.ndarray, end: float, machines: np.ndarray, b: np.ndarray, 
         v[0], v[1], v[2], v[3], v[4], v[5], v[6] = d.x, d.xd, s.p_a, s.p_b, s.q, s.w, s.flow
         v[7], v[8] = (s.tilt, s.tilt_rate) if rocking else (0.0, 0.0)
         v[9], v[10] = (s.lead_q, s.lead_w) if playing else (s.q, s.w)
-        v[11], v[12] = b[(STATE + 14) * _L + lane], end - machines[lane, 0]
+        v[11], v[12] = b[(STATE + 14) * _L + lane], times[lane, rows[lane] - 1] - machines[lane, 0]
         v[13], v[14], v[15] = d.behind, d.currents.a, d.currents.b

@@ -19,7 +19,7 @@ NEAR, NEAR_NEXT = 32, 38  # value, sine, cosine of the link's angle and of the o
 H, VOLTS, TIME, ROD = 44, 45, 46, 47
 KEPT = 15  # rows of `STATE`
 NUMBERS_OF_JOINT = 48
-ROWS = NUMBERS_OF_JOINT + NUMBERS
+TERMS = NUMBERS_OF_JOINT + NUMBERS  # of a law, one after the other
 
 
 @njit

@@ -7,6 +7,7 @@ of which the compiler leaves out the branches.
 """
 
 import hashlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,6 +19,7 @@ from numba.core.imputils import lower_getattr_generic
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import NativeValue, intrinsic, models, register_model, typeof_impl, unbox
 
+from hydrolek_drake.physics.law import LAW
 from hydrolek_drake.physics.records import JOINT
 
 LANES = 8
@@ -35,23 +37,29 @@ class Kind:
     Attributes:
         known: places in a flat record, and the numbers that stand there in every lane.
         spool_steps: steps of the spool within one step.
+        terms: of the law of every lane; 0 for none. Which factors they have may differ.
+        early: whether the laws may act before the spool or on it.
     """
 
     known: tuple[tuple[int, float], ...]
     spool_steps: int
+    terms: int = 0
+    early: bool = False
 
     @cached_property
     def name(self) -> str:
         """Short, and another one for every kind."""
-        return hashlib.sha256(repr((self.known, self.spool_steps)).encode()).hexdigest()[:12]
+        return hashlib.sha256(
+            repr((self.known, self.spool_steps, self.terms, self.early)).encode()
+        ).hexdigest()[:12]
 
 
 class KindType(types.Opaque):
     """Numba's type of a `Kind`: kinds are told apart when a function is compiled."""
 
-    def __init__(self, name: str, known: tuple[tuple[int, float], ...], spool_steps: int) -> None:
-        self.known, self.spool_steps = known, spool_steps
-        super().__init__(name=f"Kind({name})")
+    def __init__(self, kind: Kind) -> None:
+        self.kind = kind
+        super().__init__(name=f"Kind({kind.name})")
 
 
 register_model(KindType)(models.OpaqueModel)
@@ -65,27 +73,33 @@ def _unbox_kind(typ: Any, value: Any, c: Any) -> NativeValue:
 
 @typeof_impl.register(Kind)
 def _kind_type(kind: Kind, _context: Any) -> KindType:
-    return KindType(kind.name, kind.known, kind.spool_steps)
+    return KindType(kind)
 
 
 class LaneView(types.Type):
-    """Numba's type of a record, or a part of it, in a lane."""
+    """Numba's type of a joint's record, a part of it, or a term of its law, in a lane."""
 
-    def __init__(self, kind: KindType, path: tuple[str, ...]) -> None:
-        self.kind, self.path = kind, path
-        super().__init__(name=f"LaneView({kind.name},{'.'.join(path)})")
+    def __init__(self, kind: KindType, path: tuple[str, ...], record: np.dtype = JOINT) -> None:
+        self.kind, self.path, self.record = kind, path, record
+        self.known = dict(kind.kind.known) if record is JOINT else {}
+        of = "joint" if record is JOINT else "law"
+        super().__init__(name=f"LaneView({kind.name},{of},{'.'.join(path)})")
 
     def field(self, name: str) -> tuple[np.dtype, int]:
         """Type and place, in numbers, of a field."""
-        dtype, place = JOINT, 0
+        dtype, place = self.record, 0
         for part in (*self.path, name):
             dtype, offset = dtype.fields[part][:2]  # type: ignore[index]
             place += offset // 8
         return dtype, place
 
+    def part(self, name: str) -> "LaneView":
+        """The view of a stage or an effect."""
+        return LaneView(self.kind, (*self.path, name), self.record)
+
     def has(self, name: str) -> bool:
         """Whether there is such a field."""
-        dtype = JOINT
+        dtype = self.record
         for part in self.path:
             dtype = dtype.fields[part][0]  # type: ignore[index]
         return name in (dtype.names or ())
@@ -105,7 +119,7 @@ class _Fields(AttributeTemplate):
         if not view.has(name):
             return None
         dtype, _ = view.field(name)
-        return LaneView(view.kind, (*view.path, name)) if dtype.names else types.float64
+        return view.part(name) if dtype.names else types.float64
 
 
 @lower_getattr_generic(LaneView)
@@ -113,12 +127,17 @@ def _read(context: Any, builder: Any, view: LaneView, value: Any, name: str) -> 
     dtype, place = view.field(name)
     if dtype.names:
         return value
-    known = dict(view.kind.known)
-    if place in known:
-        return context.get_constant(types.float64, known[place])
+    if place in view.known:
+        return context.get_constant(types.float64, view.known[place])
     lane = cgutils.create_struct_proxy(view)(context, builder, value=value)
     at = builder.add(lane.place, context.get_constant(types.intp, place * LANES))
     return builder.load(builder.gep(lane.numbers, [at], inbounds=True))
+
+
+def _view_at(context: Any, builder: Any, view: LaneView, table: Any, array: Any, place: Any) -> Any:
+    lane = cgutils.create_struct_proxy(view)(context, builder)
+    lane.numbers, lane.place = context.make_array(table)(context, builder, array).data, place
+    return lane._getvalue()
 
 
 @intrinsic
@@ -127,19 +146,47 @@ def lane_joint(typing_context: Any, kind: Any, table: Any, place: Any) -> Any:
     view = LaneView(kind, ())
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        array = context.make_array(signature.args[1])(context, builder, arguments[1])
-        lane = cgutils.create_struct_proxy(view)(context, builder)
-        lane.numbers, lane.place = array.data, arguments[2]
-        return lane._getvalue()
+        _, array, at = arguments
+        return _view_at(context, builder, view, signature.args[1], array, at)
 
     return view(kind, table, types.intp), generate
 
 
 @intrinsic
-def spool_steps_of(typing_context: Any, kind: Any) -> Any:
-    """Steps of the spool within one step, as a constant: its loop is unrolled."""
+def lane_law(typing_context: Any, kind: Any, table: Any, place: Any) -> Any:
+    """The terms of one lane's law, whose numbers `table` holds from `place` on, `LANES` apart; None without a law."""
+    terms = kind.kind.terms
+    result = types.UniTuple(LaneView(kind, (), LAW), terms) if terms else types.none
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return context.get_constant(types.intp, signature.args[0].spool_steps)
+        if not terms:
+            return context.get_dummy_value()
+        _, array, first = arguments
+        size = LAW.itemsize // 8 * LANES
+        places = [builder.add(first, context.get_constant(types.intp, size * term)) for term in range(terms)]
+        views = [
+            _view_at(context, builder, result.dtype, signature.args[1], array, place) for place in places
+        ]
+        return context.make_tuple(builder, result, views)
 
-    return types.intp(kind), generate
+    return result(kind, table, types.intp), generate
+
+
+def _constant(what: Callable[[Kind], Any], of: Any) -> Any:
+    """What of a kind is a constant of the compiled loop, so that loops are unrolled and branches left out."""
+
+    @intrinsic
+    def constant(typing_context: Any, kind: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return context.get_constant(of, what(signature.args[0].kind))
+
+        return of(kind), generate
+
+    return constant
+
+
+spool_steps_of = _constant(lambda kind: kind.spool_steps, types.intp)
+"""Steps of the spool within one step."""
+
+early_of = _constant(lambda kind: kind.early, types.boolean)
+"""Whether laws may act before the spool or on it."""

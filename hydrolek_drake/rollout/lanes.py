@@ -1,30 +1,33 @@
-"""Many machines under one command, rolled out in lanes: the front door of `lane_kernel`."""
+"""Many machines rolled out in lanes: the front door of `lane_kernel`."""
 
-from collections.abc import Sequence
+import contextlib
+import os
+from collections.abc import Iterator, Sequence
 from functools import cache
 
 import numpy as np
 
 from hydrolek_drake.compiled import read_only
 from hydrolek_drake.effects.catalogue import EFFECTS
-from hydrolek_drake.physics.law import law_of
-from hydrolek_drake.physics.records import STAGES, flat, position_of
+from hydrolek_drake.physics.law import LAW, MOST_TERMS
+from hydrolek_drake.physics.records import JOINT, STAGES, flat, position_of
 from hydrolek_drake.physics.solenoid import steps_needed
 from hydrolek_drake.rollout import kernel
+from hydrolek_drake.rollout.drive import acts_early
 from hydrolek_drake.rollout.lane_compiling import compiled, ready
 from hydrolek_drake.rollout.lane_kernel import integrate_lanes
 from hydrolek_drake.rollout.lane_view import LANES, Kind
 from hydrolek_drake.rollout.rollout import (
     DIVIDED_BY_ZERO,
-    STATE_SIZE,
     Outcome,
     Signals,
     check_times,
     missing_number,
     rest_state,
-    roll_out,
     why_diverged,
+    with_own,
 )
+from hydrolek_drake.rollout.run import Run
 
 GROUPS = (
     ("rod_friction", "load_friction"),
@@ -40,33 +43,38 @@ SOMETIMES = ("command.ramp", "amplifier.coil_time", "valve.flow_force")
 """Parameters of the stages that most machines have at zero, and that cost as much."""
 
 
+SWITCH, OFF = "HYDROLEK_LANES", "0"
+"""Environment variable, and its value with which machines are rolled out one by one, as for a comparison."""
+
+TERMS = (1, 2, 3, MOST_TERMS)
+"""Numbers of a law's terms for which loops are compiled; a law in between gets terms of no size."""
+
 FEW = 2
 """So many machines take no longer one by one."""
 
 
-def roll_out_lanes(
-    joints: np.ndarray,
-    command_times: np.ndarray,
-    command_values: np.ndarray,
-    times: np.ndarray,
-    *,
-    states: Sequence[np.ndarray] | None = None,
-    longest_step: float,
-    spool_steps: int = 1,
-    pull: tuple[float, np.ndarray] | None = None,
-    at_once: bool = False,
-) -> list[Outcome]:
-    """Drive several machines with one recorded command; each as `roll_out` would drive it alone, to the last bit.
+@contextlib.contextmanager
+def one_by_one() -> Iterator[None]:
+    """Within it machines are rolled out one after the other, as for a comparison; in processes begun there too."""
+    before = os.environ.get(SWITCH)
+    os.environ[SWITCH] = OFF
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[SWITCH]
+        else:
+            os.environ[SWITCH] = before
+
+
+def roll_out_lanes(runs: Sequence[Run], *, at_once: bool = False) -> list[Outcome]:
+    """Drive several machines side by side; each does what it does alone (`Run.outcome`), to the last bit.
+
+    They may differ in everything. What takes a program of its own (`kind_of`) goes with its like; machines with
+    probes, and laws of more than `MOST_TERMS` terms, are driven alone.
 
     Args:
-        joints: parameter records, shape (n,), dtype `physics.records.JOINT`.
-        command_times: as of `roll_out`.
-        command_values: as of `roll_out`.
-        times: as of `roll_out`.
-        states: where each one starts; None for rest at its own initial position.
-        longest_step: as of `roll_out`.
-        spool_steps: as of `roll_out`.
-        pull: as of `roll_out`.
+        runs: machines, and what each is driven with.
         at_once: compile what is not compiled yet, and wait for it; else the machines are driven one by one until that
             is done (`lane_compiling`).
 
@@ -76,81 +84,121 @@ def roll_out_lanes(
     Raises:
         InputError: as of `roll_out`.
     """
-    check_times(command_times, command_values, times)
+    if not at_once and (len(runs) <= FEW or os.environ.get(SWITCH) == OFF):
+        return [run.outcome() for run in runs]
     found: dict[int, Outcome] = {}
     groups: dict[Kind, list[int]] = {}
-    alone: list[int] = []
-    for i in range(len(joints)):
-        joint = joints[i : i + 1]
-        if law_of(joint) is not None or missing_number(joint) is not None:
-            alone.append(i)
-        else:
-            groups.setdefault(kind_of(joint, spool_steps), []).append(i)
-    for kind, members in list(groups.items()):
-        first = members[0]
-        if not at_once and (
-            len(members) <= FEW or not ready(kind, joints[first : first + 1], len(members), spool_steps)
+    laws = [with_own(run.law, run.joint) for run in runs]
+    for i, (run, law) in enumerate(zip(runs, laws, strict=True)):
+        if (
+            run.probes is None
+            and missing_number(run.joint) is None
+            and (law is None or len(law) <= MOST_TERMS)
         ):
-            alone += groups.pop(kind)
-    for i in alone:
-        found[i] = roll_out(
-            joints[i : i + 1],
-            command_times,
-            command_values,
-            times,
-            state=None if states is None else states[i],
-            longest_step=longest_step,
-            spool_steps=spool_steps,
-            pull=pull,
-        )
-    pull_time, measured = pull or (0.0, kernel.NOT_PULLED)
-    changes = np.concatenate([[True], np.diff(command_values) != 0.0])
-    moments, values = read_only(command_times[changes]), read_only(command_values[changes])
-    wanted = read_only(times)
-    most = _most_steps(wanted, moments, longest_step)
+            groups.setdefault(kind_of(run.joint, run.spool_steps, law), []).append(i)
+        else:
+            found[i] = run.outcome()
     for kind, members in groups.items():
-        for first in range(0, len(members), LANES):
-            chosen = members[first : first + LANES]
-            full = chosen + [chosen[-1]] * (LANES - len(chosen))
-            own = np.ascontiguousarray(joints[full])
-            begun = np.empty((LANES, STATE_SIZE))
-            for lane, i in enumerate(full):
-                begun[lane] = rest_state(joints[i : i + 1]) if states is None else states[i]
-            out = np.full((LANES, len(wanted), len(kernel.SIGNALS)), np.nan)
-            done = np.zeros(LANES, dtype=np.int64)
-            integrate_lanes(
-                kind,
-                own,
-                flat(own),
-                begun,
-                moments,
-                values,
-                wanted,
-                longest_step,
-                most,
-                pull_time,
-                read_only(measured),
-                out,
-                done,
-            )
-            for lane, i in enumerate(chosen):
-                rows = int(done[lane])
-                diverged = None
-                if rows < len(wanted):
-                    diverged = why_diverged(joints[i : i + 1], float(wanted[rows]))
-                    if diverged == DIVIDED_BY_ZERO:
-                        out[lane] = np.nan
-                found[i] = Outcome(Signals(wanted, *out[lane].T), diverged, begun[lane])
-        compiled(kind)
-    return [found[i] for i in range(len(joints))]
+        first = runs[members[0]]
+        if at_once or (
+            len(members) > FEW and ready(kind, first.joint, laws[members[0]], len(members), first.spool_steps)
+        ):
+            alike = sorted(members, key=lambda i: (len(runs[i].times), runs[i].longest_step))
+            for at in range(0, len(alike), LANES):
+                chosen = alike[at : at + LANES]
+                done = _in_one_table(kind, [runs[i] for i in chosen], [laws[i] for i in chosen])
+                found |= dict(zip(chosen, done, strict=True))
+            compiled(kind)
+        else:
+            found |= {i: runs[i].outcome() for i in members}
+    return [found[i] for i in range(len(runs))]
 
 
-def kind_of(joint: np.ndarray, spool_steps: int) -> Kind:
-    """What of a joint's record is known when a loop over lanes is compiled.
+def _in_one_table(kind: Kind, runs: Sequence[Run], laws: Sequence[np.ndarray | None]) -> list[Outcome]:
+    """At most `LANES` machines of one kind; lanes that are left do what the last one does."""
+    lanes = [*runs, *[runs[-1]] * (LANES - len(runs))]
+    joints = np.empty(LANES, dtype=JOINT)
+    for lane, run in enumerate(lanes):
+        joints[lane] = run.joint[0]
+    commands = [_changes(run.command_times, run.command_values) for run in lanes]
+    for run in runs:
+        check_times(run.command_times, run.command_values, run.times)
+    rows = np.array([len(run.times) for run in lanes])
+    pulls = any(run.pull is not None for run in runs)
+    measured = np.full((LANES, int(rows.max()) if pulls else 0, len(kernel.PULLED)), np.nan)
+    for lane, run in enumerate(lanes):
+        if run.pull is not None:
+            measured[lane, : rows[lane]] = run.pull[1]
+    terms, numbers = None, flat(joints)
+    if kind.terms:
+        own = [law for law in laws if law is not None]
+        terms = np.stack([_filled_up(law, kind.terms) for law in (*own, *[own[-1]] * (LANES - len(own)))])
+        numbers = np.concatenate([numbers, terms.view(np.float64).reshape(LANES, -1)], axis=1)
+    states = np.stack([rest_state(run.joint) if run.state is None else run.state for run in lanes])
+    out = np.full((LANES, int(rows.max()), len(kernel.SIGNALS)), np.nan)
+    done = np.zeros(LANES, dtype=np.int64)
+    integrate_lanes(
+        kind,
+        joints,
+        np.ascontiguousarray(numbers),
+        terms,
+        states,
+        _side_by_side([times for times, _ in commands], np.inf),
+        _side_by_side([values for _, values in commands], np.nan),
+        _side_by_side([run.times for run in lanes], np.nan),
+        rows,
+        np.array([run.longest_step for run in lanes]),
+        max(
+            _most_steps(run.times, times, run.longest_step)
+            for run, (times, _) in zip(runs, commands, strict=False)
+        ),
+        np.array([0.0 if run.pull is None else run.pull[0] for run in lanes]),
+        measured,
+        out,
+        done,
+    )
+    found = []
+    for lane, run in enumerate(runs):
+        diverged = None
+        signals = out[lane, : rows[lane]]
+        if done[lane] < rows[lane]:
+            diverged = why_diverged(run.joint, float(run.times[done[lane]]))
+            if diverged == DIVIDED_BY_ZERO:
+                signals[:] = np.nan
+        found.append(Outcome(Signals(read_only(run.times), *signals.T), diverged, states[lane]))
+    return found
+
+
+def _changes(times: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A command without what only repeats it."""
+    changes = np.concatenate([[True], np.diff(values) != 0.0])
+    return times[changes], values[changes]
+
+
+def _side_by_side(series: Sequence[np.ndarray], behind: float) -> np.ndarray:
+    """Series of different lengths in rows, filled up with a value."""
+    rows = np.full((len(series), max(map(len, series))), behind)
+    for row, values in zip(rows, series, strict=True):
+        row[: len(values)] = values
+    return rows
+
+
+def _filled_up(law: np.ndarray, count: int) -> np.ndarray:
+    """A law with terms of no size. # (k,) -> (count,)."""
+    terms = np.ones(count, dtype=LAW)  # what divides is not zero
+    for name in ("sine", "cosine", "frequency", "probe", "time", "place", "speed_shape", "other"):
+        terms[name] = 0.0
+    terms[: len(law)] = law
+    return terms
+
+
+def kind_of(joint: np.ndarray, spool_steps: int, law: np.ndarray | None = None) -> Kind:
+    """What of a machine is known when a loop over lanes is compiled.
 
     Args:
         joint: its record, shape (1,).
         spool_steps: as of `roll_out`.
+        law: how inputs from outside follow from the state, rows of `law.LAW`, or None.
     """
     numbers = flat(joint)[0]
     variants, groups, sometimes = _places()
@@ -159,7 +207,11 @@ def kind_of(joint: np.ndarray, spool_steps: int) -> Kind:
         if all(numbers[size] == neutral for size, neutral in sizes):
             known |= {place: float(neutral) for place, neutral in places}
     known |= {place: 0.0 for place in sometimes if not numbers[place] > 0.0}
-    return Kind(tuple(sorted(known.items())), int(steps_needed(spool_steps, joint[0])))
+    steps = int(steps_needed(spool_steps, joint[0]))
+    if law is None:
+        return Kind(tuple(sorted(known.items())), steps)
+    terms = next(count for count in TERMS if count >= len(law))
+    return Kind(tuple(sorted(known.items())), steps, terms, bool(acts_early(law, joint[0])))
 
 
 _Places = tuple[tuple[int, float], ...]

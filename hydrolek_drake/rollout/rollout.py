@@ -189,7 +189,7 @@ def roll_out(
                 read_only(probe_values),
                 pull_time,
                 read_only(measured),
-                _with_own(law, joint),
+                with_own(law, joint),
                 out,
             )
             if rows < len(times):
@@ -202,7 +202,7 @@ def roll_out(
     return Outcome(Signals(times, *out.T), diverged, start)
 
 
-def _with_own(law: np.ndarray | None, joint: np.ndarray) -> np.ndarray | None:
+def with_own(law: np.ndarray | None, joint: np.ndarray) -> np.ndarray | None:
     """A law and that of the joint's record."""
     own = law_of(joint)
     if law is None or own is None:

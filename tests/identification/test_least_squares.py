@@ -1,5 +1,6 @@
 """Fits: planted values come back, with intervals that hold them, from any start."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar
 
@@ -89,9 +90,9 @@ class Counting(Problem):
 
     steps: ClassVar[list[float | None]] = []
 
-    def residuals(self, unit: np.ndarray) -> np.ndarray:
-        self.steps.append(self.longest_step)
-        return super().residuals(unit)
+    def residuals_of_all(self, units: Sequence[np.ndarray]) -> list[np.ndarray]:
+        self.steps.extend([self.longest_step] * len(units))
+        return super().residuals_of_all(units)
 
 
 class Jumping(Problem):
@@ -99,10 +100,11 @@ class Jumping(Problem):
 
     edge = 0.0
 
-    def residuals(self, unit: np.ndarray) -> np.ndarray:
-        left = super().residuals(unit)
-        left[2 * left.size // 3 :] += 1.0 if unit[1] > self.edge else 0.0
-        return left
+    def residuals_of_all(self, units: Sequence[np.ndarray]) -> list[np.ndarray]:
+        found = super().residuals_of_all(units)
+        for unit, left in zip(units, found, strict=True):
+            left[2 * left.size // 3 :] += 1.0 if unit[1] > self.edge else 0.0
+        return found
 
 
 @pytest.mark.parametrize("aside", [-3e-7, 3e-7])

@@ -27,7 +27,11 @@ def test_a_trajectory_moves_each_parameter_once_within_the_cube():
 def test_effects_of_a_linear_function_are_its_slopes_and_do_not_vary():
     slopes = np.array([3.0, -1.0, 0.0])
     found = elementary_effects(
-        lambda u: np.array([slopes @ u]), lambda s: np.abs(s), 3, 5, np.random.default_rng(0)
+        lambda units: [np.array([slopes @ u]) for u in units],
+        lambda s: np.abs(s),
+        3,
+        5,
+        np.random.default_rng(0),
     )
     np.testing.assert_allclose(found.mean_size[:, 0], np.abs(slopes))
     np.testing.assert_allclose(found.deviation, 0.0, atol=1e-12)
@@ -35,7 +39,11 @@ def test_effects_of_a_linear_function_are_its_slopes_and_do_not_vary():
 
 def test_effects_of_a_product_depend_on_the_other_factor():
     found = elementary_effects(
-        lambda u: np.array([u[0] * u[1]]), lambda s: np.abs(s), 2, 400, np.random.default_rng(1)
+        lambda units: [np.array([u[0] * u[1]]) for u in units],
+        lambda s: np.abs(s),
+        2,
+        400,
+        np.random.default_rng(1),
     )
     # the other factor is uniform on {0, 1/3, 2/3, 1}: mean 1/2, deviation sqrt(5/36)
     np.testing.assert_allclose(found.mean_size[:, 0], 0.5, atol=4 * np.sqrt(5 / 36 / 400))

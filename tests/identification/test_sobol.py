@@ -15,12 +15,16 @@ def _ishigami(unit, a=7.0, b=0.1):
     return np.array([np.sin(x[0]) + a * np.sin(x[1]) ** 2 + b * x[2] ** 4 * np.sin(x[0])])
 
 
+def _each(function):
+    return lambda units: [function(unit) for unit in units]
+
+
 def test_indices_of_the_ishigami_function_are_its_closed_form():
     a, b = 7.0, 0.1
     alone = np.array([0.5 * (1.0 + b * np.pi**4 / 5.0) ** 2, a**2 / 8.0, 0.0])
     together = b**2 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)  # of the first and the third
     variance = alone.sum() + together
-    found = sobol_of(_ishigami, 1, 3, 2048, np.random.default_rng(1))
+    found = sobol_of(_each(_ishigami), 1, 3, 2048, np.random.default_rng(1))
     np.testing.assert_allclose(found.first[:, 0], alone / variance, atol=0.02)
     total = (alone + np.array([together, 0.0, together])) / variance
     np.testing.assert_allclose(found.total[:, 0], total, atol=0.02)
@@ -33,7 +37,7 @@ def test_indices_of_a_signal_are_weighed_by_its_variance_and_kept_by_segment():
     def output(unit):
         return np.concatenate([np.full(10, 3.0 * unit[0] + unit[1]), np.full(10, 10.0 * unit[1])])
 
-    found = sobol_of(output, 2, 2, 1024, np.random.default_rng(2))
+    found = sobol_of(_each(output), 2, 2, 1024, np.random.default_rng(2))
     np.testing.assert_allclose(found.total, [[0.9, 0.0], [0.1, 1.0]], atol=0.02)
     np.testing.assert_allclose(found.first_whole, [9.0 / 110.0, 101.0 / 110.0], atol=0.02)
 
@@ -42,14 +46,14 @@ def test_a_run_that_diverges_is_counted_and_changes_nothing_else():
     def output(unit):
         return np.array([unit[0] if unit[0] < 0.99 else np.nan])
 
-    found = sobol_of(output, 1, 2, 256, np.random.default_rng(3))
+    found = sobol_of(_each(output), 1, 2, 256, np.random.default_rng(3))
     assert found.diverged > 0
     np.testing.assert_allclose(found.total[:, 0], [1.0, 0.0], atol=0.1)
 
 
 def test_a_number_that_is_no_power_of_two_is_refused(capsys):
     with pytest.raises(InputError, match="needs a power of two, such as 128"):
-        sobol_of(_ishigami, 1, 3, 100, np.random.default_rng(1))
+        sobol_of(_each(_ishigami), 1, 3, 100, np.random.default_rng(1))
     assert run(["sensitivity", "joint_bench", "--sobol", "100"]) == 2
     assert "such as 128" in capsys.readouterr().err
 

@@ -72,6 +72,8 @@ def test_chunks_hold_every_point_once():
     assert len(chunks) == 8
     np.testing.assert_array_equal(np.concatenate(chunks), np.arange(23))
     assert [len(chunk) for chunk in chunks_of(3, 4)] == [1, 1, 1]
+    assert [len(chunk) for chunk in chunks_of(30, 2, 8)] == [8, 8, 8, 6]  # whole tables of lanes
+    np.testing.assert_array_equal(np.concatenate(chunks_of(30, 2, 8)), np.arange(30))
 
 
 def test_a_cluster_of_processes_one_of_which_is_killed_gives_the_same_search():

@@ -2,12 +2,15 @@
 
 import json
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.physics.law import LAW, OTHERS, PLACES, SPEEDS, TIMES
+from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.physics.records import flat, position_of
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import lane_compiling
@@ -15,6 +18,7 @@ from hydrolek_drake.rollout.kernel import SIGNALS
 from hydrolek_drake.rollout.lane_view import LANES
 from hydrolek_drake.rollout.lanes import kind_of, roll_out_lanes
 from hydrolek_drake.rollout.rollout import rest_state_at_reading, roll_out
+from hydrolek_drake.rollout.run import Run
 
 SIZES = json.loads((Path(__file__).parents[2] / "scripts" / "agreement_effects.json").read_text())
 STEP = 5e-4
@@ -62,17 +66,23 @@ def _one_by_one(records, times, volts, **named):
     return [roll_out(records[i : i + 1], times, volts, times, **named) for i in range(len(records))]
 
 
+def _in_lanes(records, times, volts, **named):
+    """Machines under one command."""
+    return roll_out_lanes(Run(records[:1], times, volts, times, **named).of(records), at_once=True)
+
+
 def test_every_lane_does_what_it_does_alone_and_goes_on_from_where_it_ended():
     rig, rng = load_rig("hydrolek_right_j2"), np.random.default_rng(1)
     records = _varied(rig.records()[:1], rng, LANES + 3)  # more than one table's
     times, volts = _driven(8.0)
-    found = roll_out_lanes(records, times, volts, times, longest_step=STEP, at_once=True)
+    found = _in_lanes(records, times, volts, longest_step=STEP)
     alone = _one_by_one(records, times, volts, longest_step=STEP)
     for one, other in zip(found, alone, strict=True):
         _alike(one, other)
     later = times + 8.0
+    runs = Run(records[:1], later, volts, later, STEP).of(records)
     onward = roll_out_lanes(
-        records, later, volts, later, states=[one.state for one in found], longest_step=STEP, at_once=True
+        [replace(run, state=one.state) for run, one in zip(runs, found, strict=True)], at_once=True
     )
     for i, one in enumerate(onward):
         _alike(
@@ -97,7 +107,7 @@ def test_a_batch_of_machines_with_other_effects():
     records = np.concatenate([rig.records()[:1], *(_with(rig, effect).records()[:1] for effect in effects)])
     times, volts = _driven(5.0)
     for one, other in zip(
-        roll_out_lanes(records, times, volts, times, longest_step=STEP, at_once=True),
+        _in_lanes(records, times, volts, longest_step=STEP),
         _one_by_one(records, times, volts, longest_step=STEP),
         strict=True,
     ):
@@ -122,7 +132,7 @@ def test_every_effect_on_every_machine_for_40_seconds(name):
     times, volts = _driven(40.0)
     step = rig.value("integration.longest_step")
     for one, other in zip(
-        roll_out_lanes(records, times, volts, times, longest_step=step, at_once=True),
+        _in_lanes(records, times, volts, longest_step=step),
         _one_by_one(records, times, volts, longest_step=step),
         strict=True,
     ):
@@ -133,12 +143,12 @@ def test_a_lane_that_diverges_or_has_no_number_disturbs_no_other_by_a_bit():
     rig, rng = load_rig("joint_bench"), np.random.default_rng(2)
     records = _varied(rig.records()[:1], rng, LANES)
     times, volts = _driven(4.0)
-    good = roll_out_lanes(records, times, volts, times, longest_step=STEP, at_once=True)
+    good = _in_lanes(records, times, volts, longest_step=STEP)
     spoiled = records.copy()
     spoiled[2]["fluid"]["bulk_modulus"] = 1e16
     spoiled[5]["load"]["inertia"] = np.nan
     spoiled[6]["fluid"]["density"] = 0.0
-    found = roll_out_lanes(spoiled, times, volts, times, longest_step=STEP, at_once=True)
+    found = _in_lanes(spoiled, times, volts, longest_step=STEP)
     assert "left all bounds at" in found[2].diverged
     assert found[5].diverged == "load.inertia is not a number (NaN)"
     assert found[6].diverged == "a parameter by which something is divided is zero"
@@ -147,21 +157,65 @@ def test_a_lane_that_diverges_or_has_no_number_disturbs_no_other_by_a_bit():
             np.testing.assert_array_equal(getattr(found[i].signals, name), getattr(good[i].signals, name))
 
 
-def test_pulled_rollouts_and_starts_of_their_own():
+def test_each_lane_has_its_own_recording_start_step_pull_and_time_constant():
     rig, rng = load_rig("joint_bench"), np.random.default_rng(4)
-    records = _varied(rig.records()[:1], rng, 5)
-    times, volts = _driven(4.0)
-    measured = np.column_stack([0.02 * rng.standard_normal(times.size), *(np.full((2, times.size), 5e6))])
-    measured[10:20, 0] = np.nan
-    states = [rest_state_at_reading(records[i : i + 1], 0.01 * i) for i in range(5)]
-    found = roll_out_lanes(
-        records, times, volts, times, states=states, longest_step=STEP, pull=(0.1, measured), at_once=True
-    )
-    for i, one in enumerate(found):
-        alone = roll_out(
-            records[i : i + 1], times, volts, times, state=states[i], longest_step=STEP, pull=(0.1, measured)
+    records = _varied(rig.records()[:1], rng, 7)
+    runs = []
+    for i in range(7):
+        times, volts = _driven(1.0 + 0.7 * i, seed=i)
+        measured = np.column_stack([0.02 * rng.standard_normal(times.size), np.full((times.size, 2), 5e6)])
+        measured[10:20, 0] = np.nan
+        runs.append(
+            Run(
+                records[i : i + 1],
+                times,
+                volts,
+                times[:: 1 + i % 2] + 0.003 * (i % 3),
+                STEP * (1 + i % 2),
+                state=rest_state_at_reading(records[i : i + 1], 0.01 * i),
+                pull=(0.03 * (i + 1), measured[:: 1 + i % 2]) if i % 3 else None,
+            )
         )
-        _alike(one, alone)
+    for one, run in zip(roll_out_lanes(runs, at_once=True), runs, strict=True):
+        _alike(one, run.outcome())
+
+
+def _law(rng, terms):
+    """Terms of all kinds, drawn; what divides is of the size of what it divides."""
+    law = np.zeros(terms, dtype=LAW)
+    places = {"probe": PROBES, "time": TIMES, "place": PLACES, "speed_shape": SPEEDS, "other": OTHERS}
+    for name, choices in places.items():
+        law[name] = rng.integers(0, len(choices), size=terms)
+    for name, value in (
+        ("seconds", 5.0),
+        ("low", -0.1),
+        ("high", 0.7),
+        ("centre", 0.2),
+        ("reach", 0.3),
+        ("speed", 0.5),
+        ("slow", 0.01),
+        ("opening", 1e-3),
+        ("pressure", 1e7),
+    ):
+        law[name] = value
+    scales = {"command": 0.3, "supply": 1e5, "cylinder": 200.0, "load": 40.0, "flow": 1e-5, "sensor": 1e-3}
+    scales |= {"capacity_a": 1e-13, "capacity_b": 1e-13, "ramp": 1e-3, "coil_time": 1e-3}
+    sizes = np.array([scales.get(PROBES[int(probe)], 0.05) for probe in law["probe"]])
+    law["sine"], law["cosine"] = sizes * rng.uniform(-1.0, 1.0, size=(2, terms))
+    law["frequency"] = rng.choice([0.0, 0.0, 1.3], size=terms)
+    law["at_rod"] = rng.integers(0, 2, size=terms)
+    return law
+
+
+def test_laws_of_different_factors_side_by_side():
+    rig, rng = load_rig("joint_bench"), np.random.default_rng(5)
+    times, volts = _driven(3.0)
+    records = _varied(rig.records()[:1], rng, 16)
+    runs = [Run(records[i : i + 1], times, volts, times, STEP, law=_law(rng, 1 + i % 2)) for i in range(16)]
+    kinds = {kind_of(run.joint, 1, run.law).terms for run in runs}
+    assert kinds == {1, 2}
+    for one, run in zip(roll_out_lanes(runs, at_once=True), runs, strict=True):
+        _alike(one, run.outcome())
 
 
 def test_rows_that_are_far_and_unevenly_apart():
@@ -169,9 +223,8 @@ def test_rows_that_are_far_and_unevenly_apart():
     records = _varied(rig.records()[:1], np.random.default_rng(6), 4)
     command_times, volts = _driven(6.0)
     times = np.array([0.0, 0.003, 0.5, 0.51, 2.0, 2.0001, 5.0])
-    for i, one in enumerate(
-        roll_out_lanes(records, command_times, volts, times, longest_step=STEP, at_once=True)
-    ):
+    runs = Run(records[:1], command_times, volts, times, STEP).of(records)
+    for i, one in enumerate(roll_out_lanes(runs, at_once=True)):
         _alike(one, roll_out(records[i : i + 1], command_times, volts, times, longest_step=STEP))
 
 
@@ -184,7 +237,9 @@ def test_few_kinds_are_compiled():
 def test_times_that_do_not_rise_are_refused():
     rig = load_rig("joint_bench")
     with pytest.raises(InputError, match="must rise"):
-        roll_out_lanes(rig.records()[:1], np.zeros(1), np.zeros(1), np.array([1.0, 0.5]), longest_step=STEP)
+        roll_out_lanes(
+            [Run(rig.records()[:1], np.zeros(1), np.zeros(1), np.array([1.0, 0.5]), STEP)], at_once=True
+        )
 
 
 def test_until_a_loop_is_compiled_machines_go_one_by_one_and_nobody_waits(monkeypatch, tmp_path):
@@ -198,10 +253,10 @@ def test_until_a_loop_is_compiled_machines_go_one_by_one_and_nobody_waits(monkey
     monkeypatch.setattr(lane_compiling, "_ready", set())
     monkeypatch.setattr(lane_compiling, "_asked", Counter())
     monkeypatch.setattr(lane_compiling, "WORTH", 200)
-    asked = [lane_compiling.ready(kind, records[:1], 60, 1) for _ in range(8)]
+    asked = [lane_compiling.ready(kind, records[:1], None, 60, 1) for _ in range(8)]
     assert not any(asked) and len(begun) == 1  # after 240 of them; not again while that runs
     (tmp_path / kind.name).touch()  # as the other process does when it is done
-    assert lane_compiling.ready(kind, records[:1], 60, 1)
+    assert lane_compiling.ready(kind, records[:1], None, 60, 1)
 
 
 class _Running:
@@ -212,14 +267,7 @@ class _Running:
 def test_another_process_compiles_a_loop_for_all():
     rig = load_rig("joint_bench")
     kind = kind_of(rig.records()[:1], 1)
-    roll_out_lanes(
-        rig.records()[:1],
-        np.array([0.0, 1e-3]),
-        np.zeros(2),
-        np.array([0.0, 1e-3]),
-        longest_step=STEP,
-        at_once=True,
-    )
+    _in_lanes(rig.records()[:1], np.array([0.0, 1e-3]), np.zeros(2), longest_step=STEP)
     lane_compiling._mark(kind).unlink()
-    process = lane_compiling._begin(rig.records()[:1], 1)
+    process = lane_compiling._begin(rig.records()[:1], None, 1)
     assert process.wait(300.0) == 0 and lane_compiling._mark(kind).exists()

@@ -36,6 +36,11 @@ class RigObjective:
         """How many numbers an evaluation gives."""
         return 1 if self.segments is None else self.segments
 
+    @property
+    def batch(self) -> int:
+        """So many places are best asked for at once."""
+        return self.problem.batch
+
     def residuals(self, unit: np.ndarray) -> np.ndarray:
         """Residuals in units of their noise, 0 where a sample does not count."""
         return self.problem.residuals(unit)

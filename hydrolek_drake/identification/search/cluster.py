@@ -56,7 +56,7 @@ class ClusterWorkers:
     def __call__(self, points: Sequence[np.ndarray]) -> list[np.ndarray | None]:
         """Values in the order of the points; None for one that failed or was overdue."""
         threads = max(sum(self._client.nthreads().values()), 1)
-        chunks = chunks_of(len(points), threads)
+        chunks = chunks_of(len(points), threads, getattr(self._objective, "batch", 1))
         values: list[np.ndarray | None] = [None] * len(points)
         for chunk in self._round(points, chunks, values, threads):
             self._round(points, [np.array([i]) for i in chunk], values, threads)

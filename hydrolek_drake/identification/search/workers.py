@@ -17,9 +17,17 @@ CHUNKS_PER_WORKER = 2
 _objective: Any = None  # of a worker process: sent once, not with each point
 
 
-def chunks_of(count: int, workers: int) -> list[np.ndarray]:
-    """Indices 0 ... count - 1 in nearly equal runs, `CHUNKS_PER_WORKER` for each worker."""
-    return [chunk for chunk in np.array_split(np.arange(count), CHUNKS_PER_WORKER * workers) if chunk.size]
+def chunks_of(count: int, workers: int, batch: int = 1) -> list[np.ndarray]:
+    """Indices 0 ... count - 1 in nearly equal runs, `CHUNKS_PER_WORKER` for each worker.
+
+    Args:
+        count: of the indices.
+        workers: that share them.
+        batch: so many are evaluated at the price of one: no run is cut within a batch.
+    """
+    batches = np.array_split(np.arange(-(-count // batch)), CHUNKS_PER_WORKER * workers)
+    ends = [(batch * int(each[0]), min(batch * (int(each[-1]) + 1), count)) for each in batches if each.size]
+    return [np.arange(begin, end) for begin, end in ends]
 
 
 def evaluate_chunk(objective: Any, points: list[np.ndarray]) -> list[np.ndarray | None]:
@@ -66,7 +74,7 @@ class ProcessWorkers:
     def __call__(self, points: Sequence[np.ndarray]) -> list[np.ndarray | None]:
         """Values in the order of the points; None for one that failed, was lost twice, or was overdue."""
         values: list[np.ndarray | None] = [None] * len(points)
-        chunks = chunks_of(len(points), self.workers)
+        chunks = chunks_of(len(points), self.workers, getattr(self.objective, "batch", 1))
         futures = {self._submit([points[i] for i in chunk]): chunk for chunk in chunks}
         rounds = -(-len(chunks) // self.workers)
         longest = (

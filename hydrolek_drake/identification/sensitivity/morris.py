@@ -1,6 +1,6 @@
 """Global screening by elementary effects (Morris 1991; Campolongo, Cariboni, Saltelli 2007)."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,7 +35,7 @@ def trajectory(parameters: int, rng: np.random.Generator) -> np.ndarray:
 
 
 def elementary_effects(
-    output: Callable[[np.ndarray], np.ndarray],
+    outputs: Callable[[Sequence[np.ndarray]], Sequence[np.ndarray]],
     summary: Callable[[np.ndarray], np.ndarray],
     parameters: int,
     trajectories: int,
@@ -45,7 +45,7 @@ def elementary_effects(
     """mu* and sigma of an output that may be a whole signal.
 
     Args:
-        output: place in the unit cube -> signal, NaN where it has no value. # (n,)
+        outputs: places in the unit cube -> signal at each, NaN where it has no value. # (n,)
         summary: size of a signal, such as its rms in each segment. # (..., n) -> (..., outputs)
         parameters: how many.
         trajectories: r; the cost is r (parameters + 1) evaluations.
@@ -55,7 +55,7 @@ def elementary_effects(
     effects: list[np.ndarray] = []
     for number in range(trajectories):
         points = trajectory(parameters, rng)
-        signals = np.array([output(point) for point in points])
+        signals = np.array(outputs(list(points)))
         moved = np.diff(points, axis=0)
         which = np.argmax(np.abs(moved), axis=1)
         change = np.diff(signals, axis=0) / moved[np.arange(parameters), which][:, None]

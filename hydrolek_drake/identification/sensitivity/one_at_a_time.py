@@ -40,11 +40,11 @@ def one_at_a_time(
     outputs = np.empty((len(nominal), values, len(response.time)))
     given = np.empty((len(nominal), values))
     for i, free in enumerate(response.parameters.free):
-        for k, u in enumerate(np.linspace(0.0, 1.0, values)):
-            unit = nominal.copy()
-            unit[i] = u
-            outputs[i, k] = response(unit)
-            given[i, k] = free.from_unit(float(u))
+        steps = np.linspace(0.0, 1.0, values)
+        units = np.tile(nominal, (values, 1))
+        units[:, i] = steps
+        outputs[i] = response.of_all(list(units))
+        given[i] = [free.from_unit(float(u)) for u in steps]
         progress(i + 1)
     centred = np.nan_to_num(outputs - outputs.mean(axis=1, keepdims=True))
     return OneAtATime(given, outputs, response.per_segment(np.sqrt((centred**2).mean(axis=1))))

@@ -1,5 +1,6 @@
 """The output whose change is studied: a joint's reading under a command, split into segments."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -10,7 +11,8 @@ from hydrolek_drake.identification.objective.norms import segment_edges
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.rollout import roll_out
+from hydrolek_drake.rollout.lanes import roll_out_lanes
+from hydrolek_drake.rollout.run import Run
 
 DURATION = 40.0
 """Seconds of the command that is used where no recording is given."""
@@ -46,17 +48,24 @@ class Response:
 
     def __call__(self, unit: np.ndarray) -> np.ndarray:
         """Reading, NaN after a divergence. # (n,)."""
+        return self.of_all([unit])[0]
+
+    def of_all(self, units: Sequence[np.ndarray]) -> list[np.ndarray]:
+        """The same at several places, rolled out in lanes."""
         rig = self.parameters.rig
-        record = self.parameters.records(unit)[self.index : self.index + 1]
-        outcome = roll_out(
-            record,
-            self.time,
-            self.command,
-            self.time,
-            longest_step=rig.value("integration.longest_step"),
-            spool_steps=int(rig.value("integration.spool_steps")),
-        )
-        return self.factor * outcome.signals.reading
+        records = [self.parameters.records(unit)[self.index : self.index + 1] for unit in units]
+        runs = [
+            Run(
+                record,
+                self.time,
+                self.command,
+                self.time,
+                longest_step=rig.value("integration.longest_step"),
+                spool_steps=int(rig.value("integration.spool_steps")),
+            )
+            for record in records
+        ]
+        return [self.factor * outcome.signals.reading for outcome in roll_out_lanes(runs)]
 
     def per_segment(self, change: np.ndarray) -> np.ndarray:
         """Root mean square of a change in each segment; NaN counts as none. # (..., n) -> (..., segments)."""

@@ -6,7 +6,7 @@ Communications 181, 2010). For a signal, numerators and variances are summed ove
 Reliability Engineering and System Safety 96, 2011). The sample is scipy's.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -21,6 +21,10 @@ MOST_SAMPLES = 400
 
 RESAMPLES = 200
 """Of the bootstrap."""
+
+
+AT_ONCE = 64
+"""Evaluations that are asked for at once: some tables of lanes, and little memory."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +53,7 @@ class SobolIndices:
 
 
 def sobol_of(
-    output: Callable[[np.ndarray], np.ndarray],
+    outputs: Callable[[Sequence[np.ndarray]], Sequence[np.ndarray]],
     segments: int,
     parameters: int,
     points: int,
@@ -59,18 +63,18 @@ def sobol_of(
     """First-order and total indices of an output that may be a whole signal, parameters uniform in the cube.
 
     Args:
-        output: place in the unit cube -> signal, NaN where it has no value. # (n,)
+        outputs: places in the unit cube -> signal at each, NaN where it has no value. # (n,)
         segments: equal parts of the signal.
         parameters: how many.
         points: N, a power of two.
         rng: of the sample and the bootstrap.
-        progress: told after each evaluation how many are done.
+        progress: told now and then how many evaluations are done.
 
     Raises:
         InputError: not a power of two.
     """
     check_points(points)
-    middle = np.nan_to_num(np.asarray(output(np.full(parameters, 0.5)), dtype=float))
+    middle = np.nan_to_num(np.asarray(outputs([np.full(parameters, 0.5)])[0], dtype=float))
     every = max(-(-middle.size // MOST_SAMPLES), 1)
     kept = middle[::every]
     done, diverged = 0, 0
@@ -79,12 +83,13 @@ def sobol_of(
     def signals(columns: np.ndarray) -> np.ndarray:
         nonlocal done, diverged
         rows = []
-        for place in columns.T:
-            signal = np.asarray(output(place), dtype=float)[::every]
-            missing = ~np.isfinite(signal)
-            diverged += bool(missing.any())
-            rows.append(np.where(missing, kept, signal))
-            done += 1
+        for begin in range(0, columns.shape[1], AT_ONCE):
+            for whole in outputs(list(columns.T[begin : begin + AT_ONCE])):
+                signal = np.asarray(whole, dtype=float)[::every]
+                missing = ~np.isfinite(signal)
+                diverged += bool(missing.any())
+                rows.append(np.where(missing, kept, signal))
+                done += 1
             progress(done)
         return np.array(rows).T
 

@@ -89,7 +89,7 @@ def study_sensitivity(
     count = len(varied.free)
     single = one_at_a_time(response, progress=lambda done: say(f"one at a time: {done} of {count}"))
     effects = elementary_effects(
-        response,
+        response.of_all,
         response.per_segment,
         count,
         trajectories,
@@ -103,7 +103,12 @@ def study_sensitivity(
     if sobol_points is not None:
         cost = sobol_points * (count + 2)
         sobol = sobol_of(
-            response, segments, count, sobol_points, rng, lambda done: say(f"Sobol indices: {done} of {cost}")
+            response.of_all,
+            segments,
+            count,
+            sobol_points,
+            rng,
+            lambda done: say(f"Sobol indices: {done} of {cost}"),
         )
     return SensitivityStudy(
         joint, varied, response, single, effects, identifiability(parameters.paths, jacobian), sobol
@@ -112,9 +117,7 @@ def study_sensitivity(
 
 def _jacobian(response: Response) -> np.ndarray:
     nominal = np.clip(response.parameters.unit(), DIFFERENCE, 1.0 - DIFFERENCE)
-    columns = []
-    for i in range(len(nominal)):
-        step = np.zeros(len(nominal))
-        step[i] = DIFFERENCE
-        columns.append((response(nominal + step) - response(nominal - step)) / (2.0 * DIFFERENCE))
-    return np.nan_to_num(np.stack(columns, axis=1))
+    steps = DIFFERENCE * np.eye(len(nominal))
+    found = np.array(response.of_all([*(nominal + steps), *(nominal - steps)]))
+    up, down = np.split(found, 2)
+    return np.nan_to_num((up - down).T / (2.0 * DIFFERENCE))

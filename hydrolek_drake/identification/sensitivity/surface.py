@@ -113,8 +113,7 @@ def performance_surface(
     error = np.full((places, places), np.nan)
     grid = np.linspace(0.0, 1.0, places)
     for i, first in enumerate(grid):
-        for j, second in enumerate(grid):
-            output = response(np.array([first, second]))
+        for j, output in enumerate(response.of_all([np.array([first, second]) for second in grid])):
             if np.isfinite(output).all():
                 error[i, j] = mean_norm((wanted - output)[seen], math.inf)
         progress((i + 1) * places, places * places)
