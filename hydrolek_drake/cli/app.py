@@ -53,6 +53,10 @@ COMMANDS: dict[str, CommandEntry] = {
         "hydrolek_drake.cli.rigs", "rigs", "list the built-in rigs, or one rig's parameters"
     ),
     "ik": CommandEntry("hydrolek_drake.cli.ik", "ik", "joint angles for a target, or what prevents it"),
+    "stand": CommandEntry(
+        "hydrolek_drake.cli.stand", "stand", "where to stand so that a pipe can be grasped and cut"
+    ),
+    "carry": CommandEntry("hydrolek_drake.cli.carry", "carry", "both arms hold one pipe and move it"),
     "vision": CommandEntry(
         "hydrolek_drake.cli.vision", "vision", "edges, selected object and targets of one camera frame"
     ),

@@ -67,6 +67,13 @@ def teleop(
     pipe_axis: Annotated[
         _Vector | None, typer.Option(metavar="X Y Z", help="simulated pipe's axis, world")
     ] = None,
+    stand: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="stand.json of `hydrolek stand --out`: the simulated pipe as its best place has it",
+        ),
+    ] = None,
     loose: Annotated[
         bool, typer.Option("--loose", help="simulated pipe stands loose on a table, for pick and place")
     ] = False,
@@ -97,6 +104,15 @@ def teleop(
         raise InputError("teleop: --link-token belongs to --controllers HOST:PORT; leave it out")
     if settings and (plant == "simple" or address is not None):
         raise InputError("teleop: --set is the full plant's; leave it out")
+    place = None
+    if stand is not None:
+        if camera != "sim" or loose or pipe_point is not None or pipe_axis is not None:
+            raise InputError(
+                "teleop: --stand says where the simulated camera's pipe is; leave the others out"
+            )
+        from hydrolek_drake.standing.place_file import read_place
+
+        place = read_place(stand)
     _check_camera(camera, pipe_point, pipe_axis, loose)
 
     from hydrolek_drake.teleop.console.server import Console
@@ -110,6 +126,8 @@ def teleop(
     pipe = None
     if camera == "sim":
         pipe = make_pipe(pipe_point, pipe_axis) if table is None else make_loose_pipe(table)
+        if place is not None:
+            pipe = place[0].pipe_seen(place[1])
     process = None
     if plant == "full" and address is None:
         with output().status("starting the hydraulic plant: step tests of all joints"):

@@ -71,6 +71,31 @@ def wrist_position(angles: ArrayLike) -> Array:
     return position
 
 
+def joint_positions(angles: ArrayLike) -> Array:
+    """Origins of the joints' frames and the tool in the arm base frame, (5.3) broken off after each link.
+
+    Args:
+        angles: Joint angles 1 to 6 in rad, shape (..., 6).
+
+    Returns:
+        Positions in m, joint 1 first, the tool last, shape (..., 8, 3); the last but one is the wrist point.
+
+    Raises:
+        InputError: The last dimension of `angles` is not 6.
+    """
+    angles = _checked(angles)
+    geometry, found = arm_geometry(), []
+    for last in range(len(geometry.link_vectors)):
+        position = np.broadcast_to(geometry.link_vectors[last], (*angles.shape[:-1], 3))
+        for joint in reversed(range(last)):
+            position = geometry.link_vectors[joint] + _rotated(
+                position, geometry.axes[joint], angles[..., joint]
+            )
+        found.append(position)
+    found.append(tool_pose(angles)[..., :3, 3])
+    return np.stack(found, axis=-2)
+
+
 def tool_pose(angles: ArrayLike) -> Array:
     """Pose of the tool frame, the grasp point between the jaws, in the arm base frame.
 

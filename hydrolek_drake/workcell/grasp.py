@@ -37,12 +37,13 @@ class ToolPath:
     tilt: float
 
 
-def directions_onto(axis: ArrayLike, sight: ArrayLike) -> list[tuple[float, Array]]:
+def directions_onto(axis: ArrayLike, sight: ArrayLike, *, coarser: int = 1) -> list[tuple[float, Array]]:
     """Tool directions onto a pipe, best first: square and from the camera's side before turned and tilted ones.
 
     Args:
         axis: Of the pipe, world frame, unit vector, shape (3,).
         sight: From the camera to the pipe, world frame, shape (3,); not along the axis.
+        coarser: Only every n-th turn around the pipe and tilt off square, for a first look.
 
     Returns:
         Pairs of tilt off square in rad and unit vector.
@@ -53,10 +54,12 @@ def directions_onto(axis: ArrayLike, sight: ArrayLike) -> list[tuple[float, Arra
     square /= np.linalg.norm(square)
     across = np.cross(axis, square)
     most, step = values["turn_most_deg"], values["turn_step_deg"]
+    finest = min(abs(tilt) for tilt in values["tilt_deg"] if tilt)
+    tilts = [tilt for tilt in values["tilt_deg"] if coarser == 1 or tilt % (coarser * finest) == 0]
     choices = [
         (abs(turn) + values["tilt_cost"] * abs(tilt), turn, tilt)
-        for turn in range(-int(most), int(most) + 1, int(step))
-        for tilt in values["tilt_deg"]
+        for turn in range(-int(most), int(most) + 1, int(step) * coarser)
+        for tilt in tilts
     ]
     found = []
     for _, turn, tilt in sorted(choices, key=lambda choice: choice[0]):

@@ -14,7 +14,8 @@ from pydrake.systems.framework import BasicVector, Context, LeafSystem, State
 from hydrolek_drake.compiled import read_only
 from hydrolek_drake.kinematics.chain import SIDES
 from hydrolek_drake.workcell.fingers import FIXED, MOVING, fingers
-from hydrolek_drake.workcell.loose_pipe import GRAVITY, LoosePipe, Pose
+from hydrolek_drake.workcell.held_by_both import Pose
+from hydrolek_drake.workcell.loose_pipe import GRAVITY, LoosePipe
 from hydrolek_drake.workcell.pipe import Pipe, workcell_entries
 from hydrolek_drake.workcell.table import Table
 
@@ -36,11 +37,18 @@ class GripContact(LeafSystem):
     one body: the moving finger's force acts on the hand with opposite sign, and its weight at its middle; its inertia
     is left out. What lets go of it drops it (`loose_pipe.LoosePipe`).
 
+    Both grippers on a loose pipe close a chain: what is off in their joints passes through the pipe from hand to hand,
+    by the springs of `held_by_both`, with damping as in the contact, c times the force over the stiffness. Until it
+    holds too, a second gripper finds a pipe that does not give way, as a clamped one; the force between the hands
+    counts from there.
+
     Ports:
         in `plant_state` (all positions and velocities of the plant).
         out `contact_force`: list of forces on bodies, for the plant's `applied_spatial_force`.
         out `grip_force` (2): on the right and the left gripper's moving finger [N].
         out `pipe_place` (6): middle of the pipe in m and its axis, world frame.
+        out `internal_force` (7): of the left hand on a pipe that both hold, world frame: force [N], moment about the
+            pipe's middle [N m]; the larger share of the grips' friction that is used [1]. Else zeros.
     """
 
     def __init__(self, plant: MultibodyPlant, pipe: Pipe, table: Table | None = None) -> None:
@@ -88,6 +96,10 @@ class GripContact(LeafSystem):
             "pipe_place", 6, self._calc_place, prerequisites_of_calc=needed
         )
 
+        self.internal_force = self.DeclareVectorOutputPort(
+            "internal_force", 7, self._calc_internal, prerequisites_of_calc=needed
+        )
+
     def _part(self, side: str, link: str) -> tuple[RigidBody, slice, Array, Array]:
         """A link, where its fingers stand in `self.fingers`, their ends and radii."""
         places = [
@@ -113,8 +125,18 @@ class GripContact(LeafSystem):
         points, forces = np.zeros((len(self.fingers), 3)), np.zeros((len(self.fingers), 3))
         self._plant.SetPositionsAndVelocities(self._own, state)
         loose = self._first if loose is None else loose
-        pipe = loose.now(self._hands())
-        for side, (hand, parts) in zip(SIDES, self._sides, strict=True):
+        hands = self._hands()
+        pipe, with_both = (
+            loose.now(hands),
+            () if loose.both is None else loose.both.places((hands[0], hands[1])),
+        )
+        for index, (side, (hand, parts)) in enumerate(zip(SIDES, self._sides, strict=True)):
+            holds = loose.holder == side or bool(with_both)
+            if (
+                with_both
+            ):  # each hand's fingers press the pipe as that hand took it; the rest is in its spring
+                turned, point = with_both[index]
+                pipe = replace(pipe, point=point, axis=np.array(turned[:, 2]))
             pose = self._plant.EvalBodyPoseInWorld(self._own, hand)
             if np.linalg.norm(_square_to(pipe, pose.translation() - pipe.point)) > self._reach:
                 continue
@@ -123,9 +145,7 @@ class GripContact(LeafSystem):
                 place = self._plant.EvalBodyPoseInWorld(self._own, body)
                 velocity = self._plant.EvalBodySpatialVelocityInWorld(self._own, body)
                 turning, sliding = velocity.rotational(), velocity.translational()
-                if (
-                    loose.holder == side
-                ):  # the pipe moves with the hand; only the moving finger moves against it
+                if holds:  # the pipe moves with the hand; only the moving finger moves against it
                     if body is hand:
                         continue
                     turning = turning - carried.rotational()
@@ -173,7 +193,8 @@ class GripContact(LeafSystem):
                 mine = [(owner, finger.link) == (side, part) for owner, finger in self.fingers]
                 pressed.append(float(sizes[mine].sum()) >= self._carries)
             takes = pressed[1] and self._jaws[side].get_angular_rate(self._own) <= 0.0
-            gripped.append(pressed[0] and (takes or loose.holder == side))
+            holds = loose.holder == side or loose.both is not None
+            gripped.append(pressed[0] and (takes or holds))
         after = loose.step(self._hands(), gripped, self._table, self._period)
         if loose.holder and not after.holder:
             after = self._sprung_off(after, self.plant_state.Eval(context))
@@ -205,22 +226,64 @@ class GripContact(LeafSystem):
             force.p_BoBq_B = points[index]
             force.F_Bq_W = SpatialForce(_NO_TORQUE, pushes[index])
             forces.append(force)
-            if loose.holder == self.fingers[index][0]:  # what the finger presses, the hand holds against
-                finger = self._sides[SIDES.index(loose.holder)][1][1][0]
+            side = self.fingers[index][0]
+            if (
+                loose.both is not None or loose.holder == side
+            ):  # what the finger presses, the hand holds against
+                finger = self._sides[SIDES.index(side)][1][1][0]
                 where = self._plant.EvalBodyPoseInWorld(self._own, finger).multiply(points[index])
-                forces.append(self._on_hand(loose.holder, where, -pushes[index]))
-        if loose.holder:
+                forces.append(self._on_hand(side, where, -pushes[index]))
+        if loose.both is not None:
+            push, twist, (_, middle) = self._internal(loose, pushes)
+            half = np.array([0.0, 0.0, -0.5 * self._weight])  # as both grips are alike
+            forces.append(self._on_hand("right", middle, push + half, twist))
+            forces.append(self._on_hand("left", middle, half - push, -twist))
+        elif loose.holder:
             middle = loose.now(self._hands()).point
             forces.append(self._on_hand(loose.holder, middle, np.array([0.0, 0.0, -self._weight])))
         output.set_value(forces)
 
-    def _on_hand(self, side: str, point: Array, push: Array) -> ExternallyAppliedSpatialForce:
-        """A force on a hand at a point of the world."""
+    def _internal(self, loose: LoosePipe, pushes: Array) -> tuple[Array, Array, Pose]:
+        """What the left hand does to a pipe that both hold; the plant as in this system's own context."""
+        assert loose.both is not None  # else this is not called
+        right, left = self._hands()
+        rates = []
+        for (hand, _), (_, middle) in zip(self._sides, loose.both.places((right, left)), strict=True):
+            velocity = self._plant.EvalBodySpatialVelocityInWorld(self._own, hand)
+            arm = middle - self._plant.EvalBodyPoseInWorld(self._own, hand).translation()
+            sliding = velocity.translational() + np.cross(velocity.rotational(), arm)
+            rates.append(np.concatenate([sliding, velocity.rotational()]))
+        damping_time = self._damping * self._pressed(pushes) / self._stiffness
+        return loose.both.internal((right, left), (rates[0], rates[1]), damping_time)
+
+    def _pressed(self, pushes: Array) -> float:
+        """The smaller force of both moving fingers in N."""
+        sizes = np.linalg.norm(pushes, axis=1)
+        moving = [
+            [owner == side and finger.link == MOVING for owner, finger in self.fingers] for side in SIDES
+        ]
+        return float(min(sizes[each].sum() for each in moving))
+
+    def _calc_internal(self, context: Context, output: BasicVector) -> None:
+        loose = self.pipe_in(context)
+        if loose.both is None:
+            output.SetFromVector(np.zeros(7))
+            return
+        _, pushes = self.touches(self.plant_state.Eval(context), loose)
+        force, moment, (turned, _) = self._internal(loose, pushes)
+        normal = 2.0 * self._pressed(pushes)  # the fixed fingers press as much as the moving one
+        share = loose.both.friction_used(force, moment, turned[:, 2], normal)
+        output.SetFromVector([*force, *moment, share])
+
+    def _on_hand(
+        self, side: str, point: Array, push: Array, twist: Array = _NO_TORQUE
+    ) -> ExternallyAppliedSpatialForce:
+        """A force and a moment on a hand at a point of the world."""
         hand = self._sides[SIDES.index(side)][0]
         force = ExternallyAppliedSpatialForce()
         force.body_index = hand.index()
         force.p_BoBq_B = self._plant.EvalBodyPoseInWorld(self._own, hand).inverse().multiply(point)
-        force.F_Bq_W = SpatialForce(_NO_TORQUE, push)
+        force.F_Bq_W = SpatialForce(twist, push)
         return force
 
     def _calc_grip(self, context: Context, output: BasicVector) -> None:

@@ -1,7 +1,8 @@
 """A pipe that can be carried: it stands, follows the hand that grips it, or falls.
 
 Kinematic: no force moves the pipe. Not held, it stands like a rock on what carries it; held, it is part of the hand;
-let go, it falls straight down with the attitude that it has and stops on the table, or on the floor.
+held by both, it lies where their grips agree (`held_by_both`); let go, it falls straight down with the attitude that it
+has and stops on the table, or on the floor.
 """
 
 from collections.abc import Sequence
@@ -12,12 +13,11 @@ from numpy.typing import NDArray
 from pydrake.multibody.tree import UniformGravityFieldElement
 
 from hydrolek_drake.kinematics.chain import SIDES
+from hydrolek_drake.workcell.held_by_both import HeldByBoth, Pose, take
 from hydrolek_drake.workcell.pipe import Pipe, workcell_entries
 from hydrolek_drake.workcell.table import Table
 
 Array = NDArray[np.float64]
-Pose = tuple[Array, Array]
-"""Rotation matrix (3, 3) and position in m (3,) of a hand in the world frame."""
 
 GRAVITY = float(UniformGravityFieldElement.kDefaultStrength)  # m/s^2
 
@@ -31,17 +31,24 @@ class LoosePipe:
         holder: `right`, `left`, or empty.
         taken: Pose of the hand when it took the pipe; None while nobody holds it.
         falling: Speed downwards in m/s.
+        both: How both hands have it; None while at most one holds it.
     """
 
     pipe: Pipe
     holder: str = ""
     taken: Pose | None = None
     falling: float = 0.0
+    both: HeldByBoth | None = None
 
     def now(self, hands: Sequence[Pose]) -> Pipe:
         """Where the pipe is while the hands (right, left) are there."""
         if self.taken is None:
             return self.pipe
+        if self.both is not None:
+            right, left = hands
+            still = np.zeros(6)
+            turn, point = self.both.internal((right, left), (still, still), 0.0)[2]
+            return replace(self.pipe, point=point, axis=np.array(turn[:, 2]))
         (before, there), (turned, here) = self.taken, hands[SIDES.index(self.holder)]
         rotation = turned @ before.T
         return self.pipe.moved(rotation, here - rotation @ there)
@@ -59,7 +66,13 @@ class LoosePipe:
         """
         pipe = self.now(hands)
         if self.holder and gripped[SIDES.index(self.holder)]:
-            return self
+            both = gripped[1 - SIDES.index(self.holder)]
+            if both == (self.both is not None):
+                return self
+            if both:
+                right, left = hands
+                return replace(self, both=take(pipe, (right, left)))
+            return LoosePipe(pipe, self.holder, hands[SIDES.index(self.holder)])
         for side, hand, grips in zip(SIDES, hands, gripped, strict=True):
             if grips:
                 return LoosePipe(pipe, side, hand)

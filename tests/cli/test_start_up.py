@@ -61,7 +61,12 @@ def test_help_and_unknown_commands_load_nothing_that_computes(arguments):
         ["control", "design", "nowhere"],
         ["challenge", "--cases", "0"],
         ["teleop", "--plant", "steam"],
+        ["teleop", "--stand", "nowhere.json"],
         ["serve", "--plant", "steam"],
+        ["stand", "nowhere.yaml"],
+        ["stand", "--base", "nowhere.yaml"],
+        ["stand", "--grasp", "0.1", "--cut", "0.1"],
+        ["carry", "--controller", "magic"],
     ],
     ids=" ".join,
 )

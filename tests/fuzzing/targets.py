@@ -7,6 +7,7 @@ from fuzzing.target import Target
 _MODULES = {
     **dict.fromkeys(("csv", "parquet", "tdms", "mat", "mat73", "mcap", "bag"), "recording_targets"),
     **dict.fromkeys(("rig", "scenario", "design"), "yaml_targets"),
+    **dict.fromkeys(("site", "base", "place"), "standing_targets"),
     **dict.fromkeys(("link", "answer", "console"), "protocol_targets"),
 }
 

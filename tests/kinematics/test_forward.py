@@ -8,7 +8,7 @@ import pytest
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.arms import arm_joint, make_arms_plant, position_indices
-from hydrolek_drake.kinematics.forward import tool_pose, wrist_position
+from hydrolek_drake.kinematics.forward import arm_geometry, joint_positions, tool_pose, wrist_position
 
 # Table 3.2, degrees; joint 1 is mirrored, the others are equal
 LIMITS_DEG = {
@@ -169,3 +169,14 @@ def _urdf_script():
     module = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(module)
     return module
+
+
+def test_the_joints_of_an_arm_are_the_links_apart_and_end_at_the_wrist_and_the_tool():
+    angles = np.array([0.2, 0.5, -0.3, 0.4, -0.6, 0.7])
+    points = joint_positions(angles)
+    assert points.shape == (8, 3)
+    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    wanted = np.linalg.norm([*arm_geometry().link_vectors[1:], arm_geometry().tool_vector], axis=1)
+    np.testing.assert_allclose(lengths, wanted, atol=1e-12)
+    np.testing.assert_allclose(points[6], wrist_position(angles), atol=1e-12)
+    np.testing.assert_allclose(points[7], tool_pose(angles)[:3, 3], atol=1e-12)

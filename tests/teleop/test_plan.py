@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.forward import tool_pose
 from hydrolek_drake.kinematics.frames import direction_in_frame, in_frame
+from hydrolek_drake.standing.base import Placement, drawn_boom_angle
 from hydrolek_drake.teleop.plan import STEPS
 from hydrolek_drake.vision.configuration import kinect_entries
 from hydrolek_drake.workcell.collision import CollisionWorld
@@ -80,3 +82,14 @@ def test_the_other_way_round_the_left_arm_grasps(planner):
     plan = planner(make_pipe(), -0.05, 0.12, grasping="left")
     point, _ = _tool(_end(plan, "grasp"), "left")
     assert _off_axis(point, make_pipe()) < 0.005 and plan.cut.side == "right"
+
+
+def test_from_a_place_to_stand_the_picture_is_enough_to_plan(planner):
+    """The pipe out of reach from where the machine stands is grasped and cut from a picture taken at the place."""
+    pipe = make_pipe([3.2, 0.9, 1.06])
+    with pytest.raises(InputError):
+        planner(pipe, -0.05, 0.12)
+    seen = Placement(1.33, 0.9, 0.0, drawn_boom_angle()).pipe_seen(pipe)
+    plan = planner(seen, -0.05, 0.12)
+    point, _ = _tool(_end(plan, "grasp"), "right")
+    assert _off_axis(point, seen) < 0.005

@@ -244,6 +244,23 @@ class HydraulicArms:
         context = self._contact.GetMyContextFromRoot(self._root)
         return np.array(self._contact.pipe_place.Eval(context))
 
+    def holders(self) -> int:
+        """How many hands hold a loose pipe."""
+        if self._contact is None:
+            return 0
+        loose = self._contact.pipe_in(self._contact.GetMyContextFromRoot(self._root))
+        return int(bool(loose.holder)) + int(loose.both is not None)
+
+    def internal_force(self) -> Array:
+        """What the left hand does to a pipe that both hold: force, moment, share of friction; shape (7,).
+
+        See `GripContact`'s port of that name.
+        """
+        if self._contact is None:
+            return np.zeros(7)
+        context = self._contact.GetMyContextFromRoot(self._root)
+        return np.array(self._contact.internal_force.Eval(context))
+
     @property
     def _root(self):  # type: ignore[no-untyped-def]
         return self._simulator.get_context()
