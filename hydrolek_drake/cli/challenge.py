@@ -61,6 +61,7 @@ def challenge(
     from hydrolek_drake.files import read_kept, write_whole
     from hydrolek_drake.recordings import read_recording
     from hydrolek_drake.rigs import load_rig
+    from hydrolek_drake.rollout.pool import RolloutPool
     from hydrolek_drake.runs.report import prepare_folder
 
     if kind not in (known := [name for name, _ in KINDS]) and kind != "all":
@@ -89,7 +90,7 @@ def challenge(
     told: list[dict[str, Any]] = json.loads(labels)[:first]
     scored = earlier_scores(earlier, sha256) if earlier else {}
     try:
-        with progress("starting") as tell, ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
+        with progress("starting") as tell, RolloutPool(workers or os.cpu_count() or 1) as pool:
             for number, label in enumerate(told, start=1):
                 if label["name"] in scored:
                     continue

@@ -46,8 +46,6 @@ def diagnose(
     ] = None,
 ) -> None:
     """Find out what physics a rig's model leaves out, from recordings of the machine."""
-    from concurrent.futures import ThreadPoolExecutor
-
     from hydrolek_drake.cli.output import console, progress
 
     if workers is not None and workers < 1:
@@ -62,13 +60,14 @@ def diagnose(
     from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
     from hydrolek_drake.diagnosis.report import write_report
     from hydrolek_drake.diagnosis.table import summary
+    from hydrolek_drake.rollout.pool import RolloutPool
     from hydrolek_drake.runs.report import prepare_folder
     from hydrolek_drake.runs.time_limit import ended_after
 
     if out is not None:
         prepare_folder(out)
     count = workers or os.cpu_count() or 1
-    with progress("starting") as tell, ThreadPoolExecutor(count) as pool:
+    with progress("starting") as tell, RolloutPool(count) as pool:
 
         def say(text: str) -> None:
             tell(f"{text} ...")

@@ -11,7 +11,7 @@ from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.sharing import shared_map
 from hydrolek_drake.rollout.lane_view import LANES
-from hydrolek_drake.rollout.lanes import roll_out_lanes
+from hydrolek_drake.rollout.lanes import roll_out_lanes, sharing
 from hydrolek_drake.rollout.run import Run
 
 DIFFERENCE = 1e-6
@@ -221,7 +221,8 @@ class Problem:
             return [(there - base) / steps[i] for i, there in zip(indices, found, strict=True)]
 
         indices = list(range(len(unit))) if moving is None else np.flatnonzero(moving).tolist()
-        batches = [indices[k : k + self.batch] for k in range(0, len(indices), self.batch)]
+        at_once = len(indices) if self.batch > 1 and sharing() is not None else self.batch
+        batches = [indices[k : k + at_once] for k in range(0, len(indices), max(at_once, 1))]
         shared = list(map(some, batches)) if self.pool is None else shared_map(self.pool, some, batches)
         columns = [column for found in shared for column in found]
         whole = np.zeros((base.size, len(unit)))

@@ -1,8 +1,11 @@
 """Work shared with a pool by one of its own threads, without waiting for what nobody has begun."""
 
+import contextlib
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, wait
 from typing import TypeVar
+
+from hydrolek_drake.rollout.lanes import sharing
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -31,9 +34,19 @@ def shared_map(pool: Executor, work: Callable[[Item], Result], items: Sequence[I
     try:
         results = [work(item) for item in items[:1]]
         for item, future in zip(items[1:], futures, strict=True):
-            results.append(work(item) if future.cancel() else future.result())
+            if future.cancel():
+                results.append(work(item))
+            else:
+                with _waiting():
+                    results.append(future.result())
         return results
     except BaseException:
         running = [future for future in futures if not future.cancel()]
         wait(running)
         raise
+
+
+def _waiting() -> contextlib.AbstractContextManager[None]:
+    """While this thread waits, its pool need not wait for what it would roll out."""
+    tables = sharing()
+    return contextlib.nullcontext() if tables is None else tables.waiting()

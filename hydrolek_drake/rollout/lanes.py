@@ -2,8 +2,10 @@
 
 import contextlib
 import os
+import threading
 from collections.abc import Iterator, Sequence
 from functools import cache
+from typing import Protocol
 
 import numpy as np
 
@@ -53,6 +55,37 @@ FEW = 2
 """So many machines take no longer one by one."""
 
 
+class Shared(Protocol):
+    """Rolls out what several threads want."""
+
+    def roll_out(self, runs: Sequence["Run"]) -> list[Outcome]:
+        """As of `roll_out_lanes`."""
+        ...
+
+    def waiting(self) -> contextlib.AbstractContextManager[None]:
+        """While this thread waits for another one."""
+        ...
+
+
+_of_this_thread = threading.local()
+
+
+@contextlib.contextmanager
+def together_with(tables: Shared) -> Iterator[None]:
+    """Within it this thread's machines are rolled out with those of others (`pool`)."""
+    before = sharing()
+    _of_this_thread.tables = tables
+    try:
+        yield
+    finally:
+        _of_this_thread.tables = before
+
+
+def sharing() -> Shared | None:
+    """With what this thread's machines are rolled out, if it is not alone."""
+    return getattr(_of_this_thread, "tables", None)
+
+
 @contextlib.contextmanager
 def one_by_one() -> Iterator[None]:
     """Within it machines are rolled out one after the other, as for a comparison; in processes begun there too."""
@@ -84,17 +117,16 @@ def roll_out_lanes(runs: Sequence[Run], *, at_once: bool = False) -> list[Outcom
     Raises:
         InputError: as of `roll_out`.
     """
-    if not at_once and (len(runs) <= FEW or os.environ.get(SWITCH) == OFF):
+    off = os.environ.get(SWITCH) == OFF
+    if not at_once and not off and (tables := sharing()) is not None:
+        return tables.roll_out(runs)
+    if not at_once and (len(runs) <= FEW or off):
         return [run.outcome() for run in runs]
     found: dict[int, Outcome] = {}
     groups: dict[Kind, list[int]] = {}
     laws = [with_own(run.law, run.joint) for run in runs]
     for i, (run, law) in enumerate(zip(runs, laws, strict=True)):
-        if (
-            run.probes is None
-            and missing_number(run.joint) is None
-            and (law is None or len(law) <= MOST_TERMS)
-        ):
+        if _in_lanes(run, law):
             groups.setdefault(kind_of(run.joint, run.spool_steps, law), []).append(i)
         else:
             found[i] = run.outcome()
@@ -106,7 +138,7 @@ def roll_out_lanes(runs: Sequence[Run], *, at_once: bool = False) -> list[Outcom
             alike = sorted(members, key=lambda i: (len(runs[i].times), runs[i].longest_step))
             for at in range(0, len(alike), LANES):
                 chosen = alike[at : at + LANES]
-                done = _in_one_table(kind, [runs[i] for i in chosen], [laws[i] for i in chosen])
+                done = one_table(kind, [runs[i] for i in chosen], [laws[i] for i in chosen])
                 found |= dict(zip(chosen, done, strict=True))
             compiled(kind)
         else:
@@ -114,8 +146,14 @@ def roll_out_lanes(runs: Sequence[Run], *, at_once: bool = False) -> list[Outcom
     return [found[i] for i in range(len(runs))]
 
 
-def _in_one_table(kind: Kind, runs: Sequence[Run], laws: Sequence[np.ndarray | None]) -> list[Outcome]:
-    """At most `LANES` machines of one kind; lanes that are left do what the last one does."""
+def one_table(kind: Kind, runs: Sequence[Run], laws: Sequence[np.ndarray | None]) -> list[Outcome]:
+    """At most `LANES` machines of one kind; lanes that are left do what the last one does.
+
+    Args:
+        kind: of all of them.
+        runs: machines without probes, and what each is driven with.
+        laws: of each, with that of its record.
+    """
     lanes = [*runs, *[runs[-1]] * (LANES - len(runs))]
     joints = np.empty(LANES, dtype=JOINT)
     for lane, run in enumerate(lanes):
@@ -190,6 +228,25 @@ def _filled_up(law: np.ndarray, count: int) -> np.ndarray:
         terms[name] = 0.0
     terms[: len(law)] = law
     return terms
+
+
+def _in_lanes(run: Run, law: np.ndarray | None) -> bool:
+    """Whether there can be a loop over lanes for a machine."""
+    few = law is None or len(law) <= MOST_TERMS
+    return run.probes is None and few and missing_number(run.joint) is None
+
+
+def compiled_kind_of(run: Run, law: np.ndarray | None) -> Kind | None:
+    """The kind of a machine, if its loop over lanes is compiled; else it goes alone, and counts for when it will be.
+
+    Args:
+        run: the machine.
+        law: with that of its record.
+    """
+    if not _in_lanes(run, law):
+        return None
+    kind = kind_of(run.joint, run.spool_steps, law)
+    return kind if ready(kind, run.joint, law, 1, run.spool_steps) else None
 
 
 def kind_of(joint: np.ndarray, spool_steps: int, law: np.ndarray | None = None) -> Kind:

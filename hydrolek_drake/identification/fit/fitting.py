@@ -3,7 +3,6 @@
 import contextlib
 import hashlib
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -29,6 +28,7 @@ from hydrolek_drake.identification.search.workers import ProcessWorkers
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.replay.readings import driven_joints
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rollout.pool import RolloutPool
 
 CONFIDENCE = 1.96
 """Standard errors on either side that hold 95 % of a normal distribution."""
@@ -164,7 +164,7 @@ def fit_rig(
         )
     rng = np.random.default_rng(seed)
     if by_rollouts:
-        with ThreadPoolExecutor(workers) as threads:
+        with RolloutPool(workers) as threads:
             pool = threads if workers > 1 else None
             fit, evaluations, interrupted = by_least_squares(parameters, training, pool, rng, loss, progress)
             jacobian = fit.jacobian
