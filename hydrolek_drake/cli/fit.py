@@ -27,7 +27,7 @@ def fit(
     segments: Annotated[int, typer.Option(min=1, help="parts of the recordings for nsga2, (4.17)")] = 8,
     loss: Annotated[str, typer.Option(help="of least squares: linear, soft_l1, huber or cauchy")] = "linear",
     workers: Annotated[
-        int, typer.Option(min=1, help="processes for the evaluations; threads, for least-squares")
+        int, typer.Option(min=1, help="threads; processes with --overdue, --plant diagram")
     ] = 1,
     cluster: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Dask scheduler, such as tcp://host:8786")

@@ -247,13 +247,28 @@ class Problem:
             return None
         longer = self._anew()
         longer.longest_step = LONGER * self._longest_step
-        there = longer.residuals(unit)
-        slopes = None
-        if np.linalg.norm(there - at) < ALIKE * np.linalg.norm(at):
+        there, slopes = longer._there_and_slopes(unit, moving)
+        if np.linalg.norm(there - at) >= ALIKE * np.linalg.norm(at):
+            slopes = None
+        elif slopes is None:
             slopes = longer.jacobian(unit, there, moving)
         self.evaluations += longer.evaluations
         self._longer_does = slopes is not None and self._same(unit, at, slopes)
         return slopes if self._longer_does else None
+
+    def _there_and_slopes(
+        self, unit: np.ndarray, moving: np.ndarray | None
+    ) -> tuple[np.ndarray, np.ndarray | None]:
+        """Residuals at a place, and the Jacobian there if it is best had with them, in one table of lanes."""
+        if sharing() is None or self.batch == 1 or len({e.index for e in self.experiments}) > 1:
+            return self.residuals(unit), None
+        steps = self._steps(unit)
+        indices = np.arange(unit.size) if moving is None else np.flatnonzero(moving)
+        there, *moved = self.residuals_of_all([unit, *(unit + np.diag(steps)[indices])])
+        slopes = np.zeros((there.size, unit.size))
+        for i, each in zip(indices, moved, strict=True):
+            slopes[:, i] = (each - there) / steps[i]
+        return there, slopes
 
     def _same(self, unit: np.ndarray, at: np.ndarray, slopes: np.ndarray) -> bool:
         """Whether slopes are those with the problem's own step, in a direction to which every parameter adds alike."""

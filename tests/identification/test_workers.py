@@ -10,7 +10,7 @@ import pytest
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.search import search
 from hydrolek_drake.identification.search.cluster import ClusterWorkers
-from hydrolek_drake.identification.search.workers import ProcessWorkers, chunks_of
+from hydrolek_drake.identification.search.workers import ProcessWorkers, ThreadWorkers, chunks_of
 
 
 class Bowl:
@@ -58,10 +58,11 @@ def test_an_overdue_evaluation_is_lost_and_the_others_are_not():
         assert same(evaluate(POINTS[14:20]), expected("hangs")[14:20])
 
 
-def test_a_search_over_processes_is_the_search_in_this_process():
+@pytest.mark.parametrize("workers", [ProcessWorkers, ThreadWorkers])
+def test_a_search_over_processes_or_threads_is_the_search_in_this_thread(workers):
     ends = np.zeros(2), np.ones(2)
     alone = search("de", Bowl(), *ends, 120, np.random.default_rng(0))
-    with ProcessWorkers(Bowl(), 2) as evaluate:
+    with workers(Bowl(), 2) as evaluate:
         together = search("de", Bowl(), *ends, 120, np.random.default_rng(0), evaluate=evaluate)
     np.testing.assert_array_equal(alone.units, together.units)
     np.testing.assert_array_equal(alone.scores, together.scores)

@@ -24,7 +24,7 @@ from hydrolek_drake.identification.search.cluster import ClusterWorkers
 from hydrolek_drake.identification.search.evaluation import Mapping
 from hydrolek_drake.identification.search.journal import Journal
 from hydrolek_drake.identification.search.search import SearchResult, search
-from hydrolek_drake.identification.search.workers import ProcessWorkers
+from hydrolek_drake.identification.search.workers import ProcessWorkers, ThreadWorkers
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.replay.readings import driven_joints
 from hydrolek_drake.rigs import Rig
@@ -136,7 +136,7 @@ def fit_rig(
         plant: one of `PLANTS`: the compiled rollout, or the Drake Diagram; on that least squares is a search with a
             budget like the others.
         seed: of everything random.
-        workers: processes for the evaluations; threads, for the least squares.
+        workers: threads; processes where an evaluation may be overdue, or runs on the Diagram.
         cluster: address of a Dask scheduler, instead of processes.
         overdue: time that one evaluation may take [s].
         checkpoint: file to which evaluations are written and from which an interrupted search goes on. Least
@@ -223,10 +223,13 @@ def _over_noise(residuals: np.ndarray, problem: Problem) -> float:
 
 @contextlib.contextmanager
 def _workers(objective: RigObjective, workers: int, cluster: str | None, overdue: float | None) -> Any:
-    """What evaluates several points: processes, a cluster, or None for this process."""
+    """What evaluates several points: threads, processes, a cluster, or None for this thread."""
     if cluster is not None:
         with ClusterWorkers(objective, cluster, overdue) as over_cluster:
             yield over_cluster
+    elif overdue is None and objective.batch > 1 and workers > 1:  # rollouts run outside Python's lock
+        with ThreadWorkers(objective, workers) as over_threads:
+            yield over_threads
     elif workers != 1 or overdue is not None:
         with ProcessWorkers(objective, workers, overdue) as over_processes:
             yield over_processes

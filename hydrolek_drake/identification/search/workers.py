@@ -1,4 +1,4 @@
-"""Evaluations over processes of this machine, in chunks; a lost or overdue one is a score, not an end."""
+"""Evaluations over threads or processes of this machine, in chunks; a lost or overdue one is a score, not an end."""
 
 import contextlib
 import multiprocessing
@@ -10,6 +10,7 @@ import numpy as np
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.search.evaluation import attempt_all
+from hydrolek_drake.rollout.pool import RolloutPool
 
 CHUNKS_PER_WORKER = 2
 """Two, so that a slow chunk does not leave the others idle; more would only send more messages."""
@@ -42,6 +43,30 @@ def _prepare(objective: Any) -> None:
 
 def _evaluate_here(points: list[np.ndarray]) -> list[np.ndarray | None]:
     return evaluate_chunk(_objective, points)
+
+
+class ThreadWorkers:
+    """Maps an objective over points with threads of this process; for what runs outside Python's lock."""
+
+    def __init__(self, objective: Any, workers: int) -> None:
+        """Begin; arguments as of `ProcessWorkers`."""
+        self.objective = objective
+        self.workers = workers
+        self._pool = RolloutPool(workers)
+
+    def __enter__(self) -> "ThreadWorkers":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._pool.shutdown(cancel_futures=True)
+
+    def __call__(self, points: Sequence[np.ndarray]) -> list[np.ndarray | None]:
+        """Values in the order of the points; None for one that failed."""
+        chunks = chunks_of(len(points), self.workers, getattr(self.objective, "batch", 1))
+        futures = [
+            self._pool.submit(evaluate_chunk, self.objective, [points[i] for i in chunk]) for chunk in chunks
+        ]
+        return [value for future in futures for value in future.result()]
 
 
 class ProcessWorkers:
