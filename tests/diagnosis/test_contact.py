@@ -42,6 +42,7 @@ def test_it_is_a_spring_with_a_gap(span) -> None:
             assert told == pytest.approx(size / half * past, abs=1e-9)
 
 
+@pytest.mark.long("takes a third of a minute")
 @pytest.mark.parametrize(("place", "size", "centre"), [(BELOW, 120.0, -0.2)])
 def test_hoses_that_pull_tight_are_found_with_the_place_where_they_do(
     bench, recorded, span, place, size, centre, monkeypatch

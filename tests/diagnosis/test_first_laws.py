@@ -44,6 +44,7 @@ def test_a_constant_is_tried_where_an_input_says_how_the_machine_is_built() -> N
     assert quiet[2] not in tried
 
 
+@pytest.mark.long("takes a quarter of a minute")
 def test_both_frequencies_are_told_that_the_beginning_and_the_whole_speak_for(
     bench, recorded, monkeypatch
 ) -> None:

@@ -129,6 +129,7 @@ def test_what_says_no_more_than_the_equations_simplify_is_not_named(known_so_far
     assert judged(1500.0) == ()
 
 
+@pytest.mark.long("takes a third of a minute")
 def test_only_a_model_that_reaches_the_noise_of_both_data_is_gone_on_with(known_so_far, monkeypatch) -> None:
     right, candidates = known_so_far(COULOMB, {"coulomb_N": 1200.0}, {COULOMB}, RIVALS[:2], **NOISY)
     named = right.conclusion.best

@@ -20,7 +20,12 @@ PAIR = Path(__file__).parents[1] / "data" / "bench" / "practice_01"
             ("detectable_from",),
             marks=pytest.mark.long("takes a third of a minute more"),
         ),
-        (diagnosis, "locate", ("detectable_from", "locations")),
+        pytest.param(
+            diagnosis,
+            "locate",
+            ("detectable_from", "locations"),
+            marks=pytest.mark.long("takes a third of a minute more"),
+        ),
         (attempt, "judge", ()),
     ],
 )

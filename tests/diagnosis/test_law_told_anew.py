@@ -27,6 +27,7 @@ SPAN = Span(REACH, None, 1.0, 1.0, 1.0)
 NEARLY_NOISE, FAR_FROM_NOISE = 1.1, 1.3
 
 
+@pytest.mark.long("takes half a minute")
 def test_a_shaken_joint_and_the_one_beside_it_are_explained_by_the_machine_with_the_law(
     two_joints, recorded_together
 ) -> None:

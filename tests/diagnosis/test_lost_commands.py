@@ -76,6 +76,7 @@ def test_where_windows_do_not_explain_the_training_data_none_are_looked_for_ahea
     assert found is None and not looked
 
 
+@pytest.mark.long("takes half a minute")
 def test_lost_samples_of_a_controller_are_found_by_the_pressures(bench, recorded) -> None:
     """20 ms, between two of the windows that are tried side by side: the joint hardly stops, and the oil rings."""
     lost_s, ahead_s = ((3.297, 3.317), (8.143, 8.163)), ((6.896, 6.916),)

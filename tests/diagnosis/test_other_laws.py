@@ -43,6 +43,7 @@ def _asked(bench, training, held_out):
         return nominal, OtherLaws(workbench, held_out, {"joint": scales})(nominal, 1)
 
 
+@pytest.mark.long("takes a third of a minute")
 def test_a_ripple_of_the_supply_is_the_law_that_explains_both_recordings(bench, recorded) -> None:
     kept = {"largest_V": 7.0, "unknown": ("supply", RIPPLE_PA), "unknown_Hz": RIPPLE_HZ}
     training, held_out = (recorded(bench, bench, seed=seed, **kept) for seed in (1, 2))

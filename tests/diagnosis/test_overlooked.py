@@ -58,6 +58,7 @@ def nominal_alone(bench, recorded):
     pool.shutdown()
 
 
+@pytest.mark.long("takes a third of a minute")
 def test_what_promised_nothing_is_found_where_the_held_out_data_leave_more_than_noise(nominal_alone) -> None:
     known, candidates = nominal_alone({f"effects.{DRIFT}.rate_rad_per_min": SLOW_rad_per_min})
     nominal = known.conclusion.best

@@ -76,6 +76,7 @@ def test_the_beginning_of_a_search_on_a_logarithmic_scale():
     np.testing.assert_allclose(first.point, pareto_set(np.exp(places), short.scores).average)
 
 
+@pytest.mark.long("takes half a minute")
 def test_the_multi_objective_search_errs_less_than_the_thesis_in_the_median():
     """5.46 in Table 4.7; 5 searches on each of 2 experiments, 30 in docs/genetic_study.md."""
     sums = [

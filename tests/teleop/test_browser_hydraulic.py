@@ -208,6 +208,7 @@ def test_drake_s_view_stands_beside_the_pictures(served, page):
         _keep(page, "console_view", "#side")
 
 
+@pytest.mark.long("takes over a minute; the same task without a browser: test_hydraulic_machine.py")
 def test_the_task_on_the_hydraulic_plant_from_the_browser(served, page):
     pipe, begin = make_pipe(), len(served.states)
     click_the_pipe(page)
