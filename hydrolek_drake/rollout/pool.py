@@ -44,19 +44,27 @@ class RolloutPool(ThreadPoolExecutor):
 
 
 @dataclass(eq=False)
+class _Asked:
+    """What a thread waits for.
+
+    Attributes:
+        left: rollouts that are not done yet.
+    """
+
+    left: int
+
+
+@dataclass(eq=False)
 class _Wanted:
     """A rollout that is waited for."""
 
     run: Run
     law: np.ndarray | None
     kind: Kind | None
+    asked: _Asked
     since: float = field(default_factory=time.monotonic)
     outcome: Outcome | None = None
     error: Exception | None = None
-
-    @property
-    def done(self) -> bool:
-        return self.outcome is not None or self.error is not None
 
 
 class Tables:
@@ -97,30 +105,41 @@ class Tables:
 
     def roll_out(self, runs: Sequence[Run]) -> list[Outcome]:
         """What machines do, see `roll_out_lanes`; this thread works on tables of all until they are done."""
+        asked = _Asked(len(runs))
         wanted = []
         for run in runs:
             law = with_own(run.law, run.joint)
-            wanted.append(_Wanted(run, law, compiled_kind_of(run, law)))
-        with self._counted(-1):
-            with self._changed:
-                for each in wanted:
-                    self._wanted.setdefault(each.kind, []).append(each)
-            while (table := self._next(wanted)) is not None:
-                try:
-                    _made(table)
-                finally:
-                    with self._changed:
-                        self._idle += 1
-                        self._changed.notify_all()
+            wanted.append(_Wanted(run, law, compiled_kind_of(run, law), asked))
+        if not wanted:
+            return []
+        with self._changed:
+            for each in wanted:
+                self._wanted.setdefault(each.kind, []).append(each)
+            self._working -= 1  # until its rollouts are done: `_done` counts it again, before it has woken
+            self._changed.notify_all()
+        while (table := self._next(asked)) is not None:
+            try:
+                _made(table)
+            finally:
+                self._done(table)
         for each in wanted:
             if each.error is not None:
                 raise each.error
         return [each.outcome for each in wanted if each.outcome is not None]
 
-    def _next(self, own: Sequence[_Wanted]) -> list[_Wanted] | None:
+    def _done(self, table: Sequence[_Wanted]) -> None:
+        """Those who have all that they asked for work again; who is slow to wake is waited for all the same."""
+        with self._changed:
+            self._idle += 1
+            for each in table:
+                each.asked.left -= 1
+                self._working += each.asked.left == 0
+            self._changed.notify_all()
+
+    def _next(self, asked: _Asked) -> list[_Wanted] | None:
         """A table that this thread is to roll out, as soon as there is one; None once its own rollouts are done."""
         with self._changed:
-            while not all(each.done for each in own):
+            while asked.left > 0:
                 if self._idle > 0 and (waiting := self._due()) is not None:
                     many = waiting[0].kind is not None and len(waiting) > FEW
                     table = waiting[: LANES if many else 1]
