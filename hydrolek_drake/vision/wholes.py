@@ -29,7 +29,7 @@ _FEWEST = 30  # points of a piece that is judged
 _FAR_APART, _SURELY = 2.0, 0.5  # thresholds: what is farther, or nearer, is not looked at more closely
 _BORDER = 15  # nearest pairs of these
 _NEARLY_ALL = 95  # percent
-_HARDLY = 0.01  # hollow: less counts as this
+_HARDLY = 0.01  # concavity: less counts as this
 
 
 class Wholes:
@@ -37,7 +37,7 @@ class Wholes:
 
     Two pieces, side by side or on both sides of something nearer or without depth, belong together if the depth goes on
     from one to the other, and they are convex: in space, their points lie on their convex hull; in the picture, they
-    fill it but for what is hidden. Side by side they do, too, if one is hollow, such as the inside of a cup, and they
+    fill it but for what is hidden. Side by side they do, too, if one is concave, such as the inside of a cup, and they
     fill their hull in the picture as well as each alone, unless the one in front bites into the other: then it stands
     before it or in it.
 
@@ -189,7 +189,7 @@ class Wholes:
             apart = np.inf
             if min(len(each) for each in both) >= _FEWEST:
                 if beside and (apart := _off_one_shape(depth, a, b)) < _FAR_APART:
-                    apart = max(apart, 1.0 / max(_HARDLY, *(_hollow(each) for each in both)))
+                    apart = max(apart, 1.0 / max(_HARDLY, *(_concavity(each) for each in both)))
                 if apart > _SURELY and (receding := _off_going_on(*both)) < _FAR_APART:
                     apart = min(apart, max(receding, _off_convex(np.vstack(both), depth, a, b)))
             self._apart[key] = apart
@@ -251,14 +251,14 @@ def _off_convex(points: Array, depth: Floats, a: Mask, b: Mask) -> float:
     all_of_it = a | b | hidden
     unseen = np.count_nonzero(hidden & ~a & ~b) / np.count_nonzero(all_of_it)
     off = max(unseen / values["unseen"], (1.0 - _convexity(all_of_it)) / values["unfilled"])
-    return off if off > _FAR_APART else max(off, _hollow(points))
+    return off if off > _FAR_APART else max(off, _concavity(points))
 
 
-def _hollow(points: Array) -> float:
-    """How hollow a region is: 0 where it is no more than noise makes it, 1 at the threshold."""
+def _concavity(points: Array) -> float:
+    """How concave a region is: 0 where it is no more than noise makes it, 1 at the threshold."""
     values = kinect_entries("wholes")
-    over_noise = _hollowness(points) / (values["noise"] * float(np.mean(points[:, 2])) ** 2)
-    return (over_noise - values["flat"]) / (values["hollow"] - values["flat"])
+    over_noise = _concavity_m(points) / (values["noise"] * float(np.mean(points[:, 2])) ** 2)
+    return (over_noise - values["flat"]) / (values["concave"] - values["flat"])
 
 
 def _hidden(depth: Floats, a: Mask, b: Mask) -> Mask:
@@ -270,10 +270,10 @@ def _hidden(depth: Floats, a: Mask, b: Mask) -> Mask:
     return filled.astype(bool) & ((depth == 0.0) | (depth < nearest + kinect_entries("wholes")["flush"]))
 
 
-def _hollowness(points: Array) -> float:
+def _concavity_m(points: Array) -> float:
     """How far nearly all points lie below the side of their convex hull that the camera sees, in m.
 
-    The points of a convex thing lie on their hull, whatever of it is hidden; between two things there is a hollow.
+    The points of a convex thing lie on their hull, whatever of it is hidden; between two things it is concave.
     Noise lifts the hull by some 3 standard deviations above a surface, and a twentieth of the points lies 1.6 below.
     """
     try:
@@ -314,7 +314,7 @@ def is_coherent(surfaces: Surfaces, mask: Mask) -> bool:
     step = max(1, len(rows) // _FITTED)
     rows, columns = rows[::step], columns[::step]
     points = surfaces.camera.point(np.column_stack([columns, rows]), surfaces.depth[rows, columns])
-    return _hollow(points) <= 1.0
+    return _concavity(points) <= 1.0
 
 
 def without_holes(mask: Mask) -> Mask:
