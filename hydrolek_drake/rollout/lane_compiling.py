@@ -17,6 +17,7 @@ import numba
 import numpy as np
 
 from hydrolek_drake.physics.law import LAW
+from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.physics.records import JOINT
 from hydrolek_drake.rollout.lane_view import Kind
 
@@ -48,7 +49,7 @@ def ready(kind: Kind, joint: np.ndarray, law: np.ndarray | None, count: int, spo
         if _asked[kind.name] >= WORTH and not _running:
             _asked[kind.name] = 0  # should it fail, it is tried again after as many
             with contextlib.suppress(OSError):
-                _running.append(_begin(joint, law, spool_steps))
+                _running.append(_begin(joint, law, spool_steps, kind.probed))
         return False
 
 
@@ -64,10 +65,12 @@ def _mark(kind: Kind) -> Path:
     return Path(numba.config.CACHE_DIR or ".") / f"lanes_{kind.name}"
 
 
-def _begin(joint: np.ndarray, law: np.ndarray | None, spool_steps: int) -> "subprocess.Popen[bytes]":
+def _begin(
+    joint: np.ndarray, law: np.ndarray | None, spool_steps: int, probed: bool = False
+) -> "subprocess.Popen[bytes]":
     """A process that compiles the loop for machines of a joint's kind, and outlives this one if need be."""
     process = subprocess.Popen(
-        [sys.executable, "-m", "hydrolek_drake.rollout.lane_compiling", str(spool_steps)],
+        [sys.executable, "-m", "hydrolek_drake.rollout.lane_compiling", str(spool_steps), str(int(probed))],
         stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
@@ -90,7 +93,10 @@ def main() -> None:
     joint, law = np.frombuffer(given[: JOINT.itemsize], JOINT), np.frombuffer(given[JOINT.itemsize :], LAW)
     step = 1e-3
     times = np.array([0.0, step])
-    run = Run(joint, times, np.zeros(2), times, step, int(sys.argv[1]), law=law if len(law) else None)
+    probes = (step, np.zeros((2, len(PROBES)))) if int(sys.argv[2]) else None
+    run = Run(
+        joint, times, np.zeros(2), times, step, int(sys.argv[1]), probes=probes, law=law if len(law) else None
+    )
     roll_out_lanes([run], at_once=True)
 
 

@@ -8,7 +8,7 @@ of which the compiler leaves out the branches.
 
 import hashlib
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import cached_property
 from typing import Any
 
@@ -39,19 +39,19 @@ class Kind:
         spool_steps: steps of the spool within one step.
         terms: of the law of every lane; 0 for none. Which factors they have may differ.
         early: whether the laws may act before the spool or on it.
+        probed: whether there are inputs from outside, `probes.PROBES`.
     """
 
     known: tuple[tuple[int, float], ...]
     spool_steps: int
     terms: int = 0
     early: bool = False
+    probed: bool = False
 
     @cached_property
     def name(self) -> str:
         """Short, and another one for every kind."""
-        return hashlib.sha256(
-            repr((self.known, self.spool_steps, self.terms, self.early)).encode()
-        ).hexdigest()[:12]
+        return hashlib.sha256(repr(astuple(self)).encode()).hexdigest()[:12]
 
 
 class KindType(types.Opaque):
@@ -190,3 +190,6 @@ spool_steps_of = _constant(lambda kind: kind.spool_steps, types.intp)
 
 early_of = _constant(lambda kind: kind.early, types.boolean)
 """Whether laws may act before the spool or on it."""
+
+probed_of = _constant(lambda kind: kind.probed, types.boolean)
+"""Whether there are inputs from outside."""
