@@ -1,10 +1,13 @@
 """The one table of numbers that the loop over lanes works in: parameter after parameter, lane beside lane."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.angle import AngleKept
+from hydrolek_drake.physics.law import LAW
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.rollout.drive import Drive
 from hydrolek_drake.rollout.lane_view import LANES, NUMBERS
@@ -115,3 +118,20 @@ def put_near(b: np.ndarray, first: int, lane: int, near: Turned) -> None:
         near.included.sine,
         near.included.cosine,
     )
+
+
+def side_by_side(series: Sequence[np.ndarray], behind: float) -> np.ndarray:
+    """Series of different lengths in rows, filled up with a value. # each (n, ...) -> (series, longest, ...)."""
+    rows = np.full((len(series), max(map(len, series)), *series[0].shape[1:]), behind)
+    for row, values in zip(rows, series, strict=True):
+        row[: len(values)] = values
+    return rows
+
+
+def filled_up(law: np.ndarray, count: int) -> np.ndarray:
+    """A law with terms of no size. # (k,) -> (count,)."""
+    terms = np.ones(count, dtype=LAW)  # what divides is not zero
+    for name in ("sine", "cosine", "frequency", "probe", "time", "place", "speed_shape", "other"):
+        terms[name] = 0.0
+    terms[: len(law)] = law
+    return terms

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numba import types
 from numba.core import cgutils
-from numba.core.imputils import lower_getattr_generic
+from numba.core.imputils import lower_constant, lower_getattr_generic
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import NativeValue, intrinsic, models, register_model, typeof_impl, unbox
 
@@ -40,6 +40,7 @@ class Kind:
         terms: of the law of every lane; 0 for none. Which factors they have may differ.
         early: whether the laws may act before the spool or on it.
         probed: whether there are inputs from outside, `probes.PROBES`.
+        together: whether it is a joint of those that move together.
     """
 
     known: tuple[tuple[int, float], ...]
@@ -47,6 +48,7 @@ class Kind:
     terms: int = 0
     early: bool = False
     probed: bool = False
+    together: bool = False
 
     @cached_property
     def name(self) -> str:
@@ -63,6 +65,11 @@ class KindType(types.Opaque):
 
 
 register_model(KindType)(models.OpaqueModel)
+
+
+@lower_constant(KindType)
+def _constant_kind(context: Any, builder: Any, typ: Any, kind: Any) -> Any:
+    return context.get_dummy_value()
 
 
 @unbox(KindType)

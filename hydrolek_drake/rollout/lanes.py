@@ -9,13 +9,14 @@ from typing import Protocol
 import numpy as np
 
 from hydrolek_drake.compiled import read_only
-from hydrolek_drake.physics.law import LAW, MOST_TERMS
+from hydrolek_drake.physics.law import MOST_TERMS
 from hydrolek_drake.physics.probes import NO_PROBE
 from hydrolek_drake.physics.records import JOINT, flat
 from hydrolek_drake.rollout import kernel
 from hydrolek_drake.rollout.lane_compiling import compiled, ready
 from hydrolek_drake.rollout.lane_kernel import integrate_lanes
 from hydrolek_drake.rollout.lane_kinds import kind_of
+from hydrolek_drake.rollout.lane_table import filled_up, side_by_side
 from hydrolek_drake.rollout.lane_view import LANES, Kind
 from hydrolek_drake.rollout.rollout import (
     DIVIDED_BY_ZERO,
@@ -151,7 +152,7 @@ def one_table(kind: Kind, runs: Sequence[Run], laws: Sequence[np.ndarray | None]
     terms, numbers = None, flat(joints)
     if kind.terms:
         own = [law for law in laws if law is not None]
-        terms = np.stack([_filled_up(law, kind.terms) for law in (*own, *[own[-1]] * (LANES - len(own)))])
+        terms = np.stack([filled_up(law, kind.terms) for law in (*own, *[own[-1]] * (LANES - len(own)))])
         numbers = np.concatenate([numbers, terms.view(np.float64).reshape(LANES, -1)], axis=1)
     states = np.stack([rest_state(run.joint) if run.state is None else run.state for run in lanes])
     out = np.full((LANES, int(rows.max()), len(kernel.SIGNALS)), np.nan)
@@ -162,9 +163,9 @@ def one_table(kind: Kind, runs: Sequence[Run], laws: Sequence[np.ndarray | None]
         np.ascontiguousarray(numbers),
         terms,
         states,
-        _side_by_side([times for times, _ in commands], np.inf),
-        _side_by_side([values for _, values in commands], np.nan),
-        _side_by_side([run.times for run in lanes], np.nan),
+        side_by_side([times for times, _ in commands], np.inf),
+        side_by_side([values for _, values in commands], np.nan),
+        side_by_side([run.times for run in lanes], np.nan),
         rows,
         np.array([run.longest_step for run in lanes]),
         max(
@@ -195,14 +196,6 @@ def _changes(times: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndar
     return times[changes], values[changes]
 
 
-def _side_by_side(series: Sequence[np.ndarray], behind: float) -> np.ndarray:
-    """Series of different lengths in rows, filled up with a value."""
-    rows = np.full((len(series), max(map(len, series))), behind)
-    for row, values in zip(rows, series, strict=True):
-        row[: len(values)] = values
-    return rows
-
-
 def _outside(lanes: Sequence[Run]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Spacing, places and samples of inputs from outside, as of `integrate_lanes`, those of several machines once."""
     spacing, places = np.ones(len(lanes)), np.zeros((len(lanes), 2), dtype=np.int64)
@@ -219,15 +212,6 @@ def _outside(lanes: Sequence[Run]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
             end += len(samples[-1])
         places[lane] = begins[id(values)], max(len(values), 2) if len(values) else 0
     return spacing, places, np.ascontiguousarray(np.concatenate(samples))
-
-
-def _filled_up(law: np.ndarray, count: int) -> np.ndarray:
-    """A law with terms of no size. # (k,) -> (count,)."""
-    terms = np.ones(count, dtype=LAW)  # what divides is not zero
-    for name in ("sine", "cosine", "frequency", "probe", "time", "place", "speed_shape", "other"):
-        terms[name] = 0.0
-    terms[: len(law)] = law
-    return terms
 
 
 def _in_lanes(run: Run, law: np.ndarray | None) -> bool:
