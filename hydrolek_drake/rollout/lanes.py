@@ -18,13 +18,13 @@ from hydrolek_drake.rollout.lane_kernel import integrate_lanes
 from hydrolek_drake.rollout.lane_kinds import kind_of
 from hydrolek_drake.rollout.lane_table import filled_up, side_by_side
 from hydrolek_drake.rollout.lane_view import LANES, Kind
+from hydrolek_drake.rollout.rest import rest_state
 from hydrolek_drake.rollout.rollout import (
     DIVIDED_BY_ZERO,
     Outcome,
     Signals,
     check_times,
     missing_number,
-    rest_state,
     why_diverged,
     with_own,
 )

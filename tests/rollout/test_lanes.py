@@ -18,7 +18,8 @@ from hydrolek_drake.rollout.kernel import SIGNALS
 from hydrolek_drake.rollout.lane_kinds import kind_of
 from hydrolek_drake.rollout.lane_view import LANES
 from hydrolek_drake.rollout.lanes import roll_out_lanes
-from hydrolek_drake.rollout.rollout import rest_state_at_reading, roll_out
+from hydrolek_drake.rollout.rest import rest_state_at_reading
+from hydrolek_drake.rollout.rollout import roll_out
 from hydrolek_drake.rollout.run import Run
 
 SIZES = json.loads((Path(__file__).parents[2] / "scripts" / "agreement_effects.json").read_text())
