@@ -1,5 +1,6 @@
 """The whole diagnosis: data, fair baseline, search, judgement, place and words."""
 
+import os
 import time as clock
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
@@ -7,20 +8,23 @@ from dataclasses import dataclass, replace
 
 from threadpoolctl import threadpool_limits
 
+from hydrolek_drake.diagnosis import inquiry
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig, room_for_law
 from hydrolek_drake.diagnosis.evidence import FINER, judge_given_up
 from hydrolek_drake.diagnosis.found import Search
-from hydrolek_drake.diagnosis.inquiry import INTERRUPTED, Inquiry
+from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.last_numbers import with_last_numbers
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
+from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.moments import intervals_of_moments
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
 from hydrolek_drake.diagnosis.splitting import prepared
+from hydrolek_drake.diagnosis.structures import answering
 from hydrolek_drake.diagnosis.visible import Visible, visible_sizes
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -28,6 +32,9 @@ from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import Free, free_of_joints
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
+
+RULES, EVIDENCE = METHODS = ("rules", "evidence")
+"""How structures are searched: by the rules of docs/diagnosis_method.md, or best first by evidence."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +57,7 @@ class Diagnosis:
         proposal: the experiment that would decide, if one is needed.
         visible: smallest sizes of effects that would have been seen beside the best model, by id.
         seconds: that it took.
+        estimates: courses of unknown inputs around the nominal model, the likeliest first, where they were asked for.
     """
 
     rig: Rig
@@ -67,6 +75,7 @@ class Diagnosis:
     proposal: Proposal | None
     visible: tuple[Visible, ...]
     seconds: float
+    estimates: tuple[Estimate, ...] = ()
 
     @property
     def best(self) -> Judged:
@@ -97,6 +106,8 @@ def diagnose(
     pool: Executor,
     say: Callable[[str], None] = lambda text: None,
     between: tuple[float, float] | None = None,
+    cores: int = os.cpu_count() or 1,
+    method: str = RULES,
 ) -> Diagnosis:
     """Find out what physics a rig's model leaves out.
 
@@ -108,6 +119,8 @@ def diagnose(
         say: told what is being done.
         between: start and end of the part of the recordings that is fitted [s]; what lies outside is held out if
             there is no `holdout`. None for all.
+        cores: that roll out at the same time.
+        method: one of `METHODS`.
 
     An interrupt during the search ends it; what is known by then is judged and returned with a reason.
 
@@ -117,7 +130,7 @@ def diagnose(
     """
     # fits run side by side already: threads of the linear algebra under each of them only wait for each other
     with threadpool_limits(limits=1, user_api="blas"):
-        return _diagnosed(rig, recordings, holdout, pool, say, between)
+        return _diagnosed(rig, recordings, holdout, pool, say, between, cores, method)
 
 
 def _diagnosed(
@@ -127,6 +140,8 @@ def _diagnosed(
     pool: Executor,
     say: Callable[[str], None],
     between: tuple[float, float] | None,
+    cores: int,
+    method: str,
 ) -> Diagnosis:
     """See `diagnose`."""
     begun = clock.perf_counter()
@@ -141,14 +156,14 @@ def _diagnosed(
     candidates = list(
         {c.size_path: c for joint in joints for c in candidates_of(rig, joint, scales[joint])}.values()
     )
-    inquiry = Inquiry(
-        candidates,
-        {joint: scales[joint] for joint in joints if room_for_law(rig, joint)},
-        several=len(joints) > 1,
-        apart=bool(holdout) or between is not None,
-        say=say,
-    )
-    answer = inquiry.answer(bench, held_out)
+    lawful = {joint: scales[joint] for joint in joints if room_for_law(rig, joint)}
+    apart = bool(holdout) or between is not None
+    asked: answering.Inquiry | inquiry.Inquiry
+    if method == EVIDENCE:
+        asked = answering.Inquiry(candidates, lawful, apart, say, cores)
+    else:
+        asked = inquiry.Inquiry(candidates, lawful, several=len(joints) > 1, apart=apart, say=say)
+    answer = asked.answer(bench, held_out)
     known, conclusion, law, remarks = answer.known, answer.conclusion, answer.law, answer.remarks
     bench, held_out, found, judged = known.bench, known.held_out, known.found, known.judged
     best = conclusion.best.hypothesis
@@ -197,6 +212,7 @@ def _diagnosed(
         proposal=proposal,
         visible=visible,
         seconds=clock.perf_counter() - begun,
+        estimates=answer.estimates,
     )
 
 

@@ -75,7 +75,7 @@ def test_an_interrupt_loses_no_score_of_an_earlier_run(tmp_path, monkeypatch) ->
     second = SCORED | {"name": "case_002"}
     write_results(tmp_path, digest(labels), [second])
 
-    def interrupted(*given):
+    def interrupted(*given, **named):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("hydrolek_drake.diagnosis.diagnosis.diagnose", interrupted)
