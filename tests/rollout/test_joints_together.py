@@ -71,6 +71,7 @@ def test_both_arms_move_as_in_the_diagram() -> None:
     assert _off_deg(whole, joints=whole.joints, seconds=1.5).max() < ALLOWED_DEG
 
 
+@pytest.mark.long("a quarter of a minute: loops with laws are compiled")
 def test_laws_of_two_joints_act_as_in_the_diagram(two_joints) -> None:
     span = Span(Reach(1.0, 1.0, 0.0, 0.3, "rad"), None, 1.0, 1.0, 1.0)
     droops = law_record("supply", span, Term((), speed="|v|"), -2e6)  # of the pump that feeds both

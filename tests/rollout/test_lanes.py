@@ -237,6 +237,7 @@ def _side_by_side(count, wanted):
         _alike(one, run.outcome())
 
 
+@pytest.mark.long("a third of a minute: a loop is compiled")
 def test_laws_of_different_factors_side_by_side():
     _side_by_side(1, {False})
 

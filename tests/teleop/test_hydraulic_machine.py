@@ -154,6 +154,7 @@ def test_rates_as_text():
     assert len(encode(home_posture())) < teleop_entries("link")["longest_message"]
 
 
+@pytest.mark.long("45 s: the whole task on the hydraulic plant")
 def test_the_task_with_a_stop_and_a_resume_the_release_of_a_held_pipe_and_a_plant_that_dies(plant, plan):
     client = _watch(plant)
     _move(client, lambda: client.send(home_posture()), 2.0)  # where the plan begins
