@@ -14,6 +14,8 @@ from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
+pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
+
 LEAK = {"effects.cylinder.cross_port_leakage.conductance_m3_per_s_Pa": 1.5e-12}
 
 

@@ -10,6 +10,8 @@ from hydrolek_drake.diagnosis.judged import SMALL
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.parameter_set import free_parameters
 
+pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
+
 AREA = "joints.joint.valve.max_area_a"
 SAYS_LITTLE_V = 1.0  # within the dead-zone
 

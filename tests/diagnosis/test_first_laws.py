@@ -22,6 +22,8 @@ from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
+pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
+
 CONSTANT, GROWING = Term(()), Term((), time="t/T")
 
 

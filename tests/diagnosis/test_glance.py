@@ -3,9 +3,12 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 from hydrolek_drake.diagnosis.first_fits import Trial, diverged, glance
 from hydrolek_drake.identification.problem import DIVERGED
+
+pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
 
 SIZE = "joints.j.effects.base.stiffness"
 STIFF, SOFT = {SIZE: 5e5}, {SIZE: 1e4}

@@ -22,6 +22,8 @@ from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.identification.valleys import along_valleys
 from hydrolek_drake.recordings import read_recording
 
+pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
+
 PAIR = Path(__file__).parents[1] / "data" / "bench" / "practice_14"
 RIPPLE_PA, RIPPLE_HZ = 2.5e6, 1.7
 TRUE = {

@@ -20,6 +20,8 @@ from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rollout.rollout import roll_out
 
+pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
+
 MOVING = ("right_j2", "right_j3")
 TIME = np.arange(0.0, 5.0, 0.01)
 OFF_DEG = {"right_j2": 0.3, "right_j3": 1.0}

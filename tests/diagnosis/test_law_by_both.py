@@ -20,6 +20,8 @@ from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
+pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
+
 COIL_S = 0.02
 SMALL_V, LARGE_V = 2.5, 9.0
 

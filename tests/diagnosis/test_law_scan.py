@@ -13,6 +13,8 @@ from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
+pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
+
 RIPPLE, RIPPLE_HZ = 2e6, 3.104
 """Of the supply pressure [Pa]."""
 

@@ -19,6 +19,8 @@ from hydrolek_drake.identification.parameter_set import free_parameters
 from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.rigs.short_law import terms_of
 
+pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
+
 SHAKEN, _ = MOVING = ("right_j2", "right_j3")
 SHORT = {"seconds": 6.0, "noise_deg": 0.02}
 SHAKING_Nm, SHAKING_Hz = 400.0, 1.3

@@ -19,6 +19,8 @@ from hydrolek_drake.identification.parameter_set import free_parameters
 from hydrolek_drake.physics.law import NEAR, Seen, law_value
 from hydrolek_drake.replay.display import shown
 
+pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
+
 
 def _inputs(bench, training) -> tuple[Input, ...]:
     """The unknown inputs of the bench's joint."""

@@ -7,6 +7,8 @@ import pytest
 from hydrolek_drake.diagnosis.again import by_more_data
 from hydrolek_drake.diagnosis.attempt import law_first, predicting
 
+pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
+
 
 class _AskedError(Exception):
     pass

@@ -9,6 +9,8 @@ import pytest
 from hydrolek_drake.diagnosis.effort import AT_NOISE, NEAR
 from hydrolek_drake.diagnosis.unsticking import from_other_sizes
 
+pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
+
 GAP, AREA = "joints.j.effects.linkage.backlash.gap_rad", "joints.j.valve.max_area_a"
 TRUE = 1.05e-2
 HOLLOW = math.log(1.02)

@@ -22,6 +22,8 @@ from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
+pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
+
 DRIFT = "sensor.drift"
 TRIED = (DRIFT, "sensor.nonlinearity", "supply.pressure_droop")
 NOISY_deg = 0.25

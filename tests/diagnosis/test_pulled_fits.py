@@ -14,6 +14,8 @@ from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 from hydrolek_drake.identification.problem import PULL_S
 
+pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
+
 PLAY = "joints.joint.effects.linkage.backlash.gap_rad"
 SHARE = 0.03
 """Of the travel: far more than the noise."""

@@ -11,6 +11,8 @@ from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
+pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
+
 STRONG = {"coulomb_N": 1700.0, "stribeck_N": 3400.0, "stribeck_velocity_m_per_s": 0.009}
 MIDDLE = {"coulomb_N": 806.0, "stribeck_N": 1613.0, "stribeck_velocity_m_per_s": 0.0055}
 
