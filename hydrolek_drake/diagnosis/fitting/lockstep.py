@@ -213,7 +213,7 @@ def _stepped(places: Sequence[Place], pool: Executor, cores: int, worth: float, 
 
 
 def _with_better_slopes(place: Place) -> Place | None:
-    """A place whose slopes are to be told anew, or with the problem's own step; None where they are."""
+    """A place whose slopes are to be computed again, or with the problem's own step; None where they are."""
     if not place.fresh:
         return replace(place, slopes=None)
     return None if place.exact else replace(place, slopes=None, exact=True)

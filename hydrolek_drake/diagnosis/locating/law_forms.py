@@ -1,8 +1,5 @@
 """Terms of laws read from unknown inputs: which function of time and movement follows what an input must have been."""
 
-from collections.abc import Sequence
-from dataclasses import replace
-
 import numpy as np
 
 from hydrolek_drake.diagnosis.law_counterpart import seen_by_laws
@@ -86,8 +83,3 @@ def _at_knots(knots: np.ndarray, moments: np.ndarray, values: np.ndarray) -> np.
         for a, b, i, j in zip(firsts[:-1], firsts[1:], begins[:-1], begins[1:], strict=True)
     ]
     return np.concatenate(parts)
-
-
-def with_start(term: LawTerm, multiple: Sequence[float]) -> LawTerm:
-    """A term whose searches begin at what was seen."""
-    return replace(term, seen=tuple(multiple))

@@ -38,12 +38,6 @@ class Tried(Search):
     costs: list[float] = field(default_factory=list)
     seeds: list[Hypothesis] = field(default_factory=list)
 
-    def keep(self, hypothesis: Hypothesis) -> None:
-        """Remember it if it is the best fit of these additions."""
-        known = self.hypotheses.get(hypothesis.ids)
-        if known is None or hypothesis.fit.objective < known.fit.objective:
-            self.hypotheses[hypothesis.ids] = hypothesis
-
     @property
     def best(self) -> Hypothesis:
         """The structure that costs least."""
