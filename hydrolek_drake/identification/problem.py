@@ -105,6 +105,12 @@ class Problem:
         other.pull_time, other._longer_does = pull_time, True
         return other
 
+    def with_step(self: Own, times: float) -> Own:
+        """The same with rollouts whose steps are so many times as long."""
+        other = self._anew()
+        other.longest_step = times * self._longest_step
+        return other
+
     def _anew(self: Own) -> Own:
         """The same without what is known of places, to be given other rollouts."""
         other = copy.copy(self)
@@ -183,7 +189,7 @@ class Problem:
         base = self.residuals(unit) if at is None else at
         if len(self.experiments) > 1:
             self._keep(unit, base)
-        return self._columns(unit, moving, base, self._steps(unit))
+        return self._columns(unit, moving, base, self.differences(unit))
 
     def jacobian_without_jumps(
         self, unit: np.ndarray, at: np.ndarray, moving: np.ndarray | None = None
@@ -201,7 +207,7 @@ class Problem:
         """
         if len(self.experiments) > 1:
             self._keep(unit, at)
-        steps = self._steps(unit)
+        steps = self.differences(unit)
         back = np.where((unit - steps >= 0.0) & (unit - steps <= 1.0), -steps, 2.0 * steps)
         one, other = (self._columns(unit, moving, at, each) for each in (steps, back))
         return np.where(np.abs(one) < np.abs(other), one, other)
@@ -245,8 +251,7 @@ class Problem:
         """
         if not self._longer_does:
             return None
-        longer = self._anew()
-        longer.longest_step = LONGER * self._longest_step
+        longer = self.with_step(LONGER)
         there, slopes = longer._there_and_slopes(unit, moving)
         if np.linalg.norm(there - at) >= ALIKE * np.linalg.norm(at):
             slopes = None
@@ -262,7 +267,7 @@ class Problem:
         """Residuals at a place, and the Jacobian there if it is best had with them, in one table of lanes."""
         if sharing() is None or self.batch == 1 or len({e.index for e in self.experiments}) > 1:
             return self.residuals(unit), None
-        steps = self._steps(unit)
+        steps = self.differences(unit)
         indices = np.arange(unit.size) if moving is None else np.flatnonzero(moving)
         there, *moved = self.residuals_of_all([unit, *(unit + np.diag(steps)[indices])])
         slopes = np.zeros((there.size, unit.size))
@@ -276,11 +281,11 @@ class Problem:
         told = (sizes > 0.0) & (self._to_the_next_step(unit) == 0.0)
         way = np.zeros(unit.size)
         way[told] = np.min(sizes[told], initial=np.inf) / sizes[told]
-        steps = way * self._steps(unit)
+        steps = way * self.differences(unit)
         change = self.residuals(unit + steps) - at
         return bool(np.linalg.norm(slopes @ steps - change) <= SAME * np.linalg.norm(change))
 
-    def _steps(self, unit: np.ndarray) -> np.ndarray:
+    def differences(self, unit: np.ndarray) -> np.ndarray:
         """Differences of the Jacobian: forward, and backward near the upper end. # (n,)."""
         sizes = np.clip(self._to_the_next_step(unit), self.difference, 0.5)
         return np.where(unit + sizes <= 1.0, sizes, -sizes)

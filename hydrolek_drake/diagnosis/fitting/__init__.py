@@ -1,0 +1,1 @@
+"""Fits of many structures from many starts, their rollouts in lanes."""

@@ -1,0 +1,73 @@
+"""A search over lanes along one parameter, with all others changed along their tangents.
+
+What begins at a moment, or opens a contact, lets the squares change in steps: no slope leads there. Values of such a
+parameter are tried side by side, each with the other parameters where the linearised residuals ask for them (variable
+projection; Golub and Pereyra, Inverse Problems 19 (2003) R1).
+"""
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.fitting.lockstep import Place, normal_step
+from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
+
+
+@dataclass(frozen=True)
+class Along:
+    """Values of one parameter that are tried.
+
+    Attributes:
+        index: of the parameter.
+        units: its places. # (k,)
+    """
+
+    index: int
+    units: np.ndarray
+
+
+def searched_along(places: Sequence[Place], ways: Sequence[Along | None], pool: Executor, cores: int) -> list[Place]:
+    """Each place, or the lowest of those that were tried from it.
+
+    Args:
+        places: with residuals, and slopes if others are to be changed too.
+        ways: what is tried from each; None for nothing.
+        pool: threads.
+        cores: that roll out at the same time.
+    """
+    moved = []
+    for place, way in zip(places, ways, strict=True):
+        units = []
+        for value in () if way is None else way.units:
+            unit = place.unit.copy()
+            unit[way.index] = value  # type: ignore[union-attr]
+            units.append(unit)
+        moved.append(units)
+    found = residuals_at([Request(p.problem, tuple(u)) for p, u in zip(places, moved, strict=True)], pool, cores)
+    followed = [
+        [_followed(place, way.index, unit, residuals) for unit, residuals in zip(units, own, strict=True)]
+        if way is not None
+        else []
+        for place, way, units, own in zip(places, ways, moved, found, strict=True)
+    ]
+    again = residuals_at([Request(p.problem, tuple(u)) for p, u in zip(places, followed, strict=True)], pool, cores)
+    best = []
+    for place, units, own, others, theirs in zip(places, moved, found, followed, again, strict=True):
+        reached = [
+            replace(place, unit=unit, residuals=residuals, fresh=False, ended=False)
+            for unit, residuals in zip([*units, *others], [*own, *theirs], strict=True)
+        ]
+        best.append(min([place, *reached], key=lambda p: p.objective))
+    return best
+
+
+def _followed(place: Place, index: int, unit: np.ndarray, residuals: np.ndarray) -> np.ndarray:
+    """A place with all parameters but one where the slopes ask for them. # (n,)."""
+    if place.slopes is None or np.isnan(place.slopes).any():
+        return unit
+    moving = place.moving.copy()
+    moving[index] = False
+    there = replace(place, unit=unit, residuals=residuals, moving=moving)
+    return np.clip(unit + normal_step(there), 0.0, 1.0)
