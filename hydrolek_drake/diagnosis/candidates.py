@@ -4,6 +4,7 @@ import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 from hydrolek_drake.effects import EFFECTS, Effect
 from hydrolek_drake.effects.scales import Scales
@@ -32,6 +33,24 @@ class Candidate:
     starts: tuple[dict[str, float], ...]
     utmost: Mapping[str, tuple[float, float]] = field(compare=False)
     beneath: float = 0.0
+
+    cost: ClassVar[float] = 1.0
+    """In effects."""
+
+    @property
+    def weakens(self) -> bool:
+        """Whether it fades as its size grows."""
+        return self.effect.weakens
+
+    @property
+    def sudden(self) -> bool:
+        """Whether the joint moves otherwise as soon as it is there, see `Effect.sudden`."""
+        return self.effect.sudden
+
+    @property
+    def stage(self) -> str:
+        """Where it acts."""
+        return self.effect.stage
 
     @property
     def id(self) -> str:
@@ -84,7 +103,7 @@ class Candidate:
 
     def is_special_case_of(self, other: "Candidate") -> bool:
         """Whether another effect at the same joint contains this one."""
-        return self.joint == other.joint and self.id in other.effect.contains
+        return isinstance(other, Candidate) and self.joint == other.joint and self.id in other.effect.contains
 
 
 def candidates_of(rig: Rig, joint: str, scales: Scales) -> tuple[Candidate, ...]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import GLANCE_S
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm, WithTerms
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit, fit_from
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
@@ -139,7 +140,13 @@ class Workbench:
         own = [p for candidate in effects for p in candidate.free]
         key = frozenset(own)  # with their ranges, which may be widened
         if key not in self._sets:
-            self._sets[key] = ParameterSet(self.rig, [*self.nominal, *own])
+            terms = [c for c in effects if isinstance(c, LawTerm)]
+            of_rig = [p for c in effects if not isinstance(c, LawTerm) for p in c.free]
+            self._sets[key] = (
+                WithTerms(self.rig, [*self.nominal, *of_rig], terms)
+                if terms
+                else ParameterSet(self.rig, [*self.nominal, *own])
+            )
         return self._sets[key]
 
     def problem(

@@ -101,10 +101,14 @@ class ParameterSet:
     def records(self, unit: np.ndarray) -> np.ndarray:
         """Records of all joints, shape (n joints,), for a place in the unit cube."""
         records = self._base.copy()
-        vectors = flat(records)
-        for parameter, (joints, positions), u in zip(self.free, self._places, unit, strict=True):
-            vectors[joints, positions] = parameter.from_unit(float(u))
+        self._set(records, unit)
         return records
+
+    def _set(self, records: np.ndarray, unit: np.ndarray) -> None:
+        """Write the parameters of the rig into records, for a place in their unit cube."""
+        vectors = flat(records)
+        for parameter, (joints, positions), u in zip(self.free, self._places, unit, strict=False):
+            vectors[joints, positions] = parameter.from_unit(float(u))
 
     def values(self, unit: np.ndarray) -> dict[str, float]:
         """Full path -> value (SI)."""
@@ -116,7 +120,7 @@ class ParameterSet:
         places = [
             p.to_unit(max(v, p.lower) if p.log else v)
             for p in self.free
-            for v in (given.get(p.path, self.rig.value(p.path)),)
+            for v in (given[p.path] if p.path in given else self.rig.value(p.path),)
         ]
         return np.clip(np.array(places), 0.0, 1.0)
 

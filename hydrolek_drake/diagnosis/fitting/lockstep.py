@@ -18,7 +18,7 @@ from hydrolek_drake.identification.problem import Problem
 DAMPED = 1e-2
 """Marquardt's damping at first, as a share of the normal equations' diagonal."""
 
-TRIED = (1e-2, 1.0, 1e2, 1e4)
+TRIED = (1e-2, 1.0, 1e2)
 """Dampings that are tried at once, as multiples of the last one that helped."""
 
 KEPT = 0.25
@@ -60,8 +60,15 @@ class Place:
         return float(self.residuals @ self.residuals + off @ off)
 
     def at(self, problem: Problem) -> "Place":
-        """The same place of another problem of the same parameters."""
-        return Place(problem, self.moving, self.unit)
+        """The same place of another problem of the same parameters, led by the same slopes if it has as many values."""
+        if self.slopes is None or _values_of(problem) != len(self.slopes) or problem.pull_time != self.problem.pull_time:
+            return Place(problem, self.moving, self.unit, damping=self.damping)
+        return Place(problem, self.moving, self.unit, slopes=self.slopes, damping=self.damping)
+
+
+def _values_of(problem: Problem) -> int:
+    """How many residuals a problem has."""
+    return sum(len(e.channels) * e.time.size for e in problem.experiments)
 
 
 def descend(

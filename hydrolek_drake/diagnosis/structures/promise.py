@@ -99,7 +99,7 @@ def _promise(candidate: Candidate, rated: list, left: np.ndarray, settings: Sett
     best = max(rated, key=lambda each: each[0])
     by_what_is_left = sorted(rated, key=lambda each: each[1])
     scaled = {**best[3]}
-    if not candidate.effect.weakens:
+    if not candidate.weakens:
         free = candidate.size
         size = scaled[free.path] * float(np.clip(best[2], 0.1, 10.0))
         scaled[free.path] = float(np.clip(size, free.lower, free.upper))
@@ -116,8 +116,8 @@ def _tried(candidate: Candidate, settings: Settings) -> list[dict[str, float]]:
     """Places of an addition's own parameters that are tried."""
     places = []
     for begin in candidate.starts:
-        for times in settings.sizes:
-            size = begin[candidate.size_path] * (1.0 / times if candidate.effect.weakens else times)
+        for times in settings.sizes if isinstance(candidate, Candidate) else (1.0,):
+            size = begin[candidate.size_path] * (1.0 / times if candidate.weakens else times)
             tried = {**begin, candidate.size_path: size}
             if all(free.lower <= tried[free.path] <= free.upper for free in candidate.free):
                 places.append(tried)

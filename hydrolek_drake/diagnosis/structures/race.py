@@ -72,11 +72,13 @@ def race(
         begun = [r.place.at(problems[r.key]) for r in runners]
         if rung is rungs[0]:
             begun = _led(bench, entrants, begun, rung, cores)
+        last = rung is rungs[-1]
         places = descend(
             begun,
             rung.rounds,
             bench.pool,
             cores,
+            share=1e-4 if last else 3e-3,
             stop=bench.alive,
         )
         bench.evaluations += sum(p.evaluations for p in problems.values())
@@ -123,7 +125,7 @@ def _way(runner: Runner, number: int, what: str) -> Along | None:
             near = runner.place.unit[index] + np.array([-1.0, -0.3, -0.1, -0.03, 0.03, 0.1, 0.3, 1.0]) / MOMENTS
             return Along(index, np.clip(np.concatenate([grid, near]), 0.0, 1.0))
         return None
-    if not candidate.effect.sudden:
+    if not candidate.sudden:
         return None
     free, index = candidate.size, paths.index(candidate.size_path)
     value = free.from_unit(float(runner.place.unit[index]))

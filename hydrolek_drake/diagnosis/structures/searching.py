@@ -18,11 +18,17 @@ from hydrolek_drake.diagnosis.structures.race import (
     problem_of,
     race,
 )
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.structures.settings import Rung, Settings
 from hydrolek_drake.diagnosis.weighing import weighted_by
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
-TRACE: Callable[[str], None] = print if os.environ.get("HYDROLEK_TRACE") else (lambda text: None)
+def TRACE(text):
+    if os.environ.get("HYDROLEK_TRACE"):
+        try:
+            import count; n=count.C['in tables']; m=count.C['alone']
+        except ImportError: n=m=0
+        print(f"[{n}+{m}] {text}", flush=True)
 
 
 def search_structures(
@@ -32,6 +38,7 @@ def search_structures(
     say: Callable[[str], None],
     settings: Settings,
     cores: int,
+    terms: Callable[[Workbench, Hypothesis], Sequence[LawTerm]] | None = None,
 ) -> None:
     """Fill what is found.
 
@@ -42,30 +49,55 @@ def search_structures(
         say: told what is being done.
         settings: of the search.
         cores: that roll out at the same time.
+        terms: of laws that may be beside a structure; None for none.
     """
     say("fitting the nominal model")
     _nominal(bench, found, settings, cores)
-    extended: set[frozenset[str]] = set()
-    for _ in range(2 * settings.most_additions):
-        best = found.best
-        open_ = [h for h in sorted(found.hypotheses.values(), key=cost_of) if h.ids not in extended]
-        open_ = [h for h in open_ if len(h.effects) < settings.most_additions]
-        near = cost_of(best)
-        # what is at the noise is asked what it lacks; farther off the best few are
-        parents = [h for h in open_ if h is best or (best.fit.over_noise > AT_NOISE and len(h.effects) == len(best.effects) and len(h.effects) > 0)]
-        parents = parents[: settings.beam if best.fit.over_noise > AT_NOISE else 1]
-        parents = [h for h in parents if cost_of(h) < near + 0.5 * best.fit.objective or h is best]
-        if not parents:
+    done: set[tuple[frozenset[str], str]] = set()
+    for _ in range(settings.most_expansions):
+        item = _next(found, done, settings, laws=terms is not None)
+        if item is None:
             break
-        went_on = False
-        for parent in parents:
-            extended.add(parent.ids)
-            went_on |= _enlarged(bench, parent, candidates, found, say, settings, cores)
-        if not went_on:
-            break
+        parent, kind = item
+        done.add((parent.ids, kind))
+        if kind == "effects":
+            _enlarged(bench, parent, candidates, found, say, settings, cores)
+        elif terms is not None:
+            own = [t for t in terms(bench, parent) if _same_law(parent, t)]
+            _enlarged(bench, parent, own, found, say, settings, cores)
         _weigh(bench, found, settings, cores)
-        if found.best is best and best.fit.over_noise <= ABOVE_NOISE:
-            break
+
+
+def _next(
+    found: Search, done: set[tuple[frozenset[str], str]], settings: Settings, *, laws: bool
+) -> tuple[Hypothesis, str] | None:
+    """The structure that is enlarged next, and by what; None if nothing is open any more."""
+    best = found.best
+    if best.fit.over_noise <= ABOVE_NOISE:
+        kind = "laws" if any(isinstance(c, LawTerm) for c in best.effects) else "effects"
+        return None if (best.ids, kind) in done else (best, kind)
+    items = []
+    sizes: dict[int, int] = {}
+    for h in sorted(found.hypotheses.values(), key=cost_of):
+        count = len(h.effects)
+        sizes[count] = sizes.get(count, 0) + 1
+        if count >= settings.most_additions or sizes[count] > settings.beam:
+            continue
+        lawful = any(isinstance(c, LawTerm) for c in h.effects)
+        paying = h is found.baseline or cost_of(h) < cost_of(found.baseline)
+        if not paying:
+            continue
+        if not lawful:
+            items.append((cost_of(h), h, "effects"))
+        if laws:
+            items.append((cost_of(h) + LawTerm.cost * gain_needed(h.fit), h, "laws"))
+    items = [item for item in items if (item[1].ids, item[2]) not in done]
+    return min(items, key=lambda item: item[0])[1:] if items else None
+
+
+def _same_law(parent: Hypothesis, term: LawTerm) -> bool:
+    """Whether a term may be added: a law of a structure stands at one input."""
+    return all(c.input.probe == term.input.probe for c in parent.effects if isinstance(c, LawTerm))
 
 
 def _place_of(bench: Workbench, hypothesis: Hypothesis, rung: Rung) -> Place:
@@ -107,7 +139,9 @@ def _enlarged(
     own = [c for c in candidates if _may_be_added(parent, c)]
     coarse = 1.0 if parent.fit.over_noise < FAR else 2.0
     promised = promises_at(bench, place, parent.effects, own, coarse * bench.fine, settings, cores)
-    if not parent.effects:
+    if not own:
+        return False
+    if not parent.effects and isinstance(own[0], Candidate):
         found.scores = [p.score for p in promised]
     found.left = [p.score for p in promised]
     needed = gain_needed(parent.fit)
@@ -123,9 +157,9 @@ def _enlarged(
     near = parent.fit.over_noise <= ABOVE_NOISE
     free = [
         Entrant((*parent.effects, p.candidate), {**parent.values, **start}, parent)
-        for p in promised
+        for number, p in enumerate(promised[: settings.entrants])
         if not near or p.gain > PROMISING * needed
-        for start in p.starts
+        for start in p.starts[: settings.starts if number < settings.doubled else 1]
     ]
     free += [
         Entrant(effects, {**parent.values, **{k: v for k, v in start.items() if k not in parent.values}})
@@ -162,7 +196,7 @@ def _continued(
     place = descend([begun], 2, bench.pool, cores)[0]
     promised = promises_at(bench, place, effects, own, first.coarse * bench.fine, settings, cores)
     TRACE("  pulled: " + ", ".join(f"{p.candidate.id} {p.gain:.0f}" for p in promised[:5]))
-    return [Entrant((*effects, p.candidate), {**sizes, **start}) for p in promised for start in p.starts[:1]]
+    return [Entrant((*effects, p.candidate), {**sizes, **start}) for p in promised[: settings.entrants] for start in p.starts[:1]]
 
 
 def _lessened(bench: Workbench, found: Search, settings: Settings, cores: int) -> None:
@@ -171,7 +205,6 @@ def _lessened(bench: Workbench, found: Search, settings: Settings, cores: int) -
     entrants = [
         Entrant(best.without(c), {k: v for k, v in best.values.items() if not k.startswith(c.path + ".")})
         for c in best.effects
-        if len(best.effects) > 1
     ]
     for each in race(bench, entrants, settings.free[-1:], cores) if entrants else ():
         found.keep(each)
@@ -180,7 +213,7 @@ def _lessened(bench: Workbench, found: Search, settings: Settings, cores: int) -
 def _weigh(bench: Workbench, found: Search, settings: Settings, cores: int) -> None:
     """Weigh the data by the best structure, and fit what is near it again."""
     best = found.best
-    if best.fit.over_noise > 0.5 * found.weighed_at and best.fit.over_noise > FAR:
+    if best.fit.over_noise > settings.nearer * found.weighed_at:
         return
     bench.training = tuple(weighted_by(bench, best, bench.training))
     ranked = sorted(found.hypotheses.values(), key=lambda h: h.fit.objective)

@@ -1,0 +1,90 @@
+"""The evidence for structures: the density of held-out data given the training data, parameters integrated out.
+
+The training data leave a structure's parameters uncertain by a covariance S. To first order the held-out residuals r of
+a structure that is right then have the covariance I + J S J', J their Jacobian, and their log-density is
+
+    -1/2 r' (I + J S J')^-1 r - 1/2 log det (I + J S J')
+
+(MacKay, Bayesian interpolation, Neural Computation 4, 1992). Where the parameters would have to move so far that the
+first order may not hold, the structure is fitted to both data, and what both leave beyond what the training data leave
+alone stands for the first term.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.evidence import NEARBY, OUT_OF_REACH, pays, predictive, predicts
+from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
+from hydrolek_drake.diagnosis.found import Search
+from hydrolek_drake.diagnosis.gains import cost_of
+from hydrolek_drake.diagnosis.judged import SMALL, Judged, with_probabilities
+from hydrolek_drake.diagnosis.structures.race import Entrant, race
+from hydrolek_drake.diagnosis.structures.settings import Settings
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.experiment import Experiment
+
+MOST = 8
+"""At most so many structures are judged."""
+
+
+def judge_structures(
+    bench: Workbench, found: Search, held_out: Sequence[Experiment], settings: Settings, cores: int
+) -> list[Judged]:
+    """Structures that may be right, the most probable first.
+
+    Args:
+        bench: data and problems.
+        found: structures, fitted to the training data.
+        held_out: data that nothing was fitted to.
+        settings: of the search.
+        cores: that roll out at the same time.
+    """
+    contenders = _contenders(found)
+    entrants = [Entrant(h.effects, h.values) for h in contenders]
+    last = replace(settings.last, keep=len(contenders))
+    refined = race(bench, entrants, (last,), cores)
+    refined = [h for h in refined if pays(h, refined) and all(c.says_something(h.values) for c in h.effects)]
+    judged = _predicted(bench, refined, held_out, last.coarse * bench.fine, cores)
+    return with_probabilities([j for j in judged if predicts(j, judged)])
+
+
+def _contenders(found: Search) -> list[Hypothesis]:
+    """Those that may still be right, always with the nominal model and the best one less one addition."""
+    best = found.best
+    ranked = sorted(found.hypotheses.values(), key=cost_of)
+    near = [h for h in ranked if 0.5 * (cost_of(h) - cost_of(best)) < max(OUT_OF_REACH, 0.05 * best.fit.objective)]
+    lesser = [h for h in ranked if h.ids < best.ids and len(h.ids) == len(best.ids) - 1]
+    unique = {h.ids: h for h in (best, found.baseline, *lesser, *near)}
+    return list(unique.values())[:MOST]
+
+
+def _predicted(
+    bench: Workbench, hypotheses: Sequence[Hypothesis], held_out: Sequence[Experiment], step: float, cores: int
+) -> list[Judged]:
+    """Structures with the density of the held-out data."""
+    counted = sum(experiment.counted for experiment in held_out)
+    places = []
+    for h in hypotheses:
+        problem = bench.problem(h.effects, step, held_out)
+        places.append(Place(problem, bench.movable(h.effects, problem.parameters), h.fit.unit, exact=True))
+    places = with_slopes(places, bench.pool, cores)
+    judged, far = [], []
+    for h, place in zip(hypotheses, places, strict=True):
+        assert place.residuals is not None and place.slopes is not None
+        chi_squared, spread = predictive(place.residuals, place.slopes, h.fit)
+        one = Judged(h, place.residuals, counted, chi_squared=chi_squared, spread=spread)
+        far.append(one.over_noise > SMALL or float(place.residuals @ place.residuals) - chi_squared > NEARBY)
+        judged.append(one)
+    some = [i for i, is_far in enumerate(far) if is_far]
+    both = [*bench.training, *held_out]
+    begun = []
+    for i in some:
+        h = judged[i].hypothesis
+        problem = bench.problem(h.effects, step, both)
+        begun.append(Place(problem, bench.movable(h.effects, problem.parameters), h.fit.unit))
+    for i, place in zip(some, descend(begun, 6, bench.pool, cores, stop=bench.alive), strict=True):
+        beyond = max(place.objective - judged[i].hypothesis.fit.objective, 0.0)
+        judged[i] = replace(judged[i], chi_squared=beyond)
+    return judged
