@@ -73,13 +73,13 @@ class Across:
         kept = fit.with_prior[:, use] / norms[use]
         if kept.shape[1]:
             left, singular, _ = np.linalg.svd(kept, full_matrices=False)
-            self._basis = left[:, singular > 1e-8 * singular[0]]
+            self.basis = left[:, singular > 1e-8 * singular[0]]
         else:
-            self._basis = np.zeros((len(fit.with_prior), 0))
+            self.basis = np.zeros((len(fit.with_prior), 0))
 
     def __call__(self, vector: np.ndarray) -> np.ndarray:
         """The part of a vector that the columns cannot make."""
-        return vector - self._basis @ (self._basis.T @ vector)
+        return vector - self.basis @ (self.basis.T @ vector)
 
 
 def scores_of(

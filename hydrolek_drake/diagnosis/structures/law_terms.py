@@ -38,6 +38,7 @@ class LawTerm:
         span: what its variables are told in.
         frequency: of a periodic one, first guess [Hz].
         breadth: half of the range about it in which it is fitted [Hz].
+        seen: amplitudes, in scales of the input, that the innovations of an observer ask for; None if nobody looked.
     """
 
     input: Input
@@ -46,6 +47,7 @@ class LawTerm:
     span: Span = field(compare=False, repr=False)
     frequency: float = 0.0
     breadth: float = BREADTH_HZ
+    seen: tuple[float, ...] | None = field(default=None, compare=False)
 
     cost: ClassVar[float] = 2.0
     """In effects: where it enters and what it depends on are both chosen among many."""
@@ -109,16 +111,20 @@ class LawTerm:
     def starts(self) -> tuple[dict[str, float], ...]:
         """Where searches begin."""
         signs = (1.0,) if self.input.one_sided else (1.0, -1.0)
-        rest = self.neutral()
         if self.term is None:
             turns = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
-            return tuple(
-                {**rest, self.size_path: s * SIZES[1] * self.input.scale, f"{self.path}.cosine": c * SIZES[1] * self.input.scale}
-                for s, c in turns
-            )
-        return tuple(
-            {**rest, self.size_path: sign * size * self.input.scale} for size in SIZES for sign in signs
-        )
+            sizes = [(SIZES[1] * sine, SIZES[1] * cosine) for sine, cosine in turns]
+        else:
+            sizes = [(sign * size,) for size in SIZES for sign in signs]
+        if self.seen is not None:
+            sizes = [tuple(size * seen for seen in self.seen) for size in (1.0, 0.3, 3.0)] + sizes[-2:]
+        paths = [self.size_path, f"{self.path}.cosine"]
+        rest = self.neutral()
+        found = []
+        for each in sizes:
+            values = dict(zip(paths, (float(np.clip(s, -0.9, 0.9)) * self.input.scale for s in each), strict=False))
+            found.append({**rest, **values})
+        return tuple(found)
 
     def neutral(self) -> dict[str, float]:
         """Full path -> value at which it does nothing."""

@@ -1,0 +1,1 @@
+"""Where a mismatch enters, when, and against which variable: unknown inputs, estimated."""

@@ -1,0 +1,93 @@
+"""Terms of laws read from unknown inputs: which function of time and movement follows what an input must have been."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.law_counterpart import seen_by_laws
+from hydrolek_drake.diagnosis.laws import TERMS, Span, law_record
+from hydrolek_drake.diagnosis.locating.unknown_input import Seen, Unknown
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
+from hydrolek_drake.rollout.one_point import law_along
+
+HIGHEST_HZ = 8.0
+"""Frequencies up to this one are looked for; joints hardly follow faster ones."""
+
+LOWEST = 3.0
+"""Cycles at least within a recording; what is slower is no vibration."""
+
+PEAKS = 2
+"""So many frequencies of each input are followed."""
+
+STEADY = ("capacity_a", "capacity_b", "back_a", "back_b", "ramp", "coil_time", "flow_force")
+"""Inputs that say how something is built, which no disturbance shakes."""
+
+
+def terms_seen(seen: Seen, record: np.void, joint: str, span: Span) -> list[tuple[float, LawTerm]]:
+    """Every term that has a physical meaning, with the fall of the squares that it promises, the best first.
+
+    Args:
+        seen: unknown inputs.
+        record: the joint's parameters.
+        joint: its name.
+        span: what laws are told in.
+    """
+    rows, moments = _movement(seen, record)
+    found: list[tuple[float, LawTerm]] = []
+    for unknown in seen.unknowns:
+        for term in TERMS:
+            if not term.meant_for(unknown.input):
+                continue
+            values = law_along(law_record(unknown.input.probe, span, term, 1.0)[0], rows)
+            gain, multiple = unknown.gain_of(_at_knots(unknown.times, moments, values))
+            if unknown.input.one_sided and multiple < 0.0:
+                gain = 0.0
+            found.append((gain, LawTerm(unknown.input, term, joint, span, seen=(multiple,))))
+        if unknown.input.probe not in STEADY:
+            found += _periodic(unknown, joint, span)
+    return sorted(found, key=lambda each: -each[0])
+
+
+def _periodic(unknown: Unknown, joint: str, span: Span) -> list[tuple[float, LawTerm]]:
+    """Sines that promise most at an input."""
+    length = float(np.ptp(unknown.times))
+    frequencies = np.arange(LOWEST / length, HIGHEST_HZ, 0.25 / length)
+    gains, pairs = np.zeros(frequencies.size), []
+    for k, frequency in enumerate(frequencies):
+        angle = 2.0 * np.pi * frequency * unknown.times
+        gains[k], multiples = unknown.gain_of_pair(np.sin(angle), np.cos(angle))
+        pairs.append(multiples)
+    padded = np.concatenate([[-np.inf], gains, [-np.inf]])
+    peaks = np.flatnonzero((padded[1:-1] > padded[:-2]) & (padded[1:-1] >= padded[2:]))
+    best = sorted(peaks, key=lambda k: -gains[k])[:PEAKS]
+    return [
+        (
+            float(gains[k]),
+            LawTerm(unknown.input, None, joint, span, float(frequencies[k]), seen=tuple(pairs[k].tolist())),
+        )
+        for k in best
+    ]
+
+
+def _movement(seen: Seen, record: np.void) -> tuple[np.ndarray, np.ndarray]:
+    """What laws may depend on, as rows, and when."""
+    parts = [seen_by_laws(signals, record)[0] for signals in seen.signals]
+    rows = np.concatenate(parts)
+    return rows, rows[:, 0]
+
+
+def _at_knots(knots: np.ndarray, moments: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """A course at the knots; recordings follow one another, each with its own clock."""
+    begins = [0, *(np.flatnonzero(np.diff(moments) < 0.0) + 1), len(moments)]
+    firsts = [0, *(np.flatnonzero(np.diff(knots) < 0.0) + 1), len(knots)]
+    parts = [
+        np.interp(knots[a:b], moments[i:j], values[i:j])
+        for a, b, i, j in zip(firsts[:-1], firsts[1:], begins[:-1], begins[1:], strict=True)
+    ]
+    return np.concatenate(parts)
+
+
+def with_start(term: LawTerm, multiple: Sequence[float]) -> LawTerm:
+    """A term whose searches begin at what was seen."""
+    return replace(term, seen=tuple(multiple))

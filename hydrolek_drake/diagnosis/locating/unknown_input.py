@@ -1,0 +1,223 @@
+"""An unknown input at each stage, estimated from the innovations of an observer.
+
+An input u(t) on straight lines between knots changes the innovations by A u, with a small u. An observer forgets within
+some of its time constants T, so that knots which lie far enough apart can be moved in one rollout: the columns of A of all
+knots take as many rollouts as there are knots within that time (a coloured Jacobian; Curtis, Powell, Reid, IMA Journal
+of Applied Mathematics 13 (1974) 117). What the structure's own parameters undo is projected away. With a prior of variance
+s^2 for each knot
+
+    u = -(N + I / s^2)^-1 A' r,    N = A' A        and        2 log p(r) - 2 log p0(r) = g' (N + I / s^2)^-1 g - log det (I + s^2 N)
+
+with g = A' r, r the innovations (ridge regression, and its marginal likelihood; MacKay 1992): s is the most likely one,
+and stages are compared by that likelihood.
+"""
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csc_matrix
+
+from hydrolek_drake.diagnosis.fitting.lockstep import Place, with_slopes
+from hydrolek_drake.diagnosis.law_inputs import Input
+from hydrolek_drake.diagnosis.score import Across
+from hydrolek_drake.diagnosis.structures.race import hypothesis_of
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.physics.probes import PROBES
+from hydrolek_drake.rollout.lane_view import LANES
+from hydrolek_drake.rollout.lanes import roll_out_lanes
+from hydrolek_drake.rollout.rollout import Signals
+
+SPACING_S = 0.05
+"""Between knots [s]: a joint hardly follows what is faster."""
+
+FORGOTTEN = 6.0
+"""So many time constants after an input its trace in the innovations is gone (e^-6)."""
+
+AMPLITUDE = 1e-3
+"""Of a trial, in scales of the input: small enough to be linear."""
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """An unknown input and what the innovations tell of it.
+
+    Attributes:
+        input: where it enters, and as what.
+        times: knots of each recording one after the other [s]. # (k,)
+        information: N of the module, in scales of the input. # (k, k)
+        pull: A' r. # (k,)
+        left: r' r of what the structure's own parameters do not undo.
+    """
+
+    input: Input
+    times: np.ndarray
+    information: np.ndarray
+    pull: np.ndarray
+    left: float
+
+    def gain_of(self, course: np.ndarray) -> tuple[float, float]:
+        """Fall of the squares if the input takes a course's best multiple, and that, in scales of the input.
+
+        Args:
+            course: at the knots. # (k,)
+        """
+        power = float(course @ self.information @ course)
+        along = -float(self.pull @ course)
+        return (along * along / power, along / power) if power > 0.0 else (0.0, 0.0)
+
+    def gain_of_pair(self, first: np.ndarray, second: np.ndarray) -> tuple[float, np.ndarray]:
+        """The same of two courses at once, such as a sine and a cosine."""
+        both = np.stack([first, second], axis=1)
+        square, along = both.T @ self.information @ both, -both.T @ self.pull
+        multiples = np.linalg.lstsq(square, along, rcond=1e-10)[0]
+        return float(along @ multiples), multiples
+
+    def estimated(self) -> "Estimate":
+        """The input's most likely course."""
+        values, vectors = np.linalg.eigh(self.information)
+        values = np.maximum(values, 0.0)
+        turned = vectors.T @ self.pull
+        top = max(float(values[-1]), np.finfo(float).tiny)
+        best: tuple[float, float] = (0.0, 0.0)
+        for variance in np.geomspace(1e-4, 1e6, 41) / top:
+            gain = float(np.sum(turned**2 / (values + 1.0 / variance))) - float(np.sum(np.log1p(variance * values)))
+            if gain > best[0]:
+                best = (gain, variance)
+        gain, variance = best
+        if variance == 0.0:
+            return Estimate(self, np.zeros_like(self.pull), np.zeros_like(self.pull), 0.0)
+        course = -vectors @ (turned / (values + 1.0 / variance))
+        deviation = np.sqrt(np.sum(vectors**2 / (values + 1.0 / variance), axis=1))
+        return Estimate(self, course * self.input.scale, deviation * self.input.scale, gain)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The most likely course of an unknown input.
+
+    Attributes:
+        unknown: what it is of.
+        course: at the knots (SI). # (k,)
+        deviation: its standard deviation. # (k,)
+        evidence: twice the logarithm of how much likelier the innovations are with it.
+    """
+
+    unknown: Unknown
+    course: np.ndarray
+    deviation: np.ndarray
+    evidence: float
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What an observer around a structure saw.
+
+    Attributes:
+        unknowns: of each input.
+        signals: of the rollouts that follow what was measured, of each recording.
+    """
+
+    unknowns: tuple[Unknown, ...]
+    signals: tuple[Signals, ...]
+
+
+def unknown_inputs(
+    bench: Workbench,
+    parent: Hypothesis,
+    values: dict[str, float],
+    inputs: Sequence[Input],
+    observer_s: float,
+    cores: int,
+) -> Seen:
+    """What the innovations around a structure tell of each input.
+
+    Args:
+        bench: data and problems.
+        parent: the structure.
+        values: full path -> where its parameters stand.
+        inputs: of the joint.
+        observer_s: time constant of the observer [s].
+        cores: that roll out at the same time.
+    """
+    step = 2.0 * bench.fine
+    problem = bench.problem(parent.effects, step, bench.training, observer_s)
+    place = Place(problem, bench.movable(parent.effects, problem.parameters), problem.parameters.unit(values))
+    place = with_slopes([place], bench.pool, cores, 1.0)[0]
+    assert place.residuals is not None and place.slopes is not None
+    fit = hypothesis_of(parent.effects, place, step).fit
+    object.__setattr__(fit, "slopes", place.slopes)
+    basis = Across(fit).basis[: place.residuals.size]
+    rest = place.residuals - basis @ (basis.T @ place.residuals)
+    records = problem.parameters.records(place.unit)
+    here = _rolled([e.run(records, step, pull_time=observer_s) for e in bench.training], bench.pool)
+    at_rest = [e.residuals(each) for e, each in zip(bench.training, here, strict=True)]
+    unknowns = []
+    for given in inputs:
+        parts, times = [], []
+        for experiment, still in zip(bench.training, at_rest, strict=True):
+            columns, knots = _response(bench.pool, experiment, records, step, observer_s, given, still)
+            parts.append(columns)
+            times.append(knots)
+        rows = np.cumsum([0, *(part.shape[0] for part in parts)])
+        information = np.zeros((sum(part.shape[1] for part in parts),) * 2)
+        pull = np.zeros(len(information))
+        inner = np.zeros((basis.shape[1], len(information)))
+        at = 0
+        for part, first in zip(parts, rows, strict=False):
+            own = slice(at, at + part.shape[1])
+            information[own, own] = (part.T @ part).toarray()
+            pull[own] = part.T @ rest[first : first + part.shape[0]]
+            inner[:, own] = (part.T @ basis[first : first + part.shape[0]]).T
+            at += part.shape[1]
+        information -= inner.T @ inner
+        unknowns.append(Unknown(given, np.concatenate(times), information, pull, float(rest @ rest)))
+    return Seen(tuple(unknowns), tuple(here))
+
+
+def _rolled(runs: Sequence, pool: Executor) -> list[Signals]:
+    """Signals of some rollouts, in lanes on several cores."""
+    chunks = [runs[at : at + LANES] for at in range(0, len(runs), LANES)]
+    return [outcome.signals for part in pool.map(roll_out_lanes, chunks) for outcome in part]
+
+
+def _response(
+    pool: Executor,
+    experiment: Experiment,
+    records: np.ndarray,
+    step: float,
+    observer_s: float,
+    given: Input,
+    still: np.ndarray,
+) -> tuple[csc_matrix, np.ndarray]:
+    """How the innovations of a recording answer to each knot, in scales of the input, and the knots' times."""
+    time = experiment.time
+    count = int(np.ceil((time[-1] - time[0]) / SPACING_S)) + 1
+    apart = int(np.ceil(FORGOTTEN * observer_s / SPACING_S)) + 2
+    place = PROBES.index(given.probe)
+    runs = []
+    for first in range(apart):
+        rows = np.zeros((count, len(PROBES)))
+        rows[first::apart, place] = AMPLITUDE * given.scale
+        runs.append(experiment.run(records, step, (SPACING_S, rows), observer_s))
+    answers = _rolled(runs, pool)
+    channels, samples = len(experiment.channels), time.size
+    knot_of_sample = (time - time[0]) / SPACING_S
+    data, row_indices, pointers = [], [], [0]
+    changes = [
+        np.nan_to_num((experiment.residuals(signals) - still) / AMPLITUDE).reshape(channels, samples)
+        for signals in answers
+    ]
+    for knot in range(count):
+        begin, end = np.searchsorted(knot_of_sample, (knot - 1.0, knot - 1.0 + apart))
+        part = changes[knot % apart][:, begin:end]
+        rows_here = (np.arange(channels)[:, None] * samples + np.arange(begin, end)[None, :]).ravel()
+        data.append(part.ravel())
+        row_indices.append(rows_here)
+        pointers.append(pointers[-1] + rows_here.size)
+    matrix = csc_matrix(
+        (np.concatenate(data), np.concatenate(row_indices), np.array(pointers)), shape=(channels * samples, count)
+    )
+    return matrix, time[0] + SPACING_S * np.arange(count)
