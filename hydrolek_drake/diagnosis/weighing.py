@@ -37,7 +37,7 @@ def weighted_by(
     """
     problem = bench.problem(hypothesis.effects, bench.fine, experiments)
     records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
-    if hypothesis.fit.over_noise < FAR:
+    if hypothesis.fit.over_noise < FAR and any(e.others is not None for e in experiments):
         experiments = felt_together(bench.rig.with_values(hypothesis.values), experiments)
     better = []
     for experiment in experiments:
