@@ -1,5 +1,6 @@
 """The whole diagnosis: data, fair baseline, search, judgement, place and words."""
 
+import os
 import time as clock
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
@@ -12,7 +13,7 @@ from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig, room_for_law
 from hydrolek_drake.diagnosis.evidence import FINER, judge_given_up
 from hydrolek_drake.diagnosis.found import Search
-from hydrolek_drake.diagnosis.inquiry import INTERRUPTED, Inquiry
+from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.last_numbers import with_last_numbers
@@ -21,6 +22,7 @@ from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
 from hydrolek_drake.diagnosis.moments import intervals_of_moments
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
 from hydrolek_drake.diagnosis.splitting import prepared
+from hydrolek_drake.diagnosis.structures.answering import Inquiry
 from hydrolek_drake.diagnosis.visible import Visible, visible_sizes
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -97,6 +99,7 @@ def diagnose(
     pool: Executor,
     say: Callable[[str], None] = lambda text: None,
     between: tuple[float, float] | None = None,
+    cores: int = os.cpu_count() or 1,
 ) -> Diagnosis:
     """Find out what physics a rig's model leaves out.
 
@@ -108,6 +111,7 @@ def diagnose(
         say: told what is being done.
         between: start and end of the part of the recordings that is fitted [s]; what lies outside is held out if
             there is no `holdout`. None for all.
+        cores: that roll out at the same time.
 
     An interrupt during the search ends it; what is known by then is judged and returned with a reason.
 
@@ -117,7 +121,7 @@ def diagnose(
     """
     # fits run side by side already: threads of the linear algebra under each of them only wait for each other
     with threadpool_limits(limits=1, user_api="blas"):
-        return _diagnosed(rig, recordings, holdout, pool, say, between)
+        return _diagnosed(rig, recordings, holdout, pool, say, between, cores)
 
 
 def _diagnosed(
@@ -127,6 +131,7 @@ def _diagnosed(
     pool: Executor,
     say: Callable[[str], None],
     between: tuple[float, float] | None,
+    cores: int,
 ) -> Diagnosis:
     """See `diagnose`."""
     begun = clock.perf_counter()
@@ -144,9 +149,9 @@ def _diagnosed(
     inquiry = Inquiry(
         candidates,
         {joint: scales[joint] for joint in joints if room_for_law(rig, joint)},
-        several=len(joints) > 1,
         apart=bool(holdout) or between is not None,
         say=say,
+        cores=cores,
     )
     answer = inquiry.answer(bench, held_out)
     known, conclusion, law, remarks = answer.known, answer.conclusion, answer.law, answer.remarks

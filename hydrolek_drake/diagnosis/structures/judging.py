@@ -20,6 +20,7 @@ from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slope
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import cost_of
 from hydrolek_drake.diagnosis.judged import SMALL, Judged, with_probabilities
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.structures.race import Entrant, race
 from hydrolek_drake.diagnosis.structures.settings import Settings
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -65,26 +66,77 @@ def _predicted(
 ) -> list[Judged]:
     """Structures with the density of the held-out data."""
     counted = sum(experiment.counted for experiment in held_out)
+    units = units_ahead(bench, hypotheses, held_out, step, cores)
     places = []
-    for h in hypotheses:
-        problem = bench.problem(h.effects, step, held_out)
-        places.append(Place(problem, bench.movable(h.effects, problem.parameters), h.fit.unit, exact=True))
-    places = with_slopes(places, bench.pool, cores)
+    for h, own in zip(hypotheses, units, strict=True):
+        for experiment, unit in zip(held_out, own, strict=True):
+            problem = bench.problem(h.effects, step, [experiment])
+            places.append(Place(problem, bench.movable(h.effects, problem.parameters), unit, exact=True))
+    told = iter(with_slopes(places, bench.pool, cores))
     judged, far = [], []
-    for h, place in zip(hypotheses, places, strict=True):
-        assert place.residuals is not None and place.slopes is not None
-        chi_squared, spread = predictive(place.residuals, place.slopes, h.fit)
-        one = Judged(h, place.residuals, counted, chi_squared=chi_squared, spread=spread)
-        far.append(one.over_noise > SMALL or float(place.residuals @ place.residuals) - chi_squared > NEARBY)
+    for h in hypotheses:
+        some = [next(told) for _ in held_out]
+        residuals = np.concatenate([place.residuals for place in some])  # type: ignore[misc]
+        slopes = np.concatenate([place.slopes for place in some])  # type: ignore[misc]
+        slopes[:, _phases(h)] = 0.0  # which were fitted to each recording
+        chi_squared, spread = predictive(residuals, slopes, h.fit)
+        one = Judged(h, residuals, counted, chi_squared=chi_squared, spread=spread)
+        is_far = one.over_noise > SMALL or float(residuals @ residuals) - chi_squared > NEARBY
+        far.append(is_far and not _phases(h).any())
         judged.append(one)
-    some = [i for i, is_far in enumerate(far) if is_far]
+    chosen = [i for i, is_far in enumerate(far) if is_far]
     both = [*bench.training, *held_out]
     begun = []
-    for i in some:
+    for i in chosen:
         h = judged[i].hypothesis
         problem = bench.problem(h.effects, step, both)
         begun.append(Place(problem, bench.movable(h.effects, problem.parameters), h.fit.unit))
-    for i, place in zip(some, descend(begun, 6, bench.pool, cores, stop=bench.alive), strict=True):
+    for i, place in zip(chosen, descend(begun, 6, bench.pool, cores, stop=bench.alive), strict=True):
         beyond = max(place.objective - judged[i].hypothesis.fit.objective, 0.0)
         judged[i] = replace(judged[i], chi_squared=beyond)
     return judged
+
+
+PHASES = 12
+"""Where a periodic law may stand when a recording begins is first tried at so many places."""
+
+
+def _phases(hypothesis: Hypothesis) -> np.ndarray:
+    """Which parameters say where a periodic law stands when a recording begins. # (n,) truth values."""
+    periodic = [c for c in hypothesis.effects if isinstance(c, LawTerm) and c.term is None]
+    paths = {path for c in periodic for path in (c.size_path, f"{c.path}.cosine")}
+    return np.array([path in paths for path in hypothesis.values])
+
+
+def units_ahead(
+    bench: Workbench,
+    hypotheses: Sequence[Hypothesis],
+    held_out: Sequence[Experiment],
+    step: float,
+    cores: int,
+) -> list[list[np.ndarray]]:
+    """Where each structure stands in each held-out recording: as fitted, but for the phase of what is periodic.
+
+    Where a disturbance stands in its cycle when a recording begins is no property of the machine.
+
+    Returns:
+        Places in the unit cube of each structure, one for each recording.
+    """
+    units = [[h.fit.unit] * len(held_out) for h in hypotheses]
+    for number, h in enumerate(hypotheses):
+        phases = _phases(h)
+        if not phases.any():
+            continue
+        sine, cosine = np.flatnonzero(phases)[:2]
+        for which, experiment in enumerate(held_out):
+            problem = bench.problem(h.effects, step, [experiment])
+            amplitude = np.hypot(h.fit.unit[sine] - 0.5, h.fit.unit[cosine] - 0.5)
+            begun = []
+            for angle in 2.0 * np.pi * np.arange(PHASES) / PHASES:
+                unit = h.fit.unit.copy()
+                unit[sine], unit[cosine] = 0.5 + amplitude * np.cos(angle), 0.5 + amplitude * np.sin(angle)
+                begun.append(Place(problem, phases, unit))
+            first = sorted(descend(begun, 0, bench.pool, cores), key=lambda place: place.objective)[:2]
+            ended = descend(first, 6, bench.pool, cores, stop=bench.alive)
+            units[number][which] = min(ended, key=lambda place: place.objective).unit
+    return units

@@ -14,7 +14,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.fitting.lockstep import Place
 from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
-from hydrolek_drake.diagnosis.score import Across, Score, gain_of
+from hydrolek_drake.diagnosis.score import VISIBLE, Across, Score, gain_of
 from hydrolek_drake.diagnosis.structures.race import hypothesis_of
 from hydrolek_drake.diagnosis.structures.settings import Settings
 from hydrolek_drake.diagnosis.workbench import Workbench
@@ -107,9 +107,22 @@ def _promise(candidate: Candidate, rated: list, left: np.ndarray, settings: Sett
     for start in (by_what_is_left[0][3], scaled, *(each[3] for each in by_what_is_left[1:])):
         if start not in starts:
             starts.append(start)
-    moments = tuple({} for _ in ())
-    score = Score(candidate, best[0], starts[0], moments, by_what_is_left[0][1], float("inf"), best[4], left)
+    score = Score(
+        candidate, best[0], starts[0], (), by_what_is_left[0][1], _visible_from(candidate, rated), best[4], left
+    )
     return Promise(candidate, best[0], tuple(starts[: settings.starts]), score)
+
+
+def _visible_from(candidate: Candidate, rated: list) -> float:
+    """Size whose gain would be `VISIBLE`, in proportion to the larger sizes that were tried; a first estimate."""
+    sizes = [(each[3][candidate.size_path], float(each[4] @ each[4])) for each in rated]
+    largest = max((abs(size) for size, _ in sizes), default=0.0)
+    if candidate.weakens:
+        least = min((abs(size) for size, _ in sizes), default=0.0)
+        told = [size * (power / VISIBLE) ** 0.5 for size, power in sizes if 0.0 < power and size <= 10.0 * least]
+        return max(told, default=0.0)
+    told = [abs(size) * (VISIBLE / power) ** 0.5 for size, power in sizes if 0.0 < power and abs(size) >= 0.1 * largest]
+    return min(told, default=float("inf"))
 
 
 def _tried(candidate: Candidate, settings: Settings) -> list[dict[str, float]]:

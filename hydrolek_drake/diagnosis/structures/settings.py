@@ -72,5 +72,8 @@ class Settings:
     most_expansions: int = 8
     """So many structures are enlarged at most."""
 
+    patience: int = 3
+    """The search ends once so many rounds have not improved the best structure."""
+
     most_additions: int = 3
     beam: int = 2

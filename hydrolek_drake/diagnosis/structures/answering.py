@@ -1,0 +1,148 @@
+"""From data to a verdict: the search, the evidence, and what is told of the best structure."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from hydrolek_drake.diagnosis.attempt import PREDICTED, Known
+from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.diagnosis.conclusion import POSSIBLE, Conclusion, conclude
+from hydrolek_drake.diagnosis.effort import MORE_AHEAD
+from hydrolek_drake.diagnosis.evidence import judge_as_fitted
+from hydrolek_drake.diagnosis.found import Search
+from hydrolek_drake.diagnosis.inquiry import BY_BOTH, INTERRUPTED, Answer
+from hydrolek_drake.diagnosis.judged import Judged
+from hydrolek_drake.diagnosis.law_problem import FoundLaw
+from hydrolek_drake.diagnosis.locating.terms_for import terms_for
+from hydrolek_drake.diagnosis.splitting import mixed
+from hydrolek_drake.diagnosis.structures.found_law import law_of, terms_of
+from hydrolek_drake.diagnosis.structures.judging import judge_structures
+from hydrolek_drake.diagnosis.structures.searching import search_structures
+from hydrolek_drake.diagnosis.structures.settings import Settings
+from hydrolek_drake.diagnosis.weighing import weighted_by
+from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.effects.scales import Scales
+from hydrolek_drake.identification.experiment import Experiment
+
+
+@dataclass(frozen=True)
+class Inquiry:
+    """What is asked of one set of recordings.
+
+    Attributes:
+        candidates: every effect that may be missing.
+        scales: natural scales of the driven joints at which there may be a law.
+        apart: whether the held-out data are of another kind, not blocks among the rest.
+        say: told what is being done.
+        cores: that roll out at the same time.
+        settings: of the search.
+    """
+
+    candidates: Sequence[Candidate]
+    scales: Mapping[str, Scales]
+    apart: bool
+    say: Callable[[str], None]
+    cores: int
+    settings: Settings = Settings()
+
+    def answer(self, bench: Workbench, held_out: Sequence[Experiment]) -> Answer:
+        """Search and judge; an interrupt ends it with what is known by then.
+
+        Args:
+            bench: data and problems.
+            held_out: data that nothing is fitted to.
+
+        Raises:
+            KeyboardInterrupt: before the nominal model was fitted.
+        """
+        known, found = self._known(bench, held_out, Search())
+        remarks: tuple[str, ...] = ()
+        if not known.interrupted and self.apart and _astray(known):
+            # numbers that the training data do not tell, the held-out ones ask for
+            training, kept = mixed(known.bench.training, known.held_out)
+            both = known.bench.with_training(training)
+            known, found = self._known(both, kept, _begun_from(found))
+            remarks = (BY_BOTH,)
+        if known.interrupted:
+            remarks = (*remarks, INTERRUPTED)
+        conclusion, law = self._told(known)
+        return Answer(replace(known, conclusion=conclusion), conclusion, law, remarks)
+
+    def _known(
+        self, bench: Workbench, held_out: Sequence[Experiment], found: Search
+    ) -> tuple[Known, Search]:
+        """The search and its judgement."""
+        interrupted = False
+
+        def terms(bench: Workbench, parent: Hypothesis):  # type: ignore[no-untyped-def]
+            return terms_for(bench, parent, self.scales, self.cores)
+
+        try:
+            search_structures(
+                bench,
+                self.candidates,
+                found,
+                self.say,
+                self.settings,
+                self.cores,
+                terms if self.scales else None,
+            )
+        except KeyboardInterrupt:
+            if not found.hypotheses:
+                raise
+            interrupted = True
+            bench.resume()
+        self.say("holding the structures against data that none of them was fitted to")
+        weighted = tuple(held_out)
+        try:
+            weighted = tuple(weighted_by(bench, found.best, held_out))
+            bench.training = tuple(weighted_by(bench, found.best, bench.training))
+            judged = judge_structures(bench, found, weighted, self.settings, self.cores)
+        except KeyboardInterrupt:
+            interrupted = True
+            bench.resume()
+            judged = judge_as_fitted(bench, list(found.hypotheses.values()), weighted)
+        known = Known(bench, found, weighted, tuple(judged), conclude(judged), interrupted)
+        return known, found
+
+    def _told(self, known: Known) -> tuple[Conclusion, FoundLaw | None]:
+        """The conclusion, and the law of the best structure, if it has one."""
+        best = known.judged[0]
+        terms = terms_of(best.hypothesis)
+        if not terms:
+            return known.conclusion, None
+        stages = {terms[0].input.stage}
+        rivals = []
+        for other in known.judged[1:]:
+            theirs = terms_of(other.hypothesis)
+            if theirs and other.probability > POSSIBLE and theirs[0].input.stage not in stages:
+                stages.add(theirs[0].input.stage)
+                rivals.append(theirs[0].input.stage)
+        law = law_of(known.bench, best, known.held_out, rivals, self.cores)
+        named = _beside(known, best)
+        groups = (
+            (tuple(f"unlisted.{s}" for s in (terms[0].input.stage, *rivals)),) if rivals else ()
+        )
+        return replace(known.conclusion, verdict="unlisted_physics", best=named, groups=groups), law
+
+
+def _beside(known: Known, best: Judged) -> Judged:
+    """The structure that has the best one's effects and no law, which the report tells the law beside."""
+    effects = frozenset(c.size_path for c in best.hypothesis.effects if isinstance(c, Candidate))
+    for judged in known.judged:
+        if judged.hypothesis.ids == effects:
+            return judged
+    return next(j for j in known.judged if not j.hypothesis.effects)
+
+
+def _astray(known: Known) -> bool:
+    """Whether the best structure explains the training data and goes astray on the held-out ones."""
+    best = known.judged[0]
+    at_noise = best.hypothesis.fit.over_noise <= MORE_AHEAD
+    return at_noise and best.over_noise > PREDICTED
+
+
+def _begun_from(found: Search) -> Search:
+    """A search that goes on from what another one found."""
+    again = Search()
+    again.seeds = list(found.hypotheses.values())
+    return again

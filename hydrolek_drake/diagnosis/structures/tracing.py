@@ -1,0 +1,9 @@
+"""What a search does, for those who want to watch it: with HYDROLEK_TRACE=1 it is printed."""
+
+import os
+
+
+def trace(text: str) -> None:
+    """Print a line if it is wanted."""
+    if os.environ.get("HYDROLEK_TRACE"):
+        print(text, flush=True)
