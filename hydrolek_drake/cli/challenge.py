@@ -29,6 +29,9 @@ def challenge(
     workers: Annotated[
         int | None, typer.Option(help="threads; as many as there are cores by default")
     ] = None,
+    method: Annotated[
+        str, typer.Option(help="how structures are searched: rules, or evidence (in work)")
+    ] = "rules",
     earlier: Annotated[
         Path | None,
         typer.Option(
@@ -43,6 +46,8 @@ def challenge(
 
     Machines drawn and finished cases are kept and scored: the same command goes on where it was interrupted.
     """
+    if method not in (methods := ("rules", "evidence")):
+        raise InputError(f"--method {method}: choose {' or '.join(methods)}")
     for name, value in (("--cases", cases), ("--workers", workers), ("--first", first)):
         if value is not None and value < 1:
             raise InputError(f"{name} {value}: at least 1 is needed")
@@ -105,7 +110,7 @@ def challenge(
                         read_recording(folder / f"{side}.csv", machine.columns)
                         for side in ("train", "holdout")
                     ]
-                    done = diagnose(machine, recordings[:1], recordings[1:], pool)
+                    done = diagnose(machine, recordings[:1], recordings[1:], pool, method=method)
                     if INTERRUPTED in done.reasons:
                         raise KeyboardInterrupt
                     write_whole(report, json.dumps(as_json(done), indent=1))

@@ -36,6 +36,9 @@ def diagnose(
         float | None,
         typer.Option(metavar="MINUTES", help="end the search then, with what is known by that time"),
     ] = None,
+    method: Annotated[
+        str, typer.Option(help="how structures are searched: rules, or evidence (in work)")
+    ] = "rules",
     confirm: ConfirmOption = True,
     set_: SetOption = None,
     out: Annotated[
@@ -52,6 +55,8 @@ def diagnose(
         raise InputError(f"--workers {workers}: at least 1 is needed")
     if at_most is not None and not 0.0 < at_most < math.inf:
         raise InputError(f"--at-most {at_most:g}: minutes must be more than 0")
+    if method not in (methods := ("rules", "evidence")):
+        raise InputError(f"--method {method}: choose {' or '.join(methods)}")
     refuse_twice([*recordings, *(holdout or [])], "; held-out data must be other data")
     output = console()
     loaded, (train, held) = rig_and_recordings(rig, set_, recordings, holdout)
@@ -74,7 +79,9 @@ def diagnose(
 
         with ended_after(None if at_most is None else 60.0 * at_most) as limit:
             try:
-                done = run_diagnosis(loaded, train, held, pool, say=say, between=between)
+                done = run_diagnosis(
+                    loaded, train, held, pool, say=say, between=between, cores=count, method=method
+                )
             except KeyboardInterrupt:
                 if not limit.reached:
                     raise

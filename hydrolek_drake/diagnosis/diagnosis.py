@@ -13,6 +13,7 @@ from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig, room_for_law
 from hydrolek_drake.diagnosis.evidence import FINER, judge_given_up
 from hydrolek_drake.diagnosis.found import Search
+from hydrolek_drake.diagnosis import inquiry
 from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
 from hydrolek_drake.diagnosis.judged import Judged
@@ -22,7 +23,7 @@ from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
 from hydrolek_drake.diagnosis.moments import intervals_of_moments
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
 from hydrolek_drake.diagnosis.splitting import prepared
-from hydrolek_drake.diagnosis.structures.answering import Inquiry
+from hydrolek_drake.diagnosis.structures import answering
 from hydrolek_drake.diagnosis.visible import Visible, visible_sizes
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -30,6 +31,10 @@ from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import Free, free_of_joints
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
+
+
+RULES, EVIDENCE = METHODS = ("rules", "evidence")
+"""How structures are searched: by the rules of docs/diagnosis_method.md, or best first by evidence."""
 
 
 @dataclass(frozen=True)
@@ -100,6 +105,7 @@ def diagnose(
     say: Callable[[str], None] = lambda text: None,
     between: tuple[float, float] | None = None,
     cores: int = os.cpu_count() or 1,
+    method: str = RULES,
 ) -> Diagnosis:
     """Find out what physics a rig's model leaves out.
 
@@ -112,6 +118,7 @@ def diagnose(
         between: start and end of the part of the recordings that is fitted [s]; what lies outside is held out if
             there is no `holdout`. None for all.
         cores: that roll out at the same time.
+        method: one of `METHODS`.
 
     An interrupt during the search ends it; what is known by then is judged and returned with a reason.
 
@@ -121,7 +128,7 @@ def diagnose(
     """
     # fits run side by side already: threads of the linear algebra under each of them only wait for each other
     with threadpool_limits(limits=1, user_api="blas"):
-        return _diagnosed(rig, recordings, holdout, pool, say, between, cores)
+        return _diagnosed(rig, recordings, holdout, pool, say, between, cores, method)
 
 
 def _diagnosed(
@@ -132,6 +139,7 @@ def _diagnosed(
     say: Callable[[str], None],
     between: tuple[float, float] | None,
     cores: int,
+    method: str,
 ) -> Diagnosis:
     """See `diagnose`."""
     begun = clock.perf_counter()
@@ -146,14 +154,14 @@ def _diagnosed(
     candidates = list(
         {c.size_path: c for joint in joints for c in candidates_of(rig, joint, scales[joint])}.values()
     )
-    inquiry = Inquiry(
-        candidates,
-        {joint: scales[joint] for joint in joints if room_for_law(rig, joint)},
-        apart=bool(holdout) or between is not None,
-        say=say,
-        cores=cores,
-    )
-    answer = inquiry.answer(bench, held_out)
+    lawful = {joint: scales[joint] for joint in joints if room_for_law(rig, joint)}
+    apart = bool(holdout) or between is not None
+    asked: answering.Inquiry | inquiry.Inquiry
+    if method == EVIDENCE:
+        asked = answering.Inquiry(candidates, lawful, apart, say, cores)
+    else:
+        asked = inquiry.Inquiry(candidates, lawful, several=len(joints) > 1, apart=apart, say=say)
+    answer = asked.answer(bench, held_out)
     known, conclusion, law, remarks = answer.known, answer.conclusion, answer.law, answer.remarks
     bench, held_out, found, judged = known.bench, known.held_out, known.found, known.judged
     best = conclusion.best.hypothesis

@@ -1,6 +1,7 @@
 """Terms of laws that may be added to a structure."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -8,6 +9,7 @@ from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
 from hydrolek_drake.diagnosis.law_inputs import Input, inputs_of
 from hydrolek_drake.diagnosis.laws import Span, span_of
 from hydrolek_drake.diagnosis.locating.law_forms import terms_seen
+from hydrolek_drake.diagnosis.locating.lost import share_lost
 from hydrolek_drake.diagnosis.locating.unknown_input import unknown_inputs
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -27,8 +29,23 @@ EACH = 3
 OFFERED = 20
 
 
-def terms_for(bench: Workbench, parent: Hypothesis, scales: Mapping[str, Scales], cores: int) -> list[LawTerm]:
-    """Terms that promise most beside a structure, the best first.
+@dataclass(frozen=True)
+class Offer:
+    """What in no list may explain what a structure leaves.
+
+    Attributes:
+        terms: of laws, the most promising first.
+        lost: which share of it commands that got lost would take.
+        span: what laws are told in.
+    """
+
+    terms: tuple[LawTerm, ...]
+    lost: float
+    span: Span
+
+
+def terms_for(bench: Workbench, parent: Hypothesis, scales: Mapping[str, Scales], cores: int) -> Offer:
+    """Terms that promise most beside a structure, and what lost commands do.
 
     Args:
         bench: data and problems.
@@ -56,7 +73,11 @@ def terms_for(bench: Workbench, parent: Hypothesis, scales: Mapping[str, Scales]
     for term in ranked:
         taken[term.input.probe] = taken.get(term.input.probe, 0) + 1
         (first if taken[term.input.probe] <= EACH else rest).append(term)
-    return [*first, *rest][: max(OFFERED, len(first))]
+    lost = 0.0
+    if not parent.effects:
+        command = next(u for u in seen.unknowns if u.input.probe == "command")
+        lost = share_lost(command, bench.training, float(record["command"]["neutral"]), problem.counted)
+    return Offer(tuple([*first, *rest][: max(OFFERED, len(first))]), lost, span)
 
 
 def _inputs(bench: Workbench, joint: str, scales: Scales) -> tuple[Input, ...]:

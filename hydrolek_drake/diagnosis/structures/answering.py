@@ -5,14 +5,17 @@ from dataclasses import dataclass, replace
 
 from hydrolek_drake.diagnosis.attempt import PREDICTED, Known
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.diagnosis.conclusion import POSSIBLE, Conclusion, conclude
-from hydrolek_drake.diagnosis.effort import MORE_AHEAD
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED, POSSIBLE, Conclusion, conclude
+from hydrolek_drake.diagnosis.effort import COARSE, MORE_AHEAD
 from hydrolek_drake.diagnosis.evidence import judge_as_fitted
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.inquiry import BY_BOTH, INTERRUPTED, Answer
 from hydrolek_drake.diagnosis.judged import Judged
+from hydrolek_drake.diagnosis.law_choice import alone
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
-from hydrolek_drake.diagnosis.locating.terms_for import terms_for
+from hydrolek_drake.diagnosis.laws import Span
+from hydrolek_drake.diagnosis.locating.terms_for import Offer, terms_for
+from hydrolek_drake.diagnosis.lost_commands import lost_commands
 from hydrolek_drake.diagnosis.splitting import mixed
 from hydrolek_drake.diagnosis.structures.found_law import law_of, terms_of
 from hydrolek_drake.diagnosis.structures.judging import judge_structures
@@ -73,9 +76,6 @@ class Inquiry:
         """The search and its judgement."""
         interrupted = False
 
-        def terms(bench: Workbench, parent: Hypothesis):  # type: ignore[no-untyped-def]
-            return terms_for(bench, parent, self.scales, self.cores)
-
         try:
             search_structures(
                 bench,
@@ -84,7 +84,7 @@ class Inquiry:
                 self.say,
                 self.settings,
                 self.cores,
-                terms if self.scales else None,
+                _Unlisted(self.scales, held_out, self.cores) if self.scales else None,
             )
         except KeyboardInterrupt:
             if not found.hypotheses:
@@ -108,6 +108,9 @@ class Inquiry:
         """The conclusion, and the law of the best structure, if it has one."""
         best = known.judged[0]
         terms = terms_of(best.hypothesis)
+        lost = known.found.law
+        if lost is not None and lost.fit.over_noise < best.hypothesis.fit.over_noise:
+            return alone(known.conclusion, known.judged, lost), lost
         if not terms:
             return known.conclusion, None
         stages = {terms[0].input.stage}
@@ -123,6 +126,22 @@ class Inquiry:
             (tuple(f"unlisted.{s}" for s in (terms[0].input.stage, *rivals)),) if rivals else ()
         )
         return replace(known.conclusion, verdict="unlisted_physics", best=named, groups=groups), law
+
+
+@dataclass(frozen=True)
+class _Unlisted:
+    """Physics in no list; see `searching.Unlisted`."""
+
+    scales: Mapping[str, Scales]
+    held_out: Sequence[Experiment]
+    cores: int
+
+    def offer(self, bench: Workbench, parent: Hypothesis) -> Offer:
+        return terms_for(bench, parent, self.scales, self.cores)
+
+    def lost(self, bench: Workbench, parent: Hypothesis, span: Span) -> FoundLaw | None:
+        step = bench.coarsest(parent, parent.fit.over_noise, COARSE)
+        return lost_commands(bench, parent, self.held_out, span, step, 0.0, EXPLAINED)
 
 
 def _beside(known: Known, best: Judged) -> Judged:

@@ -21,7 +21,7 @@ from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import cost_of
 from hydrolek_drake.diagnosis.judged import SMALL, Judged, with_probabilities
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
-from hydrolek_drake.diagnosis.structures.race import Entrant, race
+from hydrolek_drake.diagnosis.structures.race import Entrant, problem_with, race
 from hydrolek_drake.diagnosis.structures.settings import Settings
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -70,7 +70,7 @@ def _predicted(
     places = []
     for h, own in zip(hypotheses, units, strict=True):
         for experiment, unit in zip(held_out, own, strict=True):
-            problem = bench.problem(h.effects, step, [experiment])
+            problem = problem_with(bench, h.effects, step, [experiment])
             places.append(Place(problem, bench.movable(h.effects, problem.parameters), unit, exact=True))
     told = iter(with_slopes(places, bench.pool, cores))
     judged, far = [], []
@@ -89,7 +89,7 @@ def _predicted(
     begun = []
     for i in chosen:
         h = judged[i].hypothesis
-        problem = bench.problem(h.effects, step, both)
+        problem = problem_with(bench, h.effects, step, both)
         begun.append(Place(problem, bench.movable(h.effects, problem.parameters), h.fit.unit))
     for i, place in zip(chosen, descend(begun, 6, bench.pool, cores, stop=bench.alive), strict=True):
         beyond = max(place.objective - judged[i].hypothesis.fit.objective, 0.0)
@@ -129,7 +129,7 @@ def units_ahead(
             continue
         sine, cosine = np.flatnonzero(phases)[:2]
         for which, experiment in enumerate(held_out):
-            problem = bench.problem(h.effects, step, [experiment])
+            problem = problem_with(bench, h.effects, step, [experiment])
             amplitude = np.hypot(h.fit.unit[sine] - 0.5, h.fit.unit[cosine] - 0.5)
             begun = []
             for angle in 2.0 * np.pi * np.arange(PHASES) / PHASES:

@@ -6,6 +6,7 @@ the squares if the addition takes its best multiple is (e . r)^2 / (e . e), both
 with finite differences, which also sees what begins like a play.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -15,7 +16,7 @@ from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.fitting.lockstep import Place
 from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
 from hydrolek_drake.diagnosis.score import VISIBLE, Across, Score, gain_of
-from hydrolek_drake.diagnosis.structures.race import hypothesis_of
+from hydrolek_drake.diagnosis.structures.race import hypothesis_of, problem_with
 from hydrolek_drake.diagnosis.structures.settings import Settings
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.problem import Problem
@@ -64,7 +65,9 @@ def promises_at(
     values = here_problem.parameters.values(place.unit)
     tried = [(c, start) for c in candidates for start in _tried(c, settings)]
     problems: dict[str, Problem] = {
-        c.size_path: bench.problem((*effects, c), step, here_problem.experiments, here_problem.pull_time)
+        c.size_path: problem_with(
+            bench, (*effects, c), step, here_problem.experiments, here_problem.pull_time or math.inf
+        )
         for c in candidates
     }
     units: dict[str, list[np.ndarray]] = {c.size_path: [] for c in candidates}

@@ -14,8 +14,10 @@ from hydrolek_drake.diagnosis.fitting.line_search import Along, searched_along
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
 from hydrolek_drake.diagnosis.structures.settings import Rung
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.problem_together import ProblemTogether
 
 EDGE = 1e-6
 
@@ -172,12 +174,32 @@ def _best_of_each(runners: Sequence[Runner], count: int) -> list[Runner]:
 def problem_of(bench: Workbench, effects: tuple[Candidate, ...], rung: Rung) -> Problem:
     """Residuals of a structure on a rung."""
     data = bench.training if math.isinf(rung.seconds) else [e.until(rung.seconds) for e in bench.training]
-    observer = None if math.isinf(rung.observer_s) else rung.observer_s
-    return bench.problem(effects, rung.coarse * bench.fine, data, observer)
+    return problem_with(bench, effects, rung.coarse * bench.fine, data, rung.observer_s)
+
+
+def problem_with(
+    bench: Workbench,
+    effects: tuple[Candidate, ...],
+    step: float,
+    experiments: Sequence[Experiment],
+    observer_s: float = math.inf,
+) -> Problem:
+    """Residuals of a structure; joints that move together are all rolled out at once.
+
+    Args:
+        bench: data.
+        effects: of the structure.
+        step: of the integration [s].
+        experiments: what must be followed.
+        observer_s: time constant of the observer [s]; infinite for free rollouts.
+    """
+    kind = ProblemTogether if any(e.others is not None for e in experiments) else Problem
+    observer = None if math.isinf(observer_s) else observer_s
+    return bench.problem(effects, step, experiments, observer, kind=kind)
 
 
 def _begun(bench: Workbench, entrant: Entrant) -> Runner:
-    problem = bench.problem(entrant.effects, bench.fine)
+    problem = problem_with(bench, entrant.effects, bench.fine, bench.training)
     moving = bench.movable(entrant.effects, problem.parameters)
     unit = problem.parameters.unit(entrant.values)
     unit[moving] = np.clip(unit[moving], EDGE, 1.0 - EDGE)

@@ -2,11 +2,16 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Protocol
 
 from hydrolek_drake.diagnosis.candidates import Candidate
+from hydrolek_drake.diagnosis.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.effort import ABOVE_NOISE
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import PROMISING, cost_of, gain_needed
+from hydrolek_drake.diagnosis.law_problem import FoundLaw
+from hydrolek_drake.diagnosis.laws import Span
+from hydrolek_drake.diagnosis.locating.terms_for import Offer
 from hydrolek_drake.diagnosis.structures.enlarging import Opening, enlarged, opened
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.structures.race import Entrant, race
@@ -15,7 +20,22 @@ from hydrolek_drake.diagnosis.structures.tracing import trace
 from hydrolek_drake.diagnosis.weighing import weighted_by
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
-Terms = Callable[[Workbench, Hypothesis], Sequence[LawTerm]]
+
+
+EFFECTS, LAWS, LOST = "effects", "laws", "lost commands"
+"""What structures are enlarged by."""
+
+
+class Unlisted(Protocol):
+    """Physics in no list that may be beside a structure."""
+
+    def offer(self, bench: Workbench, parent: Hypothesis) -> Offer:
+        """What may explain what a structure leaves."""
+        ...
+
+    def lost(self, bench: Workbench, parent: Hypothesis, span: Span) -> FoundLaw | None:
+        """Commands that got lost, fitted beside a structure."""
+        ...
 
 
 def search_structures(
@@ -25,7 +45,7 @@ def search_structures(
     say: Callable[[str], None],
     settings: Settings,
     cores: int,
-    terms: Terms | None = None,
+    unlisted: Unlisted | None = None,
 ) -> None:
     """Fill what is found.
 
@@ -36,7 +56,7 @@ def search_structures(
         say: told what is being done.
         settings: of the search.
         cores: that roll out at the same time.
-        terms: of laws that may be beside a structure; None for none.
+        unlisted: physics in no list; None for none.
     """
     say("fitting the nominal model")
     _nominal(bench, found, settings, cores)
@@ -44,10 +64,18 @@ def search_structures(
     seen: dict[tuple[frozenset[str], str], Opening] = {}
     for _ in range(settings.most_expansions):
         openings = []
-        for parent, kind in _open(found, done, settings, laws=terms is not None):
+        for parent, kind in _open(found, done, settings, laws=unlisted is not None):
             key = (parent.ids, kind)
             if key not in seen or seen[key].parent is not parent:
-                own = candidates if kind == "effects" or terms is None else terms(bench, parent)
+                own: Sequence[Candidate | LawTerm] = candidates
+                if kind == LAWS and unlisted is not None:
+                    offer = unlisted.offer(bench, parent)
+                    own = offer.terms
+                    if offer.lost > settings.lost and found.law is None and (parent.ids, LOST) not in done:
+                        done.add((parent.ids, LOST))
+                        found.law = unlisted.lost(bench, parent, offer.span)
+                        if found.law is not None and found.law.fit.over_noise <= EXPLAINED:
+                            return
                 seen[key] = opened(bench, parent, kind, own, found, settings, cores)
             openings.append(seen[key])
         openings = [each for each in openings if _worth_while(each)]
@@ -70,11 +98,11 @@ def _open(
     The nominal model is enlarged by effects first, and the best one only once it leaves nothing above the noise.
     """
     best = found.best
-    if (frozenset(), "effects") not in done:
-        return [(found.baseline, "effects")]
+    if (frozenset(), EFFECTS) not in done:
+        return [(found.baseline, EFFECTS)]
     if best.fit.over_noise <= ABOVE_NOISE:
         lawful = any(isinstance(c, LawTerm) for c in best.effects)
-        items = [(best, "laws" if lawful else "effects")]
+        items = [(best, LAWS if lawful else EFFECTS)]
     else:
         items = []
         sizes: dict[int, int] = {}
@@ -85,9 +113,9 @@ def _open(
             if beyond or (h.effects and cost_of(h) >= cost_of(found.baseline)):
                 continue
             if not any(isinstance(c, LawTerm) for c in h.effects):
-                items.append((h, "effects"))
+                items.append((h, EFFECTS))
             if laws:
-                items.append((h, "laws"))
+                items.append((h, LAWS))
     return [(h, kind) for h, kind in items if (h.ids, kind) not in done]
 
 
@@ -96,7 +124,7 @@ def _worth_while(opening: Opening) -> bool:
     fit = opening.parent.fit
     if not opening.own:
         return False
-    return fit.over_noise > ABOVE_NOISE or opening.promising >= PROMISING * gain_needed(fit)
+    return fit.over_noise > ABOVE_NOISE or opening.promising >= PROMISING * opening.own[0].cost * gain_needed(fit)
 
 
 def _nominal(bench: Workbench, found: Search, settings: Settings, cores: int) -> None:

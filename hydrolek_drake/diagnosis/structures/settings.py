@@ -75,5 +75,9 @@ class Settings:
     patience: int = 3
     """The search ends once so many rounds have not improved the best structure."""
 
+    lost: float = 0.5
+    """Commands that got lost are fitted if they promise this share of what is left above the noise: they have two
+    numbers for every time, and take minutes to fit."""
+
     most_additions: int = 3
     beam: int = 2

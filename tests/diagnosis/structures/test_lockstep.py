@@ -1,0 +1,65 @@
+"""Many fits in lockstep: each ends where it would alone, and where scipy's ends."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.diagnosis.fitting.line_search import Along, searched_along
+from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
+from hydrolek_drake.identification.least_squares import fit_from
+from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
+from hydrolek_drake.identification.problem import Problem
+
+
+@pytest.fixture
+def problem(bench, recorded):
+    free = [each for each in free_parameters(bench) if "max_area" in each.path or "viscous" in each.path]
+    return Problem(ParameterSet(bench, free), recorded(bench, bench), 1e-3)
+
+
+def _begun(problem: Problem, by: float) -> Place:
+    moving = np.ones(len(problem.parameters), dtype=bool)
+    unit = np.clip(problem.parameters.unit() + by, 0.0, 1.0)
+    return Place(problem, moving, unit)
+
+
+def test_fits_end_where_scipys_do_whatever_runs_beside_them(problem) -> None:
+    starts = [_begun(problem, by) for by in (0.1, -0.05, 0.2)]
+    with ThreadPoolExecutor(2) as pool:
+        together = descend(starts, 25, pool, 2, worth=1e-3, share=0.0)
+        alone = [descend([start], 25, pool, 2, worth=1e-3, share=0.0)[0] for start in starts]
+    reference = fit_from(problem, starts[0].unit, most_steps=40, tolerance=1e-9)
+    for place, same in zip(together, alone, strict=True):
+        np.testing.assert_array_equal(place.unit, same.unit)
+        assert place.objective == pytest.approx(reference.objective, abs=1.0)
+
+
+def test_what_is_held_stays(problem) -> None:
+    start = _begun(problem, 0.1)
+    moving = start.moving.copy()
+    moving[0] = False
+    with ThreadPoolExecutor(2) as pool:
+        [ended] = descend([Place(problem, moving, start.unit)], 5, pool, 2)
+    assert ended.unit[0] == start.unit[0]
+    assert np.all(ended.unit[1:] != start.unit[1:])
+
+
+def test_a_fit_stays_within_its_ranges(problem) -> None:
+    with ThreadPoolExecutor(2) as pool:
+        [ended] = descend([_begun(problem, 1.0)], 5, pool, 2)
+    assert np.all((0.0 <= ended.unit) & (ended.unit <= 1.0))
+
+
+def test_a_search_along_one_parameter_takes_the_others_with_it(problem) -> None:
+    """From a bottom nothing is lower; from a place beside it the search comes nearly to the bottom in one go."""
+    with ThreadPoolExecutor(2) as pool:
+        [bottom] = descend([_begun(problem, 0.05)], 25, pool, 2, worth=1e-3, share=0.0)
+        [led] = descend([_begun(problem, 0.05)], 1, pool, 2)
+        values = np.linspace(0.05, 0.95, 19)
+        [same] = searched_along([bottom], [Along(0, values)], pool, 2)
+        away = Place(problem, led.moving, led.unit + 0.2 * np.eye(led.unit.size)[0], slopes=led.slopes)
+        [away] = descend([away], 0, pool, 2)
+        [found] = searched_along([away], [Along(0, np.append(values, bottom.unit[0]))], pool, 2)
+    assert same is bottom
+    assert found.objective < 0.2 * away.objective
