@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 
 from threadpoolctl import threadpool_limits
 
+from hydrolek_drake.diagnosis import inquiry
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import Conclusion
 from hydrolek_drake.diagnosis.enlarged import enlarged_rig, room_for_law
 from hydrolek_drake.diagnosis.evidence import FINER, judge_given_up
 from hydrolek_drake.diagnosis.found import Search
-from hydrolek_drake.diagnosis import inquiry
 from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
 from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
 from hydrolek_drake.diagnosis.judged import Judged
@@ -31,7 +31,6 @@ from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import Free, free_of_joints
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
-
 
 RULES, EVIDENCE = METHODS = ("rules", "evidence")
 """How structures are searched: by the rules of docs/diagnosis_method.md, or best first by evidence."""

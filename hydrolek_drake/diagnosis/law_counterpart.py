@@ -34,7 +34,9 @@ def counterpart(
     other = next((i for i in inputs if i.stage == _OTHER.get(law.input.stage)), None)
     if other is None or law.periodic:
         return None
-    seen, lever = (np.concatenate(parts) for parts in zip(*(seen_by_laws(s, record) for s in signals), strict=True))
+    seen, lever = (
+        np.concatenate(parts) for parts in zip(*(seen_by_laws(s, record) for s in signals), strict=True)
+    )
     over = lever if law.input.stage == "cylinder" else 1.0 / lever
     wanted = over * sum(law_along(row, seen) for row in records_of(law, found.span, found.values))
     terms = law.at(found.values).terms

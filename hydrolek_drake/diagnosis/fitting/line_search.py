@@ -28,7 +28,9 @@ class Along:
     units: np.ndarray
 
 
-def searched_along(places: Sequence[Place], ways: Sequence[Along | None], pool: Executor, cores: int) -> list[Place]:
+def searched_along(
+    places: Sequence[Place], ways: Sequence[Along | None], pool: Executor, cores: int
+) -> list[Place]:
     """Each place, or the lowest of those that were tried from it.
 
     Args:
@@ -45,14 +47,18 @@ def searched_along(places: Sequence[Place], ways: Sequence[Along | None], pool: 
             unit[way.index] = value  # type: ignore[union-attr]
             units.append(unit)
         moved.append(units)
-    found = residuals_at([Request(p.problem, tuple(u)) for p, u in zip(places, moved, strict=True)], pool, cores)
+    found = residuals_at(
+        [Request(p.problem, tuple(u)) for p, u in zip(places, moved, strict=True)], pool, cores
+    )
     followed = [
         [_followed(place, way.index, unit, residuals) for unit, residuals in zip(units, own, strict=True)]
         if way is not None
         else []
         for place, way, units, own in zip(places, ways, moved, found, strict=True)
     ]
-    again = residuals_at([Request(p.problem, tuple(u)) for p, u in zip(places, followed, strict=True)], pool, cores)
+    again = residuals_at(
+        [Request(p.problem, tuple(u)) for p, u in zip(places, followed, strict=True)], pool, cores
+    )
     best = []
     for place, units, own, others, theirs in zip(places, moved, found, followed, again, strict=True):
         reached = [

@@ -61,7 +61,11 @@ class Place:
 
     def at(self, problem: Problem) -> "Place":
         """The same place of another problem of the same parameters, led by the same slopes if it has as many values."""
-        if self.slopes is None or _values_of(problem) != len(self.slopes) or problem.pull_time != self.problem.pull_time:
+        if (
+            self.slopes is None
+            or _values_of(problem) != len(self.slopes)
+            or problem.pull_time != self.problem.pull_time
+        ):
             return Place(problem, self.moving, self.unit, damping=self.damping)
         return Place(problem, self.moving, self.unit, slopes=self.slopes, damping=self.damping)
 
@@ -118,9 +122,7 @@ def _with_residuals(places: Sequence[Place], pool: Executor, cores: int) -> list
     return now
 
 
-def with_slopes(
-    places: Sequence[Place], pool: Executor, cores: int, leading: float = 2.0
-) -> list[Place]:
+def with_slopes(places: Sequence[Place], pool: Executor, cores: int, leading: float = 2.0) -> list[Place]:
     """The same places with slopes where they are not known, and residuals."""
     requests: list[Request] = []
     wanted = [_unknown(place) for place in places]
@@ -139,7 +141,11 @@ def with_slopes(
         if columns.size:
             assert place.residuals is not None
             steps = requests[2 * number + 1].problem.differences(place.unit)
-            slopes = np.zeros((place.residuals.size, place.unit.size)) if place.slopes is None else place.slopes.copy()
+            slopes = (
+                np.zeros((place.residuals.size, place.unit.size))
+                if place.slopes is None
+                else place.slopes.copy()
+            )
             there, *moved_there = beside
             for i, value in zip(columns, moved_there, strict=True):
                 slopes[:, i] = (value - there) / steps[i]
@@ -158,13 +164,19 @@ def _unknown(place: Place) -> np.ndarray:
 def _stepped(places: Sequence[Place], pool: Executor, cores: int, worth: float, share: float) -> list[Place]:
     """Each place after one step: the best of several dampings."""
     plans = [_Normal(place) for place in places]
-    ways = [[plan.step(place.damping * times) for times in TRIED] for plan, place in zip(plans, places, strict=True)]
+    ways = [
+        [plan.step(place.damping * times) for times in TRIED]
+        for plan, place in zip(plans, places, strict=True)
+    ]
     tried = [
         [way for way in own if plan.promised(way) > max(worth, share * place.objective)]
         for own, plan, place in zip(ways, plans, places, strict=True)
     ]
     answers = residuals_at(
-        [Request(p.problem, tuple(p.unit + way for way in own)) for p, own in zip(places, tried, strict=True)],
+        [
+            Request(p.problem, tuple(p.unit + way for way in own))
+            for p, own in zip(places, tried, strict=True)
+        ],
         pool,
         cores,
     )
@@ -174,7 +186,11 @@ def _stepped(places: Sequence[Place], pool: Executor, cores: int, worth: float, 
             # what slopes of another place promise nothing of, new ones may
             now.append(_with_better_slopes(place) or replace(place, ended=True))
             continue
-        dampings = [place.damping * times for way, times in zip(every, TRIED, strict=True) if any(way is w for w in own)]
+        dampings = [
+            place.damping * times
+            for way, times in zip(every, TRIED, strict=True)
+            if any(way is w for w in own)
+        ]
         reached = [
             replace(place, unit=np.clip(place.unit + way, 0.0, 1.0), residuals=residuals, fresh=False)
             for way, residuals in zip(own, found, strict=True)

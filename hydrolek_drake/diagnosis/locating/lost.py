@@ -11,8 +11,8 @@ WINDOW = 2
 """Knots that a window spans: about a tenth of a second."""
 
 GAIN = 25.0
-"""Fall of the squares, over what is left of each value on average, that a window must promise: five standard deviations,
-since hundreds are tried."""
+"""Fall of the squares, over what is left of each value on average, that a window must promise: five standard
+deviations, since hundreds are tried."""
 
 WHOLE = 1.2
 """Multiple of a command that may be missing: there is no more in it to be lost but for the observer's own error."""

@@ -17,8 +17,8 @@ from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.rollout.rollout import Signals
 
 OBSERVER_S = 0.3
-"""Time constant of the observer whose innovations tell of unknown inputs [s]: longer than a valve takes to open, and far
-shorter than a move."""
+"""Time constant of the observer whose innovations tell of unknown inputs [s]: longer than a valve takes to open, and
+far shorter than a move."""
 
 FITTED = 3
 """Steps by which the structure's own parameters are fitted to these innovations before."""
@@ -69,7 +69,8 @@ def terms_for(bench: Workbench, parent: Hypothesis, scales: Mapping[str, Scales]
     ranked = [term for gain, term in terms_seen(seen, record, joint, span) if gain > 0.0]
     ranked = [term for term in ranked if term.size_path not in parent.ids]
     taken: dict[str, int] = {}
-    first, rest = [], []
+    first: list[LawTerm] = []
+    rest: list[LawTerm] = []
     for term in ranked:
         taken[term.input.probe] = taken.get(term.input.probe, 0) + 1
         (first if taken[term.input.probe] <= EACH else rest).append(term)

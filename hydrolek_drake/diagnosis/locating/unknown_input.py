@@ -1,15 +1,16 @@
 """An unknown input at each stage, estimated from the innovations of an observer.
 
 An input u(t) on straight lines between knots changes the innovations by A u, with a small u. An observer forgets within
-some of its time constants T, so that knots which lie far enough apart can be moved in one rollout: the columns of A of all
-knots take as many rollouts as there are knots within that time (a coloured Jacobian; Curtis, Powell, Reid, IMA Journal
-of Applied Mathematics 13 (1974) 117). What the structure's own parameters undo is projected away. With a prior of variance
-s^2 for each knot
+some of its time constants T, so that knots which lie far enough apart can be moved in one rollout: the columns of A of
+all knots take as many rollouts as there are knots within that time (a coloured Jacobian; Curtis, Powell, Reid, IMA
+Journal of Applied Mathematics 13 (1974) 117). What the structure's own parameters undo is projected away. With r the
+innovations, g = A' r, N = A' A and a prior of variance s^2 for each knot
 
-    u = -(N + I / s^2)^-1 A' r,    N = A' A        and        2 log p(r) - 2 log p0(r) = g' (N + I / s^2)^-1 g - log det (I + s^2 N)
+    u = -(N + I / s^2)^-1 g
+    2 log p(r) - 2 log p0(r) = g' (N + I / s^2)^-1 g - log det (I + s^2 N)
 
-with g = A' r, r the innovations (ridge regression, and its marginal likelihood; MacKay 1992): s is the most likely one,
-and stages are compared by that likelihood.
+(ridge regression and its marginal likelihood; MacKay, Bayesian interpolation, Neural Computation 4, 1992). The most
+likely s is taken, and stages are compared by that likelihood.
 """
 
 from collections.abc import Sequence
@@ -83,7 +84,9 @@ class Unknown:
         top = max(float(values[-1]), np.finfo(float).tiny)
         best: tuple[float, float] = (0.0, 0.0)
         for variance in np.geomspace(1e-4, 1e6, 41) / top:
-            gain = float(np.sum(turned**2 / (values + 1.0 / variance))) - float(np.sum(np.log1p(variance * values)))
+            gain = float(np.sum(turned**2 / (values + 1.0 / variance))) - float(
+                np.sum(np.log1p(variance * values))
+            )
             if gain > best[0]:
                 best = (gain, variance)
         gain, variance = best
@@ -218,6 +221,7 @@ def _response(
         row_indices.append(rows_here)
         pointers.append(pointers[-1] + rows_here.size)
     matrix = csc_matrix(
-        (np.concatenate(data), np.concatenate(row_indices), np.array(pointers)), shape=(channels * samples, count)
+        (np.concatenate(data), np.concatenate(row_indices), np.array(pointers)),
+        shape=(channels * samples, count),
     )
     return matrix, time[0] + SPACING_S * np.arange(count)

@@ -1,7 +1,7 @@
 """From data to a verdict: the search, the evidence, and what is told of the best structure."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from hydrolek_drake.diagnosis.attempt import PREDICTED, Known
 from hydrolek_drake.diagnosis.candidates import Candidate
@@ -45,7 +45,7 @@ class Inquiry:
     apart: bool
     say: Callable[[str], None]
     cores: int
-    settings: Settings = Settings()
+    settings: Settings = field(default_factory=Settings)
 
     def answer(self, bench: Workbench, held_out: Sequence[Experiment]) -> Answer:
         """Search and judge; an interrupt ends it with what is known by then.
@@ -70,9 +70,7 @@ class Inquiry:
         conclusion, law = self._told(known)
         return Answer(replace(known, conclusion=conclusion), conclusion, law, remarks)
 
-    def _known(
-        self, bench: Workbench, held_out: Sequence[Experiment], found: Search
-    ) -> tuple[Known, Search]:
+    def _known(self, bench: Workbench, held_out: Sequence[Experiment], found: Search) -> tuple[Known, Search]:
         """The search and its judgement."""
         interrupted = False
 
@@ -122,9 +120,7 @@ class Inquiry:
                 rivals.append(theirs[0].input.stage)
         law = law_of(known.bench, best, known.held_out, rivals, self.cores)
         named = _beside(known, best)
-        groups = (
-            (tuple(f"unlisted.{s}" for s in (terms[0].input.stage, *rivals)),) if rivals else ()
-        )
+        groups = (tuple(f"unlisted.{s}" for s in (terms[0].input.stage, *rivals)),) if rivals else ()
         return replace(known.conclusion, verdict="unlisted_physics", best=named, groups=groups), law
 
 

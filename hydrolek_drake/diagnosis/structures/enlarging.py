@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -34,7 +35,7 @@ class Opening:
 
     parent: Hypothesis
     kind: str
-    own: tuple[Candidate, ...]
+    own: tuple[Any, ...]
     free: tuple[Promise, ...]
     pulled: tuple[Promise, ...]
     sizes: dict[str, float]
@@ -55,7 +56,7 @@ def opened(
     bench: Workbench,
     parent: Hypothesis,
     kind: str,
-    additions: Sequence[Candidate],
+    additions: Sequence[Any],
     found: Search,
     settings: Settings,
     cores: int,
@@ -66,7 +67,7 @@ def opened(
         bench: data and problems.
         parent: the structure, fitted.
         kind: "effects" or "laws".
-        additions: of that kind.
+        additions: effects, or terms of laws.
         found: receives the scores of effects.
         settings: of the search.
         cores: that roll out at the same time.

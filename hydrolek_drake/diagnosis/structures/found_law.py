@@ -8,10 +8,12 @@ import numpy as np
 from hydrolek_drake.diagnosis.intervals import intervals_of
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_problem import SCAN_S, FoundLaw, Law
+from hydrolek_drake.diagnosis.laws import Term
 from hydrolek_drake.diagnosis.structures.judging import units_ahead
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.physics.law import PLACED
 
 
@@ -36,14 +38,7 @@ def law_of(
     terms = terms_of(h)
     first = terms[0]
     periodic = first.term is None
-    forms = tuple(
-        replace(
-            t.term,
-            **{name: h.values[f"{t.path}.{name}"] for name in PLACED.get(t.term.place, ())},
-        )
-        for t in terms
-        if t.term is not None
-    )
+    forms = tuple(_as_fitted(t, h) for t in terms if t.term is not None)
     law = Law(first.input, () if periodic else forms, first.frequency if periodic else 0.0, 0.0, (0.0,))
     paths = list(h.values)
     order = [paths.index(t.size_path) for t in terms]
@@ -85,7 +80,16 @@ def law_of(
     )
 
 
-def _told(h: Hypothesis, terms: Sequence[LawTerm], order: list[int], rest: list[int]):  # type: ignore[no-untyped-def]
+def _as_fitted(term: LawTerm, h: Hypothesis) -> Term:
+    """The form of a term, where it was fitted."""
+    assert term.term is not None
+    own = PLACED.get(term.term.place, ())
+    centre = h.values[f"{term.path}.centre"] if "centre" in own else term.term.centre
+    reach = h.values[f"{term.path}.reach"] if "reach" in own else term.term.reach
+    return replace(term.term, centre=centre, reach=reach)
+
+
+def _told(h: Hypothesis, terms: Sequence[LawTerm], order: list[int], rest: list[int]) -> Fit:
     """The fit with the terms' parameters last, on the scales that `law_intervals` takes them in."""
     scales = np.ones(len(h.fit.unit))
     for term in terms:

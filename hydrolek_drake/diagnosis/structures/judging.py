@@ -55,14 +55,20 @@ def _contenders(found: Search) -> list[Hypothesis]:
     """Those that may still be right, always with the nominal model and the best one less one addition."""
     best = found.best
     ranked = sorted(found.hypotheses.values(), key=cost_of)
-    near = [h for h in ranked if 0.5 * (cost_of(h) - cost_of(best)) < max(OUT_OF_REACH, 0.05 * best.fit.objective)]
+    near = [
+        h for h in ranked if 0.5 * (cost_of(h) - cost_of(best)) < max(OUT_OF_REACH, 0.05 * best.fit.objective)
+    ]
     lesser = [h for h in ranked if h.ids < best.ids and len(h.ids) == len(best.ids) - 1]
     unique = {h.ids: h for h in (best, found.baseline, *lesser, *near)}
     return list(unique.values())[:MOST]
 
 
 def _predicted(
-    bench: Workbench, hypotheses: Sequence[Hypothesis], held_out: Sequence[Experiment], step: float, cores: int
+    bench: Workbench,
+    hypotheses: Sequence[Hypothesis],
+    held_out: Sequence[Experiment],
+    step: float,
+    cores: int,
 ) -> list[Judged]:
     """Structures with the density of the held-out data."""
     counted = sum(experiment.counted for experiment in held_out)
@@ -76,8 +82,8 @@ def _predicted(
     judged, far = [], []
     for h in hypotheses:
         some = [next(told) for _ in held_out]
-        residuals = np.concatenate([place.residuals for place in some])  # type: ignore[misc]
-        slopes = np.concatenate([place.slopes for place in some])  # type: ignore[misc]
+        residuals = np.concatenate([place.residuals for place in some])
+        slopes = np.concatenate([place.slopes for place in some])
         slopes[:, _phases(h)] = 0.0  # which were fitted to each recording
         chi_squared, spread = predictive(residuals, slopes, h.fit)
         one = Judged(h, residuals, counted, chi_squared=chi_squared, spread=spread)

@@ -1,8 +1,8 @@
 """Terms of a law as additions to a structure, beside effects: for physics that is in no list.
 
 A term is a product of factors of `physics.law` at one input from outside, with an amplitude (a periodic one: of sine
-and cosine, and a frequency) and the numbers of its place. The joint's record holds it, so that a structure with terms is
-fitted, searched and judged as one with effects is.
+and cosine, and a frequency) and the numbers of its place. The joint's record holds it, so that a structure with terms
+is fitted, searched and judged as one with effects is.
 """
 
 from collections.abc import Mapping, Sequence
@@ -59,6 +59,7 @@ class LawTerm:
 
     @property
     def stage(self) -> str:
+        """Where it acts."""
         return self.input.stage
 
     @property
@@ -80,6 +81,7 @@ class LawTerm:
 
     @property
     def size_path(self) -> str:
+        """Of its amplitude."""
         return f"{self.path}.amplitude"
 
     @property
@@ -105,6 +107,7 @@ class LawTerm:
 
     @property
     def size(self) -> Free:
+        """The parameter that switches it on."""
         return self.free[0]
 
     @property
@@ -113,7 +116,7 @@ class LawTerm:
         signs = (1.0,) if self.input.one_sided else (1.0, -1.0)
         if self.term is None:
             turns = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
-            sizes = [(SIZES[1] * sine, SIZES[1] * cosine) for sine, cosine in turns]
+            sizes: list[tuple[float, ...]] = [(SIZES[1] * sine, SIZES[1] * cosine) for sine, cosine in turns]
         else:
             sizes = [(sign * size,) for size in SIZES for sign in signs]
         if self.seen is not None:
@@ -122,7 +125,9 @@ class LawTerm:
         rest = self.neutral()
         found = []
         for each in sizes:
-            values = dict(zip(paths, (float(np.clip(s, -0.9, 0.9)) * self.input.scale for s in each), strict=False))
+            values = dict(
+                zip(paths, (float(np.clip(s, -0.9, 0.9)) * self.input.scale for s in each), strict=False)
+            )
             found.append({**rest, **values})
         return tuple(found)
 
@@ -136,6 +141,7 @@ class LawTerm:
         return values
 
     def says_something(self, values: Mapping[str, float]) -> bool:
+        """Whether it is more than what the model's own equations simplify; see `Candidate`."""
         return True
 
     def is_special_case_of(self, other: object) -> bool:
@@ -208,7 +214,4 @@ class WithTerms(ParameterSet):
 
 def terms_at(inputs: Sequence[Input], joint: str, span: Span) -> list[LawTerm]:
     """Every term that has a physical meaning at some inputs of a joint."""
-    return [
-        LawTerm(given, term, joint, span) for given in inputs for term in TERMS if term.meant_for(given)
-    ]
-
+    return [LawTerm(given, term, joint, span) for given in inputs for term in TERMS if term.meant_for(given)]

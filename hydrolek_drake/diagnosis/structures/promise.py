@@ -111,7 +111,14 @@ def _promise(candidate: Candidate, rated: list, left: np.ndarray, settings: Sett
         if start not in starts:
             starts.append(start)
     score = Score(
-        candidate, best[0], starts[0], (), by_what_is_left[0][1], _visible_from(candidate, rated), best[4], left
+        candidate,
+        best[0],
+        starts[0],
+        (),
+        by_what_is_left[0][1],
+        _visible_from(candidate, rated),
+        best[4],
+        left,
     )
     return Promise(candidate, best[0], tuple(starts[: settings.starts]), score)
 
@@ -122,9 +129,15 @@ def _visible_from(candidate: Candidate, rated: list) -> float:
     largest = max((abs(size) for size, _ in sizes), default=0.0)
     if candidate.weakens:
         least = min((abs(size) for size, _ in sizes), default=0.0)
-        told = [size * (power / VISIBLE) ** 0.5 for size, power in sizes if 0.0 < power and size <= 10.0 * least]
+        told = [
+            size * (power / VISIBLE) ** 0.5 for size, power in sizes if 0.0 < power and size <= 10.0 * least
+        ]
         return max(told, default=0.0)
-    told = [abs(size) * (VISIBLE / power) ** 0.5 for size, power in sizes if 0.0 < power and abs(size) >= 0.1 * largest]
+    told = [
+        abs(size) * (VISIBLE / power) ** 0.5
+        for size, power in sizes
+        if 0.0 < power and abs(size) >= 0.1 * largest
+    ]
     return min(told, default=float("inf"))
 
 

@@ -46,6 +46,7 @@ class Runner:
 
     @property
     def key(self) -> frozenset[str]:
+        """What tells its structure from others."""
         return frozenset(c.size_path for c in self.effects)
 
 
@@ -124,7 +125,9 @@ def _way(runner: Runner, number: int, what: str) -> Along | None:
         for free in candidate.moments:
             index = paths.index(free.path)
             grid = (np.arange(MOMENTS) + 0.5) / MOMENTS
-            near = runner.place.unit[index] + np.array([-1.0, -0.3, -0.1, -0.03, 0.03, 0.1, 0.3, 1.0]) / MOMENTS
+            near = (
+                runner.place.unit[index] + np.array([-1.0, -0.3, -0.1, -0.03, 0.03, 0.1, 0.3, 1.0]) / MOMENTS
+            )
             return Along(index, np.clip(np.concatenate([grid, near]), 0.0, 1.0))
         return None
     if not candidate.sudden:

@@ -1,8 +1,8 @@
-"""Best-first search among structures: what promises the most evidence is fitted next, until nothing more is promised."""
+"""Best-first search among structures: what promises most evidence is fitted next, until nothing more is promised."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Protocol
+from typing import Any, Protocol
 
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED
@@ -19,8 +19,6 @@ from hydrolek_drake.diagnosis.structures.settings import Settings
 from hydrolek_drake.diagnosis.structures.tracing import trace
 from hydrolek_drake.diagnosis.weighing import weighted_by
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
-
-
 
 EFFECTS, LAWS, LOST = "effects", "laws", "lost commands"
 """What structures are enlarged by."""
@@ -67,7 +65,7 @@ def search_structures(
         for parent, kind in _open(found, done, settings, laws=unlisted is not None):
             key = (parent.ids, kind)
             if key not in seen or seen[key].parent is not parent:
-                own: Sequence[Candidate | LawTerm] = candidates
+                own: Sequence[Any] = candidates
                 if kind == LAWS and unlisted is not None:
                     offer = unlisted.offer(bench, parent)
                     own = offer.terms
@@ -124,7 +122,9 @@ def _worth_while(opening: Opening) -> bool:
     fit = opening.parent.fit
     if not opening.own:
         return False
-    return fit.over_noise > ABOVE_NOISE or opening.promising >= PROMISING * opening.own[0].cost * gain_needed(fit)
+    return fit.over_noise > ABOVE_NOISE or opening.promising >= PROMISING * opening.own[0].cost * gain_needed(
+        fit
+    )
 
 
 def _nominal(bench: Workbench, found: Search, settings: Settings, cores: int) -> None:
@@ -161,4 +161,9 @@ def _weigh(bench: Workbench, found: Search, settings: Settings, cores: int) -> N
     for each in again:
         found.keep(each)
     found.weighed_at = found.best.fit.over_noise
-    trace("  weighed: " + ", ".join(f"{[c.id for c in h.effects]} {h.fit.over_noise:.4f}" for h in sorted(again, key=cost_of)[:4]))
+    trace(
+        "  weighed: "
+        + ", ".join(
+            f"{[c.id for c in h.effects]} {h.fit.over_noise:.4f}" for h in sorted(again, key=cost_of)[:4]
+        )
+    )

@@ -67,7 +67,7 @@ class Settings:
     """The last fits, with half of the rig's own step, so that the error of the integration cannot decide."""
 
     nearer: float = 0.8
-    """A structure that leaves this share of what the one left by which the data are weighed tells their noise better."""
+    """A structure that leaves this share of what the one left that the data are weighed by tells their noise better."""
 
     most_expansions: int = 8
     """So many structures are enlarged at most."""

@@ -20,7 +20,8 @@ def machine(bench, recorded):
 
 
 @pytest.mark.parametrize(
-    ("probe", "name"), [("load", "sign(v)"), ("cylinder", "near sign(v)"), ("supply", "v |v|"), ("sensor", "z^2")]
+    ("probe", "name"),
+    [("load", "sign(v)"), ("cylinder", "near sign(v)"), ("supply", "v |v|"), ("sensor", "z^2")],
 )
 def test_a_term_does_what_the_law_does(bench, machine, probe, name) -> None:
     experiment, inputs, span = machine
@@ -35,11 +36,17 @@ def test_a_term_does_what_the_law_does(bench, machine, probe, name) -> None:
 
 def test_a_term_without_size_changes_nothing(bench, machine) -> None:
     experiment, inputs, span = machine
-    terms = [LawTerm(inputs["load"], None, "joint", span, 1.3), LawTerm(inputs["load"], TERMS[3], "joint", span)]
+    terms = [
+        LawTerm(inputs["load"], None, "joint", span, 1.3),
+        LawTerm(inputs["load"], TERMS[3], "joint", span),
+    ]
     parameters = WithTerms(bench, free_parameters(bench), terms)
     plain = experiment.simulate(bench.records()).signals
     np.testing.assert_allclose(
-        experiment.simulate(parameters.records(parameters.unit())).signals.reading, plain.reading, rtol=0.0, atol=1e-12
+        experiment.simulate(parameters.records(parameters.unit())).signals.reading,
+        plain.reading,
+        rtol=0.0,
+        atol=1e-12,
     )
     assert set(parameters.values(parameters.unit())) == set(parameters.paths)
 

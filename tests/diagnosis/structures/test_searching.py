@@ -1,4 +1,4 @@
-"""What is planted is found and nothing else; where nothing is planted nothing is found; an interrupt leaves an answer."""
+"""What is planted is found and nothing else, nothing where nothing is, and an interrupt leaves an answer."""
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -33,7 +33,9 @@ def answer_of(bench, recorded):
         candidates = candidates_of(bench, "joint", scales)
         with ThreadPoolExecutor(2) as pool:
             workbench = Workbench(bench, free_parameters(bench), training, pool)
-            return Inquiry(candidates, {"joint": scales}, apart=True, say=say, cores=2).answer(workbench, held_out)
+            return Inquiry(candidates, {"joint": scales}, apart=True, say=say, cores=2).answer(
+                workbench, held_out
+            )
 
     return make
 

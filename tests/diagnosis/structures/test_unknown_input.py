@@ -61,13 +61,15 @@ def test_a_dry_friction_at_the_load_changes_its_sign_with_the_speed(bench, seen_
         return law_record("load", span, form, -30.0)
 
     seen, record, span = seen_of(law=friction)
-    (_, best), *_ = terms_seen(seen, record, "joint", span)
-    assert best.input.stage in ("load", "cylinder")
-    assert best.term is not None and best.term.speed == "sign(v)"
+    first = [term for _, term in terms_seen(seen, record, "joint", span)[:6]]
+    assert {term.input.stage for term in first} <= {"load", "cylinder"}
+    assert any(term.term is not None and term.name == "sign(v)" for term in first)
 
 
 def test_a_machine_that_lacks_nothing_promises_next_to_nothing(seen_of) -> None:
     seen, record, span = seen_of()
     counted = 3 * 1200
     assert seen.unknowns[0].left == pytest.approx(counted, rel=0.25)
-    assert max(gain for gain, _ in terms_seen(seen, record, "joint", span)) < 0.1 * counted  # the error of the integration
+    assert (
+        max(gain for gain, _ in terms_seen(seen, record, "joint", span)) < 0.1 * counted
+    )  # the error of the integration
