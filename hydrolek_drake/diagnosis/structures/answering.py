@@ -17,7 +17,7 @@ from hydrolek_drake.diagnosis.laws import Span
 from hydrolek_drake.diagnosis.locating.terms_for import Offer, terms_for
 from hydrolek_drake.diagnosis.lost_commands import lost_commands
 from hydrolek_drake.diagnosis.splitting import mixed
-from hydrolek_drake.diagnosis.structures.found_law import law_of, terms_of
+from hydrolek_drake.diagnosis.structures.found_law import law_of, likeliest_side, terms_of
 from hydrolek_drake.diagnosis.structures.judging import judge_structures
 from hydrolek_drake.diagnosis.structures.searching import search_structures
 from hydrolek_drake.diagnosis.structures.settings import Settings
@@ -104,7 +104,7 @@ class Inquiry:
 
     def _told(self, known: Known) -> tuple[Conclusion, FoundLaw | None]:
         """The conclusion, and the law of the best structure, if it has one."""
-        best = known.judged[0]
+        best = likeliest_side(known.judged)
         terms = terms_of(best.hypothesis)
         lost = known.found.law
         if lost is not None and lost.fit.over_noise < best.hypothesis.fit.over_noise:
@@ -113,9 +113,10 @@ class Inquiry:
             return known.conclusion, None
         stages = {terms[0].input.stage}
         rivals = []
-        for other in known.judged[1:]:
+        for other in known.judged:
             theirs = terms_of(other.hypothesis)
-            if theirs and other.probability > POSSIBLE and theirs[0].input.stage not in stages:
+            possible = other.probability > POSSIBLE or other is known.judged[0]
+            if theirs and possible and theirs[0].input.stage not in stages:
                 stages.add(theirs[0].input.stage)
                 rivals.append(theirs[0].input.stage)
         law = law_of(known.bench, best, known.held_out, rivals, self.cores)

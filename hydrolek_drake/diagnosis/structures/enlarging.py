@@ -12,6 +12,8 @@ from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import PROMISING, gain_needed
+from hydrolek_drake.diagnosis.ranges import widened
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.structures.promise import Promise, promises_at
 from hydrolek_drake.diagnosis.structures.race import Entrant, Runner, problem_of, race
 from hydrolek_drake.diagnosis.structures.settings import Rung, Settings
@@ -158,6 +160,7 @@ def enlarged(
         ended += race(bench, entrants, _steps(settings.continued, fine), cores, _traced("observed"))
     for each in ended:
         found.keep(each)
+    _widened(bench, found, settings, cores)
     _lessened(bench, found, settings, cores)
 
 
@@ -180,6 +183,17 @@ def _lessened(bench: Workbench, found: Search, settings: Settings, cores: int) -
     ]
     for each in race(bench, entrants, settings.free[-1:], cores) if entrants else ():
         found.keep(each)
+
+
+def _widened(bench: Workbench, found: Search, settings: Settings, cores: int) -> None:
+    """The best structure with wider ranges, where a number of what it adds lies at an end of one (`ranges`)."""
+    best = found.best
+    wide: tuple[Any, ...] = tuple(
+        c.widened(best.values) if isinstance(c, LawTerm) else widened(c, best.values) for c in best.effects
+    )
+    if any(a.free != b.free for a, b in zip(wide, best.effects, strict=True)):
+        for each in race(bench, [Entrant(wide, best.values)], settings.free[-1:], cores):
+            found.keep(each)
 
 
 def _names(effects: Sequence[Candidate]) -> str:

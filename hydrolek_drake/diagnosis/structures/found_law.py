@@ -5,9 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.effort import NOISE_KNOWN
 from hydrolek_drake.diagnosis.intervals import intervals_of
 from hydrolek_drake.diagnosis.judged import Judged
-from hydrolek_drake.diagnosis.law_problem import SCAN_S, FoundLaw, Law
+from hydrolek_drake.diagnosis.law_problem import FRICTIONS, SCAN_S, FoundLaw, Law
 from hydrolek_drake.diagnosis.laws import Term
 from hydrolek_drake.diagnosis.structures.judging import units_ahead
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
@@ -107,3 +108,38 @@ def _told(h: Hypothesis, terms: Sequence[LawTerm], order: list[int], rest: list[
         slopes=slopes[:, turned],
         prior_jacobian=h.fit.prior_jacobian[np.ix_(turned, turned)],
     )
+
+
+SIDES = ("cylinder", "load")
+
+
+def likeliest_side(judged: Sequence[Judged]) -> Judged:
+    """The most probable structure; of laws at the rod and at the joint that do hardly differ, the likelier side.
+
+    A friction at the rod and one at the joint make the same movement and pressures if each may vary over the stroke, and
+    so do any two forces where the lever is constant. A friction is named at the rod then, where seals are pressed on by
+    the oil, and what pushes or shakes at the load: an assumption about such machines, and the other side is told too.
+
+    Args:
+        judged: structures, the most probable first.
+    """
+    best = judged[0]
+    stage, brakes = _side(best)
+    if stage not in SIDES:
+        return best
+    wanted = "cylinder" if brakes else "load"
+    most = _left(best) * (1.0 + 2.0 * NOISE_KNOWN)
+    near = (j for j in judged if _side(j) == (wanted, brakes) and _left(j) <= most)
+    return next(near, best)
+
+
+def _side(judged: Judged) -> tuple[str, bool]:
+    """The stage of a structure's law, and whether it is a friction."""
+    terms = terms_of(judged.hypothesis)
+    brakes = all(t.term is not None and t.term.speed in FRICTIONS for t in terms)
+    return (terms[0].input.stage, brakes) if terms else ("", False)
+
+
+def _left(judged: Judged) -> float:
+    """Squares that a structure leaves of all data."""
+    return judged.hypothesis.fit.objective + float(judged.held_out @ judged.held_out)

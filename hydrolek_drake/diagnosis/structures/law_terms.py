@@ -6,7 +6,7 @@ is fitted, searched and judged as one with effects is.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
@@ -22,6 +22,12 @@ WIDEST = 4.0
 
 SIZES = (0.3, 0.1, 0.03, 0.003)
 """Amplitudes at which a term is tried, in scales of its input."""
+
+WIDER = 4.0
+"""A range of amplitudes that proves too narrow is widened so many times."""
+
+AT_BOUND = 1e-3
+"""An amplitude this close to the end of its range, as a share of it, cannot move on."""
 
 BREADTH_HZ = 0.06
 """Half of the range in which the frequency of a periodic term is fitted about where it was seen."""
@@ -147,6 +153,13 @@ class LawTerm:
     def is_special_case_of(self, other: object) -> bool:
         """Whether another addition contains this one: no term does."""
         return False
+
+    def widened(self, values: Mapping[str, float]) -> "LawTerm":
+        """The same with a larger scale, where an amplitude lies at the end of what is searched."""
+        sizes = [free for free in self.free if free.path in (self.size_path, f"{self.path}.cosine")]
+        if all(abs(values[free.path]) < (1.0 - AT_BOUND) * free.upper for free in sizes):
+            return self
+        return replace(self, input=replace(self.input, scale=WIDER * self.input.scale))
 
     def row(self, values: Mapping[str, float]) -> np.ndarray:
         """As the physics takes it. # (1,) of `physics.law.LAW`."""
