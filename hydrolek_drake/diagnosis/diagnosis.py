@@ -20,6 +20,7 @@ from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.last_numbers import with_last_numbers
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
+from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.moments import intervals_of_moments
 from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
 from hydrolek_drake.diagnosis.splitting import prepared
@@ -56,6 +57,7 @@ class Diagnosis:
         proposal: the experiment that would decide, if one is needed.
         visible: smallest sizes of effects that would have been seen beside the best model, by id.
         seconds: that it took.
+        estimates: courses of unknown inputs around the nominal model, the likeliest first, where they were asked for.
     """
 
     rig: Rig
@@ -73,6 +75,7 @@ class Diagnosis:
     proposal: Proposal | None
     visible: tuple[Visible, ...]
     seconds: float
+    estimates: tuple[Estimate, ...] = ()
 
     @property
     def best(self) -> Judged:
@@ -209,6 +212,7 @@ def _diagnosed(
         proposal=proposal,
         visible=visible,
         seconds=clock.perf_counter() - begun,
+        estimates=answer.estimates,
     )
 
 

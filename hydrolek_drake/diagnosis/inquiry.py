@@ -27,6 +27,7 @@ from hydrolek_drake.diagnosis.law_choice import (
 )
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.law_told_anew import Told, beside
+from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.other_laws import OtherLaws
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -60,12 +61,14 @@ class Answer:
         conclusion: what the data say.
         law: for physics in no list, the law found for it, if one was.
         remarks: how it came about, for the report.
+        estimates: courses of unknown inputs around the nominal model, the likeliest first, where they were asked for.
     """
 
     known: Known
     conclusion: Conclusion
     law: FoundLaw | None = None
     remarks: tuple[str, ...] = ()
+    estimates: tuple[Estimate, ...] = ()
 
 
 @dataclass(frozen=True)

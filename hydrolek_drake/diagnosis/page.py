@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.intervals import CONFIDENCE
-from hydrolek_drake.diagnosis.panels import columns
+from hydrolek_drake.diagnosis.panels import columns, course_panel
 from hydrolek_drake.diagnosis.report_json import MOST_LISTED, detectable, effects_json, fit_json, models_of
 from hydrolek_drake.diagnosis.told_numbers import quantity, with_interval
 from hydrolek_drake.diagnosis.words import headline, off_zero_sentences
@@ -69,6 +69,7 @@ def page(diagnosis: Diagnosis, confirmed: Sequence[Confirmation] = ()) -> str:
         plots_html(pictures),
         "<h2>Where and when</h2>",
         _locations(diagnosis),
+        _unknown(diagnosis),
         "<h2>What was held against the held-out data</h2>",
         _candidates(diagnosis),
         "<h2>Parameters</h2>",
@@ -172,6 +173,30 @@ def _locations(diagnosis: Diagnosis) -> str:
     ]
     return _table(
         ("joint", "stage", "share of the mismatch", "condition", "where it grows most"), rows, (1, 3)
+    )
+
+
+def _unknown(diagnosis: Diagnosis) -> str:
+    """What must have entered at each stage for the nominal model to follow the machine."""
+    if not diagnosis.estimates:
+        return ""
+    likeliest = diagnosis.estimates[0]
+    rows = [
+        (
+            html.escape(e.unknown.input.stage),
+            html.escape(e.unknown.input.symbol),
+            f"{100.0 * e.explained:.0f} %",
+            f"{0.5 * (e.evidence - likeliest.evidence):.0f}",
+        )
+        for e in diagnosis.estimates
+    ]
+    head = ("stage", "unknown input", "share of the innovations", "log-likelihood less the best")
+    return (
+        "<p class='other'>An unknown input at each stage in turn, estimated from the innovations of an observer around "
+        "the nominal model: what must have entered there for the model to follow the first recording, and how likely "
+        "that makes the data. Below the likeliest one, with two standard deviations.</p>"
+        + _table(head, rows, (1,))
+        + plots_html([[course_panel(likeliest)]])
     )
 
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
+from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.workbench import Hypothesis
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.replay.display import display_factor, display_unit
@@ -37,6 +38,21 @@ def columns(diagnosis: Diagnosis) -> list[list[Panel]]:
         else _stack(diagnosis, held, "held out", ())
     )
     return [_stack(diagnosis, train, "fitted", ()), right]
+
+
+def course_panel(estimate: Estimate) -> Panel:
+    """The course of an unknown input in the first recording, with two standard deviations to either side."""
+    times = estimate.unknown.times
+    first = slice(0, int(np.argmax(np.diff(times, append=-np.inf) < 0.0)) + 1)
+    given = estimate.unknown.input
+    factor, unit = display_factor(given.unit), display_unit(given.unit)
+    course, width = factor * estimate.course[first], 2.0 * factor * estimate.deviation[first]
+    lines = (
+        Line("less 2 standard deviations", times[first], course - width, BEFORE_COLOUR),
+        Line("and 2 more", times[first], course + width, BEFORE_COLOUR),
+        Line(given.symbol, times[first], course, RESIDUAL_COLOUR),
+    )
+    return Panel(f"{given.symbol} [{unit}]", lines, (), None, 2.0)
 
 
 def partly_fitted(diagnosis: Diagnosis, held: Experiment) -> bool:

@@ -8,9 +8,9 @@ import numpy as np
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
 from hydrolek_drake.diagnosis.law_inputs import Input, inputs_of
 from hydrolek_drake.diagnosis.laws import Span, span_of
-from hydrolek_drake.diagnosis.locating.law_forms import terms_seen
+from hydrolek_drake.diagnosis.locating.law_forms import STEADY, terms_seen
 from hydrolek_drake.diagnosis.locating.lost import share_lost
-from hydrolek_drake.diagnosis.locating.unknown_input import unknown_inputs
+from hydrolek_drake.diagnosis.locating.unknown_input import Estimate, unknown_inputs
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
@@ -57,14 +57,10 @@ def terms_for(bench: Workbench, parent: Hypothesis, scales: Mapping[str, Scales]
     inputs = _inputs(bench, joint, scales[joint])
     has = {c.input.probe for c in parent.effects if isinstance(c, LawTerm)}
     inputs = tuple(each for each in inputs if not has or each.probe in has)
-    own = {path: value for path, value in parent.values.items() if ".effects." in path or ".law." in path}
-    problem = bench.problem(parent.effects, 2.0 * bench.fine, bench.training, OBSERVER_S)
-    moving = bench.movable(parent.effects, problem.parameters)
-    begun = Place(problem, moving, np.clip(problem.parameters.unit(own), 1e-6, 1.0 - 1e-6))
-    place = descend([begun], FITTED, bench.pool, cores)[0]
-    values = problem.parameters.values(place.unit)
+    values = _near(bench, parent, cores)
     seen = unknown_inputs(bench, parent, values, inputs, OBSERVER_S, cores)
-    record = problem.parameters.records(place.unit)[bench.training[0].index]
+    parameters = bench.parameters(parent.effects)
+    record = parameters.records(parameters.unit(values))[bench.training[0].index]
     span = _span(bench, seen.signals, record, joint)
     ranked = [term for gain, term in terms_seen(seen, record, joint, span) if gain > 0.0]
     ranked = [term for term in ranked if term.size_path not in parent.ids]
@@ -77,8 +73,40 @@ def terms_for(bench: Workbench, parent: Hypothesis, scales: Mapping[str, Scales]
     lost = 0.0
     if not parent.effects:
         command = next(u for u in seen.unknowns if u.input.probe == "command")
-        lost = share_lost(command, bench.training, float(record["command"]["neutral"]), problem.counted)
+        lost = share_lost(
+            command,
+            bench.training,
+            float(record["command"]["neutral"]),
+            sum(e.counted for e in bench.training),
+        )
     return Offer(tuple([*first, *rest][: max(OFFERED, len(first))]), lost, span)
+
+
+def estimates_for(
+    bench: Workbench, nominal: Hypothesis, joint: str, scales: Scales, cores: int
+) -> tuple[Estimate, ...]:
+    """The most likely course of every unknown input around the nominal model, the likeliest first.
+
+    Args:
+        bench: data and problems.
+        nominal: the nominal model, fitted.
+        joint: at which inputs are asked for.
+        scales: its natural scales.
+        cores: that roll out at the same time.
+    """
+    inputs = tuple(i for i in _inputs(bench, joint, scales) if i.probe not in STEADY)
+    values = _near(bench, nominal, cores)
+    seen = unknown_inputs(bench, nominal, values, inputs, OBSERVER_S, cores)
+    return tuple(sorted((u.estimated() for u in seen.unknowns), key=lambda e: -e.evidence))
+
+
+def _near(bench: Workbench, parent: Hypothesis, cores: int) -> dict[str, float]:
+    """Full path -> value of a structure's parameters where an observer's innovations are small, from the rig's own."""
+    own = {path: value for path, value in parent.values.items() if ".effects." in path or ".law." in path}
+    problem = bench.problem(parent.effects, 2.0 * bench.fine, bench.training, OBSERVER_S)
+    moving = bench.movable(parent.effects, problem.parameters)
+    begun = Place(problem, moving, np.clip(problem.parameters.unit(own), 1e-6, 1.0 - 1e-6))
+    return problem.parameters.values(descend([begun], FITTED, bench.pool, cores)[0].unit)
 
 
 def _inputs(bench: Workbench, joint: str, scales: Scales) -> tuple[Input, ...]:

@@ -113,6 +113,13 @@ class Estimate:
     deviation: np.ndarray
     evidence: float
 
+    @property
+    def explained(self) -> float:
+        """Share of the squared innovations that it takes."""
+        course = self.course / self.unknown.input.scale
+        fall = -2.0 * self.unknown.pull @ course - course @ self.unknown.information @ course
+        return float(np.clip(fall / self.unknown.left, 0.0, 1.0))
+
 
 @dataclass(frozen=True)
 class Seen:

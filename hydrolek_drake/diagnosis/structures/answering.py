@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from hydrolek_drake.diagnosis.attempt import PREDICTED, Known
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, POSSIBLE, Conclusion, conclude
-from hydrolek_drake.diagnosis.effort import COARSE, MORE_AHEAD
+from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, COARSE, MORE_AHEAD
 from hydrolek_drake.diagnosis.evidence import judge_as_fitted
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.inquiry import BY_BOTH, INTERRUPTED, Answer
@@ -14,7 +14,8 @@ from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_choice import alone
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.laws import Span
-from hydrolek_drake.diagnosis.locating.terms_for import Offer, terms_for
+from hydrolek_drake.diagnosis.locating.terms_for import Offer, estimates_for, terms_for
+from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.lost_commands import lost_commands
 from hydrolek_drake.diagnosis.splitting import mixed
 from hydrolek_drake.diagnosis.structures.found_law import law_of, likeliest_side, terms_of
@@ -68,7 +69,16 @@ class Inquiry:
         if known.interrupted:
             remarks = (*remarks, INTERRUPTED)
         conclusion, law = self._told(known)
-        return Answer(replace(known, conclusion=conclusion), conclusion, law, remarks)
+        estimates: tuple[Estimate, ...] = ()
+        if (
+            not known.interrupted
+            and len(self.scales) == 1
+            and known.found.baseline.fit.over_noise > ABOVE_NOISE
+        ):
+            self.say("estimating what enters at each stage")
+            [(joint, scales)] = self.scales.items()
+            estimates = estimates_for(known.bench, known.found.baseline, joint, scales, self.cores)
+        return Answer(replace(known, conclusion=conclusion), conclusion, law, remarks, estimates)
 
     def _known(self, bench: Workbench, held_out: Sequence[Experiment], found: Search) -> tuple[Known, Search]:
         """The search and its judgement."""

@@ -116,9 +116,9 @@ SIDES = ("cylinder", "load")
 def likeliest_side(judged: Sequence[Judged]) -> Judged:
     """The most probable structure; of laws at the rod and at the joint that do hardly differ, the likelier side.
 
-    A friction at the rod and one at the joint make the same movement and pressures if each may vary over the stroke, and
-    so do any two forces where the lever is constant. A friction is named at the rod then, where seals are pressed on by
-    the oil, and what pushes or shakes at the load: an assumption about such machines, and the other side is told too.
+    A friction at the rod and one at the joint make the same movement and pressures if each may vary over the stroke,
+    and so do any two forces where the lever is constant. A friction is named at the rod then, where seals are pressed
+    on by the oil, and what pushes or shakes at the load: an assumption about such machines; the other side is told too.
 
     Args:
         judged: structures, the most probable first.
