@@ -6,7 +6,8 @@ import numpy as np
 
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.rollout import Signals, rest_state_at_reading
+from hydrolek_drake.rollout.rest import rest_state_at_reading
+from hydrolek_drake.rollout.rollout import Signals
 from hydrolek_drake.rollout.together import JointsTogether, RunTogether, Together, moving_with
 
 STILL = 1e-6

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numba
 import numpy as np
+from llvmlite.binding import get_host_cpu_name
 
 from hydrolek_drake.physics.law import LAW
 from hydrolek_drake.physics.probes import PROBES
@@ -65,7 +66,8 @@ def compiled(kind: Kind) -> None:
 
 
 def _mark(kind: Kind) -> Path:
-    return Path(numba.config.CACHE_DIR or ".") / f"lanes_{kind.name}"
+    processor = numba.config.CPU_NAME or get_host_cpu_name()  # a home folder may be that of several computers
+    return Path(numba.config.CACHE_DIR or ".") / f"lanes_{kind.name}_{processor}"
 
 
 def _begin(

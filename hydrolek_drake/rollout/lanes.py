@@ -18,13 +18,13 @@ from hydrolek_drake.rollout.lane_kernel import integrate_lanes
 from hydrolek_drake.rollout.lane_kinds import kind_of
 from hydrolek_drake.rollout.lane_table import filled_up, side_by_side
 from hydrolek_drake.rollout.lane_view import LANES, Kind
+from hydrolek_drake.rollout.rest import rest_state
 from hydrolek_drake.rollout.rollout import (
     DIVIDED_BY_ZERO,
     Outcome,
     Signals,
     check_times,
     missing_number,
-    rest_state,
     why_diverged,
     with_own,
 )
@@ -216,7 +216,17 @@ def _outside(lanes: Sequence[Run]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _in_lanes(run: Run, law: np.ndarray | None) -> bool:
     """Whether there can be a loop over lanes for a machine."""
-    return (law is None or len(law) <= MOST_TERMS) and missing_number(run.joint) is None
+    return (law is None or len(law) <= MOST_TERMS) and missing_number(run.joint) is None and _begins(run)
+
+
+def _begins(run: Run) -> bool:
+    """Whether a machine has a state to begin with; one that divides by zero has none."""
+    if run.state is None:
+        try:
+            rest_state(run.joint)
+        except ZeroDivisionError:
+            return False
+    return True
 
 
 def compiled_kind_of(run: Run, law: np.ndarray | None) -> Kind | None:

@@ -14,7 +14,8 @@ from hydrolek_drake.physics.serial_arm import LINK_SIZE, moments_along, scratch
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.joint_rows import DRIVE, PLAY, RATES, SPOOL, STATE, room
 from hydrolek_drake.rollout.kernel import SIGNALS
-from hydrolek_drake.rollout.rollout import DIVIDED_BY_ZERO, Signals, missing_number, rest_state, why_diverged
+from hydrolek_drake.rollout.rest import rest_state
+from hydrolek_drake.rollout.rollout import DIVIDED_BY_ZERO, Signals, missing_number, why_diverged
 from hydrolek_drake.rollout.together_kernel import TOLD, integrate_together
 
 NO_LINKS = np.zeros((0, LINK_SIZE))

@@ -16,7 +16,7 @@ from hydrolek_drake.rollout.lane_kinds import kind_of
 from hydrolek_drake.rollout.lane_table import filled_up, side_by_side
 from hydrolek_drake.rollout.lane_view import LANES, NUMBERS, Kind
 from hydrolek_drake.rollout.lanes import FEW, OFF, SWITCH
-from hydrolek_drake.rollout.rollout import rest_state
+from hydrolek_drake.rollout.rest import rest_state
 from hydrolek_drake.rollout.together import NO_LINKS, RunTogether, Together, put_begun
 from hydrolek_drake.rollout.together_kernel import TOLD
 from hydrolek_drake.rollout.together_lane_kernel import integrate_together_lanes

@@ -18,7 +18,8 @@ from hydrolek_drake.rollout.kernel import SIGNALS
 from hydrolek_drake.rollout.lane_kinds import kind_of
 from hydrolek_drake.rollout.lane_view import LANES
 from hydrolek_drake.rollout.lanes import roll_out_lanes
-from hydrolek_drake.rollout.rollout import rest_state_at_reading, roll_out
+from hydrolek_drake.rollout.rest import rest_state_at_reading
+from hydrolek_drake.rollout.rollout import roll_out
 from hydrolek_drake.rollout.run import Run
 
 SIZES = json.loads((Path(__file__).parents[2] / "scripts" / "agreement_effects.json").read_text())
@@ -156,6 +157,20 @@ def test_a_lane_that_diverges_or_has_no_number_disturbs_no_other_by_a_bit():
     for i in (0, 1, 3, 4, 7):
         for name in SIGNALS:
             np.testing.assert_array_equal(getattr(found[i].signals, name), getattr(good[i].signals, name))
+
+
+def test_a_lane_that_cannot_begin_disturbs_no_other():
+    """A play without stiffness, on a machine whose rig says nothing of one."""
+    rig = load_rig("joint_bench")
+    records = _varied(rig.records()[:1], np.random.default_rng(2), 4)
+    records[1]["effects"]["linkage_backlash"]["gap_rad"] = 0.005
+    records[1]["linkage"]["play_stiffness"] = 0.0
+    records[2]["linkage"]["direction"] = 0.0
+    times, volts = _driven(1.0)
+    found = _in_lanes(records, times, volts, longest_step=STEP)
+    for one, other in zip(found, _one_by_one(records, times, volts, longest_step=STEP), strict=True):
+        assert one.diverged == other.diverged
+    assert [one.diverged is None for one in found] == [True, False, False, True]
 
 
 def test_each_lane_has_its_own_recording_start_step_pull_and_time_constant():

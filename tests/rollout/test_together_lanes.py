@@ -12,7 +12,7 @@ from hydrolek_drake.physics.law import LAW
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.physics.records import flat, position_of
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.rollout import together_lanes
+from hydrolek_drake.rollout import lane_compiling, together_lanes
 from hydrolek_drake.rollout.lane_view import LANES
 from hydrolek_drake.rollout.lanes import one_by_one
 from hydrolek_drake.rollout.together import JointsTogether
@@ -121,6 +121,15 @@ def test_the_jacobian_is_the_same_in_lanes_and_one_by_one(two_joints, recorded_t
     assert tables == [4]
     with one_by_one():
         np.testing.assert_array_equal(found, problem.jacobian(unit))
+
+
+def test_another_process_compiles_what_a_kind_of_joint_needs(two_joints):
+    (run,) = _runs(two_joints, 1)
+    roll_out_together([run], at_once=True)
+    mark = lane_compiling._mark(together_lanes.kinds_of(run)[0])
+    mark.unlink()
+    process = lane_compiling._begin(run.records[:1], None, run.spool_steps, together=True)
+    assert process.wait(300.0) == 0 and mark.exists()
 
 
 def _law(probe, size):
