@@ -7,8 +7,8 @@ import numpy as np
 from hydrolek_drake.diagnosis.locating.unknown_input import Unknown
 from hydrolek_drake.identification.experiment import Experiment
 
-WINDOW = 2
-"""Knots that a window spans: about a tenth of a second."""
+WINDOWS = (0, 1, 2, 4)
+"""Spacings of the knots that a window spans beyond the two slopes at its ends: from 0.05 to 0.25 s."""
 
 GAIN = 25.0
 """Fall of the squares, over what is left of each value on average, that a window must promise: five standard
@@ -39,13 +39,18 @@ def share_lost(unknown: Unknown, experiments: Sequence[Experiment], neutral: flo
     )
     missing = missing / unknown.input.scale
     size = missing.size
-    courses = np.zeros((size, size))
-    for k in range(size):
-        courses[k : k + WINDOW + 1, k] = missing[k : k + WINDOW + 1]
+    knots = np.arange(size)[:, None]
+    courses = np.concatenate(
+        [
+            np.where((knots >= knots.T) & (knots <= knots.T + length), missing[:, None], 0.0)
+            for length in WINDOWS
+        ],
+        axis=1,
+    )
     changes = unknown.information @ courses
     powers = np.einsum("ik,ik->k", courses, changes)
     pull, left, taken = unknown.pull.copy(), unknown.left, 0.0
-    chosen = np.zeros(size, dtype=bool)
+    chosen = np.zeros(courses.shape[1], dtype=bool)
     for _ in range(size):
         along = -(courses.T @ pull)
         multiples = np.clip(along / np.maximum(powers, np.finfo(float).tiny), 0.0, WHOLE)
