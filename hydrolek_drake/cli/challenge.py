@@ -95,7 +95,9 @@ def challenge(
     told: list[dict[str, Any]] = json.loads(labels)[:first]
     scored = earlier_scores(earlier, sha256) if earlier else {}
     try:
-        with progress("starting") as tell, RolloutPool(workers or os.cpu_count() or 1) as pool:
+        count = workers or os.cpu_count() or 1
+        threads = RolloutPool(count) if method == "rules" else ThreadPoolExecutor(count)
+        with progress("starting") as tell, threads as pool:
             for number, label in enumerate(told, start=1):
                 if label["name"] in scored:
                     continue
@@ -110,7 +112,7 @@ def challenge(
                         read_recording(folder / f"{side}.csv", machine.columns)
                         for side in ("train", "holdout")
                     ]
-                    done = diagnose(machine, recordings[:1], recordings[1:], pool, method=method)
+                    done = diagnose(machine, recordings[:1], recordings[1:], pool, cores=count, method=method)
                     if INTERRUPTED in done.reasons:
                         raise KeyboardInterrupt
                     write_whole(report, json.dumps(as_json(done), indent=1))

@@ -61,6 +61,8 @@ def diagnose(
     output = console()
     loaded, (train, held) = rig_and_recordings(rig, set_, recordings, holdout)
 
+    from concurrent.futures import ThreadPoolExecutor
+
     from hydrolek_drake.diagnosis.diagnosis import diagnose as run_diagnosis
     from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
     from hydrolek_drake.diagnosis.report import write_report
@@ -72,7 +74,9 @@ def diagnose(
     if out is not None:
         prepare_folder(out)
     count = workers or os.cpu_count() or 1
-    with progress("starting") as tell, RolloutPool(count) as pool:
+    # by evidence, what is to be rolled out at a moment fills whole tables of lanes by itself
+    threads = RolloutPool(count) if method == "rules" else ThreadPoolExecutor(count)
+    with progress("starting") as tell, threads as pool:
 
         def say(text: str) -> None:
             tell(f"{text} ...")

@@ -8,6 +8,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, AT_NOISE, FAR, HOPELESS, LOOK, POLISH
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.settling import settled_together
+from hydrolek_drake.diagnosis.structures.as_rig import rig_of
 from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.channel import faithful
@@ -38,7 +39,7 @@ def weighted_by(
     problem = bench.problem(hypothesis.effects, bench.fine, experiments)
     records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
     if hypothesis.fit.over_noise < FAR and any(e.others is not None for e in experiments):
-        experiments = felt_together(bench.rig.with_values(hypothesis.values), experiments)
+        experiments = felt_together(rig_of(bench.rig, hypothesis), experiments)
     better = []
     for experiment in experiments:
         coarse = experiment.simulate(records, bench.fine).signals

@@ -1,0 +1,27 @@
+"""A fitted structure as a rig that every other command runs."""
+
+from dataclasses import replace
+
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
+from hydrolek_drake.diagnosis.workbench import Hypothesis
+from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rigs.short_law import terms_of
+
+SOURCE = "fitted to recordings by hydrolek diagnose"
+
+
+def rig_of(rig: Rig, hypothesis: Hypothesis) -> Rig:
+    """A rig with a structure's values, effects and terms of laws.
+
+    Args:
+        rig: that is diagnosed.
+        hypothesis: a structure, fitted.
+    """
+    values = {path: value for path, value in hypothesis.values.items() if ".law." not in path}
+    laws = dict(rig.laws)
+    for term in hypothesis.effects:
+        if isinstance(term, LawTerm):
+            units = (term.input.unit, term.span.at(term.input.probe).unit)
+            own = terms_of(term.row(hypothesis.values), units, SOURCE, "reach of these recordings")
+            laws[term.joint] = (*laws.get(term.joint, ()), *own)
+    return replace(rig.with_values(values), laws=laws)
