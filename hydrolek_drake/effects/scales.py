@@ -136,7 +136,9 @@ def hydraulic_scales(
     pressure = float(joint["supply"]["pressure"] - joint["supply"]["tank_pressure"])
     area = float(joint["cylinder"]["area_a"])
     valve, solenoid = joint["valve"], joint["solenoid"]
-    overlap = float(valve["overlap_a"]) or float(valve["full_opening_a"])
+    alike = not math.isnan(float(valve["overlap_a"]))  # else each of its edges has an overlap of its own
+    full_opening = float(valve["full_opening_a" if alike else "full_opening"])
+    overlap = abs(float(valve["overlap_a" if alike else "overlap_pa"])) or full_opening
     spring = float(solenoid["spring"])
     load = joint["load"]
     weight = abs(float(load["payload_gravity_cos"])) + abs(float(load["payload_gravity_sin"]))
@@ -151,7 +153,7 @@ def hydraulic_scales(
         conductance=full_flow / pressure,
         resistance=pressure / full_flow,
         overlap=overlap,
-        spool_force=spring * float(valve["full_opening_a"]),
+        spool_force=spring * full_opening,
         air_fraction=(0.25 * pressure) ** 2
         / (float(joint["fluid"]["bulk_modulus"]) * float(joint["fluid"]["atmospheric_pressure"])),
         travel=travel,

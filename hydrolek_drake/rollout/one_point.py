@@ -8,14 +8,16 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import linkage, valve
+from hydrolek_drake.physics import linkage, supply, valve
 from hydrolek_drake.physics.law import Seen, law_value
 
 
 @njit(cache=True)
 def inlet_conductance(p_supply: float, p_a: float, p_b: float, joint: Any) -> float:
     """Conductance of the inlet edge of side A of a valve that is wide open [m^3/(s Pa)]."""
-    inlet, _, _, _ = valve.edge_conductances(1.0, 0.0, p_supply, p_a, p_b, 0.0, joint)
+    inlet, _, _, _ = valve.edge_conductances(
+        valve.Openings(1.0, 0.0, 0.0, 1.0), p_supply, p_a, p_b, 0.0, joint
+    )
     return inlet
 
 
@@ -23,6 +25,12 @@ def inlet_conductance(p_supply: float, p_a: float, p_b: float, joint: Any) -> fl
 def stroke_and_lever(angle: float, joint: Any) -> tuple[float, float]:
     """Stroke [m] and lever [m] of a joint's linkage at an angle [rad]; see `linkage.stroke_and_lever`."""
     return linkage.stroke_and_lever(angle, joint)
+
+
+@njit(cache=True)
+def supply_at_rest(joint: Any) -> float:
+    """What a supply remembers of which nothing is drawn; see `supply.at_rest`."""
+    return supply.at_rest(joint)
 
 
 @njit(cache=True)

@@ -11,8 +11,7 @@ from hydrolek_drake.physics import amplifier, cylinder, hooks, load, sensor
 from hydrolek_drake.physics.law import law_of
 from hydrolek_drake.physics.probes import NO_PROBE
 from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, flat, position_of
-from hydrolek_drake.rollout import kernel
-from hydrolek_drake.rollout.one_point import stroke_and_lever
+from hydrolek_drake.rollout import kernel, one_point
 
 STATE_SIZE = 2 + len(kernel.State._fields) + 3 + len(amplifier.Currents._fields)
 
@@ -73,6 +72,7 @@ def rest_state(
     q = float(record["load"]["initial_position"]) if position is None else position
     state = np.zeros(STATE_SIZE)
     state[4] = state[11] = q
+    state[6] = state[16] = one_point.supply_at_rest(record)
     state[12] = time
     state[14], state[15] = amplifier.coil_currents(0.0, time, record)
     if record["cylinder"]["variant"] == cylinder.ELECTRIC_MOTOR:
@@ -122,7 +122,7 @@ def rest_pressures(record: np.void, side: float, needed: float) -> tuple[float, 
     """Chamber pressures that hold a moment `needed` [N m] with the actuator's side at `side` [rad or m]."""
     p = record["cylinder"]
     area_a, area_b = float(p["area_a"]), float(p["area_b"])
-    _, lever = stroke_and_lever(side, record)
+    _, lever = one_point.stroke_and_lever(side, record)
     p_b = float(p["initial_pressure_b"])
     p_a = (needed / lever + area_b * p_b) / area_a
     if p_a < 0.0:  # the load pulls the rod out: side B carries it

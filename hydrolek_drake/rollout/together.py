@@ -127,7 +127,7 @@ class JointsTogether:
         laws = [np.zeros(0, LAW) if law is None else law for law in found]
         changes = np.concatenate([[True], np.any(np.diff(command_values, axis=0) != 0.0, axis=1)])
         rows, vectors, matrices = room(len(own))
-        rows[:, STATE:RATES] = [state[2:11] for state in begun]
+        rows[:, STATE:RATES] = [[*state[2:11], state[16]] for state in begun]
         rows[:, DRIVE:SPOOL] = [[*state[13:16], *state[:2]] for state in begun]
         rows[:, PLAY] = [state[11] for state in begun]
         return integrate_together(

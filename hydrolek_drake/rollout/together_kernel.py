@@ -101,14 +101,19 @@ def _step(
         arm_equation(r, vectors, matrices[MASS], links, scratch)
         arm_begins(r, vectors[TORQUE], matrices, h)
     for i in range(n):
-        put_state(r, i, MIDDLE, first_stage(state_at(r, i, STATE), state_at(r, i, RATES), slopes_at(r, i), h))
+        put_state(
+            r,
+            i,
+            MIDDLE,
+            first_stage(state_at(r, i, STATE), state_at(r, i, RATES), slopes_at(r, i), h, joints[i]),
+        )
     all_rates(r, MIDDLE, DRIVE + X, LATER, time + h, laws, first, vectors, carriers, joints)
     if linked:
         arm_equation(r, vectors, matrices[FACTOR], links, scratch)
         arm_goes_on(r, vectors[TORQUE], vectors[BIAS], matrices, h)
     for i in range(n):
         begun, rate, later = state_at(r, i, STATE), state_at(r, i, RATES), state_at(r, i, LATER)
-        s = second_stage(begun, rate, later, slopes_at(r, i), h)
+        s = second_stage(begun, rate, later, slopes_at(r, i), h, joints[i])
         put_state(r, i, STATE, s)
         r[i, PLAY] = sensor.played(r[i, PLAY], s.q - s.tilt, joints[i])
 

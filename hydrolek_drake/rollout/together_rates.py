@@ -18,15 +18,16 @@ from hydrolek_drake.rollout.joint_rows import (
     BIAS,
     DRAG,
     FACTOR,
-    FLOW,
     INERTIA,
     LATER,
     MASS,
+    OF_SUPPLY,
     PAYLOAD,
     RATES,
     ROD,
     SLOPES,
     SPEED,
+    STIFF_SUPPLY,
     STIFF_W,
     TORQUE,
     VOLTS,
@@ -133,7 +134,9 @@ def all_rates(
         vectors[PAYLOAD, i] = hooks.payload(time, carriers[i])
         vectors[ANGLE, i], vectors[SPEED, i] = s.q, s.w
     for i in range(n):
-        r[i, into + FLOW] = supply.flow_rate_of_change(r[i, at + FLOW], total, joints[i])
+        r[i, into + OF_SUPPLY], slope_supply = supply.rate_of_change(r[i, at + OF_SUPPLY], total, joints[i])
+        if into == RATES:
+            r[i, SLOPES + STIFF_SUPPLY] = slope_supply
 
 
 @njit

@@ -77,7 +77,11 @@ def _refusal(tmp_path, text):
         ("joints/joint/linkage/angle_offset/value", 170, ["linkage", "impossible triangle", "180"]),
         ("joints/joint/linkage/distance_child/value", 0, ["linkage.distance_child", "above zero"]),
         ("joints/joint/linkage/direction/value", 0.5, ["linkage.direction", "0.5", "1 or -1"]),
-        ("joints/joint/linkage/zero_stroke_length/value", 0.3, ["zero_stroke_length", "0.3 m is longer"]),
+        (
+            "joints/joint/linkage/zero_stroke_length/value",
+            0.4,
+            ["zero_stroke_length", "0.4 m is longer by 0.11"],
+        ),
         ("joints/joint/load/upper_stop/value", -20, ["load", "lower_stop", "below upper_stop"]),
         ("joints/joint/sensor/travel_upper/value", -10.3, ["sensor", "travel_lower", "below travel_upper"]),
         ("joints/joint/valve/full_opening_a/value", 0.05, ["full_opening_a", "larger than overlap_a"]),
