@@ -22,6 +22,7 @@ from hydrolek_drake.physics import (
 )
 from hydrolek_drake.physics.law import LAW_RECORD
 from hydrolek_drake.physics.parameters import Stage
+from hydrolek_drake.physics.usual import MARK, RARE
 
 SHARED_STAGES: dict[str, Stage] = {s.STAGE.name: s.STAGE for s in (supply, fluid)}
 """Stages that all joints of a rig share."""
@@ -41,6 +42,23 @@ JOINT = np.dtype(
     [(stage.name, stage.dtype()) for stage in STAGES.values()]
     + [("effects", EFFECT_RECORD), ("law", LAW_RECORD)]
 )
+
+_USUAL = np.dtype(
+    {
+        "names": [*(JOINT.names or ()), MARK],
+        "formats": [*(JOINT[name] for name in JOINT.names or ()), np.float64],
+        "offsets": [*(JOINT.fields[name][1] for name in JOINT.names or ()), 0],  # type: ignore[index]
+        "itemsize": JOINT.itemsize,
+    }
+)
+
+
+def as_usual(joints: np.ndarray) -> np.ndarray:
+    """The records, as the type for which rollouts are compiled without rare variants if none of them has any."""
+    for stage, variants in RARE.items():
+        if np.isin(joints[stage]["variant"], [STAGES[stage].code(variant) for variant in variants]).any():
+            return joints
+    return joints.view(_USUAL)
 
 
 def flat(joints: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.fluid import effective_bulk_modulus
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.smooth import exponential, logarithm
+from hydrolek_drake.physics.usual import rare
 
 _TANK = Parameter("tank_pressure", "Pa", "return line pressure, P_T", lowest=0.0)
 
@@ -76,7 +77,7 @@ def supply_pressure(remembered: float, joint: Any) -> float:
         joint: parameter record.
     """
     p = joint.supply
-    if p.variant == PUMP:
+    if rare(joint) and p.variant == PUMP:
         return max(p.pressure + remembered, p.tank_pressure)
     return max(p.pressure - hooks.supply_drop(remembered, joint), p.tank_pressure)
 
@@ -91,7 +92,7 @@ def rate_of_change(remembered: float, drawn: float, joint: Any) -> tuple[float, 
     Systems, 1967, section 9.2: a relief valve's static characteristic with its gain 1/R).
     """
     p = joint.supply
-    if p.variant == PUMP:
+    if rare(joint) and p.variant == PUMP:
         pressure = p.pressure + remembered
         stiffness = effective_bulk_modulus(max(pressure, 0.0), joint) / p.line_volume
         rate = stiffness * (pumped(pressure, joint) - drawn)
@@ -168,7 +169,7 @@ def relieved_with_play(
 def at_rest(joint: Any) -> float:
     """What a supply remembers that has run for a while and of which nothing is drawn."""
     p = joint.supply
-    if p.variant != PUMP:
+    if not rare(joint) or p.variant != PUMP:
         return 0.0
     left = pumped(p.pressure, joint)
     if left > 0.0:

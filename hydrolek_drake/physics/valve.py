@@ -7,6 +7,7 @@ from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.fluid import orifice_conductance
 from hydrolek_drake.physics.parameters import Parameter, Stage
+from hydrolek_drake.physics.usual import rare
 
 EDGES = ("pa", "at", "pb", "bt")
 """P-A and B-T open towards A, P-B and A-T towards B."""
@@ -106,7 +107,7 @@ def openings(x: float, joint: Any) -> Openings:
     """
     p = joint.valve
     shift = hooks.land_shift(joint)
-    if p.variant == FOUR_EDGES:
+    if rare(joint) and p.variant == FOUR_EDGES:
         return Openings(
             _opened(x - (p.overlap_pa + shift), p.full_opening - p.overlap_pa),
             _opened(-x - (p.overlap_at - shift), p.full_opening - p.overlap_at),
@@ -198,7 +199,7 @@ def edge_conductances(
         if opened.pb > 0.0:
             pb += gain * _compensated_conductance(opened.pb, p_supply - p_b, joint)
             at += gain * _return_conductance(opened.pb, p_a - p_tank, joint)
-    elif p.variant == FOUR_EDGES:
+    elif rare(joint) and p.variant == FOUR_EDGES:
         coefficient = p.discharge * gain
         choke = hooks.port_drop(joint)
         if opened.pa > 0.0:

@@ -17,6 +17,7 @@ from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.probes import Probe, probe_at
 from hydrolek_drake.physics.solenoid import GAMMA, steps_needed
 from hydrolek_drake.physics.supply import relieved_with_play
+from hydrolek_drake.physics.usual import rare
 from hydrolek_drake.rollout.drive import Drive, acts_early, driven_on
 from hydrolek_drake.rollout.rates import Slopes, State, Turned, carried_on, felt_at, kept, rates, turned
 
@@ -35,7 +36,7 @@ def _implicit(h: float, slope: float) -> float:
 @njit
 def first_stage(s: State, k: State, slope: Slopes, h: float, joint: Any) -> State:
     """State after a step of `h` seconds with the rates at its beginning, the stiff ones lessened."""
-    if slope.supply == 0.0:
+    if not rare(joint) or slope.supply == 0.0:
         line, valve = s.supply + h * k.supply, s.relief
     else:
         line, valve = relieved_with_play(s.supply, s.relief, k.supply, slope.supply, h, joint)
@@ -60,7 +61,7 @@ def second_stage(s: State, k: State, m: State, slope: Slopes, h: float, joint: A
     c_t, c_l = _implicit(h, slope.tilt_rate), _implicit(h, slope.lead_w)
     k_a, k_b, k_w, k_t, k_l = k.p_a * c_a, k.p_b * c_b, k.w * c_w, k.tilt_rate * c_t, k.lead_w * c_l
     half = 0.5 * h
-    if slope.supply == 0.0:
+    if not rare(joint) or slope.supply == 0.0:
         line, valve = s.supply + half * (k.supply + m.supply), s.relief
     else:
         mean = 0.5 * (k.supply + m.supply)

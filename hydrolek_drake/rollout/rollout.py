@@ -10,7 +10,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import amplifier, cylinder, hooks, load, sensor
 from hydrolek_drake.physics.law import law_of
 from hydrolek_drake.physics.probes import NO_PROBE
-from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, flat, position_of
+from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, as_usual, flat, position_of
 from hydrolek_drake.rollout import kernel, one_point
 
 STATE_SIZE = 2 + len(kernel.State._fields) + 3 + len(amplifier.Currents._fields)
@@ -178,7 +178,7 @@ def roll_out(
         try:
             start = rest_state(joint) if state is None else start
             rows = kernel.integrate(
-                joint,
+                as_usual(joint),
                 start,
                 read_only(command_times[changes]),
                 read_only(command_values[changes]),

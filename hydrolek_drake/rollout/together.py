@@ -10,6 +10,7 @@ from hydrolek_drake.compiled import read_only
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.law import LAW, law_of
+from hydrolek_drake.physics.records import as_usual
 from hydrolek_drake.physics.serial_arm import LINK_SIZE, moments_along, scratch
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.joint_rows import DRIVE, PLAY, RATES, SPOOL, STATE, room
@@ -131,8 +132,8 @@ class JointsTogether:
         rows[:, DRIVE:SPOOL] = [[*state[13:16], *state[:2]] for state in begun]
         rows[:, PLAY] = [state[11] for state in begun]
         return integrate_together(
-            own,
-            carriers,
+            as_usual(own),
+            as_usual(carriers),
             rows,
             vectors,
             matrices,
