@@ -43,14 +43,15 @@ JOINT = np.dtype(
     + [("effects", EFFECT_RECORD), ("law", LAW_RECORD)]
 )
 
+_NAMES = JOINT.names or ()
 _USUAL = np.dtype(
     {
-        "names": [*(JOINT.names or ()), MARK],
-        "formats": [*(JOINT[name] for name in JOINT.names or ()), np.float64],
-        "offsets": [*(JOINT.fields[name][1] for name in JOINT.names or ()), 0],  # type: ignore[index]
+        "names": [*_NAMES, MARK],
+        "formats": [*(JOINT[name] for name in _NAMES), np.dtype(np.float64)],
+        "offsets": [*(JOINT.fields[name][1] for name in _NAMES), 0],  # type: ignore[index]
         "itemsize": JOINT.itemsize,
     }
-)
+)  # type: ignore[call-overload]
 
 
 def as_usual(joints: np.ndarray) -> np.ndarray:

@@ -13,7 +13,7 @@ from numba.extending import intrinsic
 MARK = "usual"
 """Field that tells the two types of records apart; it lies upon the first number."""
 
-RARE: dict[str, tuple[str, ...]] = {"supply": ("pump",), "valve": ("four_edges",)}
+RARE: dict[str, tuple[str, ...]] = {"supply": ("pump",), "valve": ("four_edges",), "load": ("link",)}
 """Stage -> its variants that stand behind `rare`."""
 
 

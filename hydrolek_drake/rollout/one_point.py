@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import linkage, supply, valve
+from hydrolek_drake.physics import linkage, load, supply, valve
 from hydrolek_drake.physics.law import Seen, law_value
 
 
@@ -31,6 +31,18 @@ def stroke_and_lever(angle: float, joint: Any) -> tuple[float, float]:
 def supply_at_rest(joint: Any) -> float:
     """What a supply remembers of which nothing is drawn; see `supply.at_rest`."""
     return supply.at_rest(joint)
+
+
+@njit(cache=True)
+def own_inertia(joint: Any) -> float:
+    """Inertia of a joint's load [kg m^2 or kg]; see `load.own_inertia`."""
+    return load.own_inertia(joint)
+
+
+@njit(cache=True)
+def gravity_moments(joint: Any) -> tuple[float, float]:
+    """Gravity's moment on a joint's load at 0 and at 90 deg [N m]; see `load.gravity_moments`."""
+    return load.gravity_moments(joint)
 
 
 @njit(cache=True)

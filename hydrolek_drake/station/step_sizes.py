@@ -50,8 +50,8 @@ def sizes_for(rig: Rig) -> StepSizes:
 
     With them it stays as near the rollout as a sensor's noise (docs/agreement.md). A rollout bears stiff frictions by
     an implicit method, a Diagram's explicit one needs steps that see them: two of the rollout's, and a quarter of that
-    where a play closes, whose blows take 0.2 ms, or a relief valve sticks in its hysteresis, while nothing but the line's
-    volume holds the pressure.
+    where a play closes, whose blows take 0.2 ms, or a relief valve sticks in its hysteresis, while nothing but the
+    line's volume holds the pressure.
     """
     step = min(StepSizes.step, 2.0 * rig.value("integration.longest_step"))
     records = rig.records()
