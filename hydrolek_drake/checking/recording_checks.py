@@ -4,21 +4,15 @@ import math
 
 import numpy as np
 
+from hydrolek_drake.checking.clock import refuse_other_clock
 from hydrolek_drake.checking.complaint import Complaint
 from hydrolek_drake.checking.steps import differs
-from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import SUPPLY_KEY, driven_joints, measured_position, position_key
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout import roll_out
-from hydrolek_drake.rollout.rollout import rest_state_at_reading
-
-SLOWEST_SAMPLING = 2.0
-"""A machine is sampled more often than this [s]: in ms it would be two thousand of them."""
-
-SHORTEST = 0.2
-"""A recording lasts longer than this [s]: of the shortest that tell anything, in ms it would be below."""
+from hydrolek_drake.rollout.rollout import Signals, rest_state_at_reading
 
 AGAINST = -0.4
 """Correlation of speeds below which a joint moves against what the rig says."""
@@ -45,6 +39,15 @@ NEAR_FACTOR = 2.0
 
 ANOTHER = 5.0
 
+SURELY, CLEARLY_BETTER = 0.85, 0.1
+"""Correlation of the speeds from which a lag is believed, and by which it is better than none."""
+
+FALLEN = 0.85
+"""A supply below this share of its relief valve's setting gives all that it can."""
+
+PLAUSIBLE, LARGEST = (0.03, 5.0), 0.7
+"""Shares of the supply pressure between which the largest pressure of a recording lies, and where it mostly does."""
+
 REVERSALS = 4
 """Changes of direction without which friction and play are not told from anything else."""
 
@@ -53,27 +56,6 @@ SHARE_OF_COMMAND = 0.05
 
 SHARE_OF_TRAVEL = 0.05
 """Of the way between the stops: a motion below tells no geometry."""
-
-
-def refuse_other_clock(rig: Rig, recording: Recording) -> None:
-    """Refuse a recording whose times can be no seconds, before it is computed with.
-
-    Raises:
-        InputError: sampled every few seconds or lasting no quarter of one, with the line that mends it.
-    """
-    step = float(np.median(np.diff(recording.time)))
-    if step > SLOWEST_SAMPLING and driven_joints(rig, recording):
-        raise InputError(
-            f"{recording.source}: time: samples {step:g} s apart and {recording.duration:.4g} s in all are no "
-            "recording of a machine that moves: ms in a column of s? in the rig: "
-            "recording: {columns: {time_s: time_ms}}"
-        )
-    if recording.duration < SHORTEST and recording.time.size > 50:
-        raise InputError(
-            f"{recording.source}: time: {recording.time.size} samples within {recording.duration:.3g} s are no "
-            "recording of a machine that moves: s in a column of ms? in the rig: "
-            "recording: {columns: {time_ms: time_s}}"
-        )
 
 
 def check_recording(rig: Rig, recording: Recording) -> list[Complaint]:
@@ -208,7 +190,8 @@ def _against_the_model(
     model = outcome.signals
     seen, own = _speed(times, position), _speed(times, model.reading)
     together = _correlation(seen, own)
-    if together < AGAINST:
+    shifted = _late(rig, joint, times, seen, own)
+    if together < AGAINST and not shifted:
         polarity = rig.value(f"joints.{joint}.command.polarity")
         return [
             Complaint(
@@ -217,7 +200,7 @@ def _against_the_model(
                 f'command: {{polarity: {{value: {-polarity:g}, unit: "1", ...}}}}',
             )
         ]
-    found = []
+    found = shifted
     if together > WITH:
         good = np.isfinite(seen) & np.isfinite(own)
         ratio = float(np.sqrt(np.mean(seen[good] ** 2) / np.mean(own[good] ** 2)))
@@ -229,8 +212,8 @@ def _against_the_model(
                     _column(key, "deg" if slip[1] == "rad" else "mm" if slip[1] == "m" else unit, slip[1]),
                 )
             ]
-        found += _late(rig, joint, times, seen, own)
     found += _exchanged(rig, joint, recording, model)
+    found += _falls(rig, recording, model)
     off = differs(rig, joint, times, volts, step, noise)
     if off is not None and off > 1.0:
         found.append(
@@ -255,6 +238,8 @@ def _late(rig: Rig, joint: str, times: np.ndarray, seen: np.ndarray, own: np.nda
     lags = list(range(-most, most + 1))
     corr = [_correlation(seen[most + k : seen.size - most + k], own[most : own.size - most]) for k in lags]
     lag = lags[int(np.argmax(corr))] * spacing
+    if max(corr) < SURELY or max(corr) < corr[most] + CLEARLY_BETTER:
+        return []
     delay = rig.value(f"joints.{joint}.command.delay")
     if lag < -(delay + 2.0 * spacing):
         return [
@@ -277,7 +262,7 @@ def _late(rig: Rig, joint: str, times: np.ndarray, seen: np.ndarray, own: np.nda
     return []
 
 
-def _exchanged(rig: Rig, joint: str, recording: Recording, model: object) -> list[Complaint]:
+def _exchanged(rig: Rig, joint: str, recording: Recording, model: Signals) -> list[Complaint]:
     keys = [f"{joint}.pressure_a", f"{joint}.pressure_b"]
     if any(key not in recording.signals for key in keys):
         return []
@@ -297,6 +282,27 @@ def _exchanged(rig: Rig, joint: str, recording: Recording, model: object) -> lis
     ]
 
 
+def _falls(rig: Rig, recording: Recording, model: Signals) -> list[Complaint]:
+    """Whether the supply falls where the rig's pump would hold it."""
+    if rig.variants["supply"] != "pump" or SUPPLY_KEY not in recording.signals:
+        return []
+    setting = rig.value("supply.pressure")
+    lowest = float(np.nanmin(recording.signal(SUPPLY_KEY)))
+    own = float(np.min(model.supply_pressure))
+    highest = float(np.nanmax(recording.signal(SUPPLY_KEY)))
+    if not (lowest < FALLEN * setting < highest and own > 0.5 * (1.0 + FALLEN) * setting):
+        return []
+    per_turn = 1e6 * rig.value("supply.displacement")
+    return [
+        Complaint(
+            "supply.displacement",
+            f"the supply falls to {1e-6 * lowest:.3g} MPa in the recording, with the rig's pump to {1e-6 * own:.3g} "
+            "MPa: it gives less than the rig says; was its displacement meant per turn?",
+            f"displacement: {{value: {per_turn:.4g}, unit: cm^3/rev, ...}}",
+        )
+    ]
+
+
 def _pressures(rig: Rig, recording: Recording) -> list[Complaint]:
     """Pressures that are constant, or of another unit: the largest is near the supply's somewhere."""
     found = []
@@ -312,11 +318,11 @@ def _pressures(rig: Rig, recording: Recording) -> list[Complaint]:
         if np.nanmax(values) == np.nanmin(values):
             found.append(Complaint(key, f"is constant at {np.nanmax(values):.4g} Pa: no sensor there?", ""))
             continue
-        ratio = float(np.nanmax(np.abs(values))) / supply
-        # the largest pressure of a chamber is between a tenth of the supply's and three times that
-        slip = next(
-            ((called, has) for factor, called, has in UNITS["Pa"] if 0.1 < ratio / factor < 3.0), None
-        ) if not 0.03 < ratio < 5.0 else None  # fmt: skip
+        ratio = max(float(np.nanmax(np.abs(values))), np.finfo(float).tiny) / supply
+        slip = None
+        if not PLAUSIBLE[0] < ratio < PLAUSIBLE[1]:
+            off, called, has = min(UNITS["Pa"], key=lambda each: abs(math.log(ratio / each[0] / LARGEST)))
+            slip = (called, has) if PLAUSIBLE[0] < ratio / off < PLAUSIBLE[1] else None
         if slip:
             read_as = slip[0].split(" column of ")[1]
             found.append(

@@ -18,6 +18,9 @@ PER_TURN = 2.0 * math.pi
 MORE_THAN_ALL = 2.0
 """A pump that gives so many times what the wide open valve takes at its full pressure was not chosen for it."""
 
+_OF_OIL = ("supply", "fluid")
+"""Sections that an electric machine has for form's sake."""
+
 
 @cache
 def _plausible() -> dict[str, tuple[float, float]]:
@@ -29,9 +32,12 @@ def _plausible() -> dict[str, tuple[float, float]]:
 def implausible(rig: Rig) -> list[Complaint]:
     """Values far beyond what machines have, the unit with which each would be plausible beside it."""
     found = []
+    electric = all(rig.variant(joint, "cylinder") == "electric_motor" for joint in rig.joints)
     for path, entry in rig.entries.items():
         stage, _, name = path.removeprefix("joints.").rpartition(".")
         limits = _plausible().get(f"{stage.rpartition('.')[2]}.{name}")
+        if electric and stage.rpartition(".")[2] in _OF_OIL:
+            continue
         if limits is None or entry.same_as is not None or entry.source.startswith("neutral:"):
             continue
         value = rig.value(path)
@@ -93,6 +99,7 @@ def _pump_and_valve(rig: Rig, joint: str) -> list[Complaint]:
             f"the pump gives {litres * gives:.3g} l/min, {gives / takes:.2g} times what the wide open valve takes from "
             "its full pressure" + (": is the displacement meant per turn?" if per_turn else ""),
             line,
+            wrong=False,
         )
     ]
 

@@ -5,11 +5,11 @@ import numpy as np
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout import roll_out
 
-SHARE_OF_TRAVEL = 1e-4
-"""A reading may differ by this share of the travel, or by the sensor's noise if that is more."""
+SHARE_OF_TRAVEL = 5e-4
+"""A reading may differ by this share of the travel, a good sensor's linearity, or by its noise if that is more."""
 
-SHARE_OF_PRESSURE = 2e-3
-"""The same of the pressures, of the supply; a good transducer's error."""
+SHARE_OF_PRESSURE = 5e-3
+"""The same of the pressures, of the supply: a transducer of class 0.5."""
 
 FINER = 4.0
 """By so much the steps are finer with which others are compared: of second order, they err a sixteenth as much."""

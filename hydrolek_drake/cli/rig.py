@@ -95,7 +95,8 @@ def schema() -> None:
 
 def _say(loaded: object, recording: object) -> int:
     """Print complaints; how many of them are wrong."""
-    from hydrolek_drake.checking import check_recording, check_rig
+    from hydrolek_drake.checking.recording_checks import check_recording
+    from hydrolek_drake.checking.rig_checks import check_rig
     from hydrolek_drake.cli.output import console
 
     out = console()

@@ -130,8 +130,15 @@ def _number(value: float) -> str:
     return text.replace("e", ".0e") if "e" in text and "." not in text else text
 
 
-def _entry(name: str, value: float, unit: str, source: str, limits: tuple[float, float] | None = None) -> str:
-    log = limits is not None and limits[0] > 0.0
+def _entry(
+    name: str,
+    value: float,
+    unit: str,
+    source: str,
+    limits: tuple[float, float] | None = None,
+    log: bool = True,
+) -> str:
+    log = log and limits is not None and limits[0] > 0.0
     fitted = f", range: [{_number(limits[0])}, {_number(limits[1])}]" if limits else ""
     spelled = '"1"' if unit == "1" else unit
     scale = ", scale: log" if log else ""
@@ -294,7 +301,9 @@ def _stops(sheet: Sheet, lower: float, upper: float, lever: float, unit: str, of
     place = fixed("stop_place")["value"] / 100.0 * (upper - lower)
     rows = []
     for name, at in (("lower_stop", lower), ("upper_stop", upper)):
-        rows.append(_entry(name, at, unit, f"{SHEET}: end of the stroke", (at - place, at + place)))
+        rows.append(
+            _entry(name, at, unit, f"{SHEET}: end of the stroke", (at - place, at + place), log=False)
+        )
     return [
         *rows,
         _entry(
