@@ -2,6 +2,7 @@
 
 import json
 
+import jsonschema
 import numpy as np
 import pytest
 
@@ -119,12 +120,10 @@ def test_every_question_is_listed(tmp_path, capsys):
 
 @pytest.mark.parametrize("name", built_in_rigs())
 def test_the_schema_takes_every_built_in_rig(name):
-    jsonschema = pytest.importorskip("jsonschema")
     jsonschema.Draft202012Validator(rig_schema()).validate(read_yaml(built_in_rigs()[name], "rig file"))
 
 
 def test_the_schema_tells_a_wrong_key(capsys):
-    jsonschema = pytest.importorskip("jsonschema")
     assert run(["rig", "schema"]) == 0
     validator = jsonschema.Draft202012Validator(json.loads(capsys.readouterr().out))
     assert not validator.is_valid({"schema": 1, "supply": {"presure": {}}})

@@ -183,13 +183,7 @@ def rig_text(name: str, sheet: Sheet, step: float) -> str:
         sheet: what its data sheet says.
         step: longest step of the integration [s].
     """
-    pump = [
-        _asked(sheet, "displacement"),
-        _asked(sheet, "pump_speed", "speed"),
-        _rise(sheet),
-        _asked(sheet, "relief_hysteresis"),
-        _asked(sheet, "line_volume"),
-    ]
+    pump = _pump(sheet) if sheet.pump else [_kept("flow_time_constant")]
     lines = [
         "# Written by `hydrolek rig new`. A value with a range is searched by a fit; one without is taken as it is.",
         f'# Sources: "{SHEET}" is what was said; "assumed" what nobody said, with a wide range: mend it if you know.',
@@ -209,7 +203,7 @@ def rig_text(name: str, sheet: Sheet, step: float) -> str:
         f"  variant: {'pump' if sheet.pump else 'constant_pressure'}",
         f"  {_asked(sheet, 'supply_pressure', 'pressure')}",
         f"  {_asked(sheet, 'tank_pressure')}",
-        *(f"  {line}" for line in (pump if sheet.pump else [_kept("flow_time_constant")])),
+        *(f"  {line}" for line in pump),
         "",
         "fluid:",
         f"  {_asked(sheet, 'oil_density', 'density')}",
@@ -236,6 +230,16 @@ def rig_text(name: str, sheet: Sheet, step: float) -> str:
         "",
     ]
     return "\n".join(lines)
+
+
+def _pump(sheet: Sheet) -> list[str]:
+    return [
+        _asked(sheet, "displacement"),
+        _asked(sheet, "pump_speed", "speed"),
+        _rise(sheet),
+        _asked(sheet, "relief_hysteresis"),
+        _asked(sheet, "line_volume"),
+    ]
 
 
 def _rise(sheet: Sheet) -> str:
