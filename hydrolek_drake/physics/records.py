@@ -22,7 +22,7 @@ from hydrolek_drake.physics import (
 )
 from hydrolek_drake.physics.law import LAW_RECORD
 from hydrolek_drake.physics.parameters import Stage
-from hydrolek_drake.physics.usual import MARK, RARE
+from hydrolek_drake.physics.usual import MARK, RARE, RARE_NUMBERS
 
 SHARED_STAGES: dict[str, Stage] = {s.STAGE.name: s.STAGE for s in (supply, fluid)}
 """Stages that all joints of a rig share."""
@@ -59,6 +59,8 @@ def as_usual(joints: np.ndarray) -> np.ndarray:
     for stage, variants in RARE.items():
         if np.isin(joints[stage]["variant"], [STAGES[stage].code(variant) for variant in variants]).any():
             return joints
+    if any((joints[stage][name] > 0.0).any() for stage, name in RARE_NUMBERS):
+        return joints
     return joints.view(_USUAL)
 
 

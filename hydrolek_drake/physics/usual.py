@@ -16,6 +16,9 @@ MARK = "usual"
 RARE: dict[str, tuple[str, ...]] = {"supply": ("pump",), "valve": ("four_edges",), "load": ("link",)}
 """Stage -> its variants that stand behind `rare`."""
 
+RARE_NUMBERS: tuple[tuple[str, str], ...] = (("cylinder", "stop_stiffness"),)
+"""Stages and their parameters that stand behind it where they are above zero."""
+
 
 @intrinsic
 def rare(typing_context: Any, joint: Any) -> Any:

@@ -280,7 +280,8 @@ def _cylinder(sheet: Sheet) -> list[str]:
         f"  {_entry('area_b', 1e6 * sheet.area_b, 'mm^2', f'{SHEET}: bore and rod')}",
         f"  {_asked(sheet, 'dead_volume', 'dead_volume_a')}",
         "  dead_volume_b: {same_as: dead_volume_a}",
-        f"  {_asked(sheet, 'stroke')}",
+        f"  {_end(sheet, 'stroke', sheet['stroke'], SHEET)}",
+        *(f"  {line}" for line in _stops(sheet)),
         f"  {_at_start(sheet)}",
         f"  {_asked(sheet, 'seal_damping', 'viscous_friction')}",
         f"  {_kept('friction_velocity')}",
@@ -295,35 +296,41 @@ def _at_start(sheet: Sheet) -> str:
     return _entry("initial_pressure_b", 0.5 * supply / bar, "bar", "assumed: half of the supply", limits)
 
 
-def _stops(sheet: Sheet, lower: float, upper: float, lever: float, unit: str, of: str) -> list[str]:
-    """Stops where the stroke ends; the largest force presses them in by a little."""
-    depth = fixed("stop_depth")
-    stiffness = sheet.force / (depth["value"] * si_factor(depth["unit"], "m")) * lever * lever
-    spread = fixed("stop_depth_factor")["value"]
-    moving = sheet["mass"] * (lever * lever if sheet.turns else 1.0)
+def _stops(sheet: Sheet) -> list[str]:
+    """The piston's stops where the stroke ends; the largest force presses them in by a little."""
+    depth, spread = fixed("stop_depth"), fixed("stop_depth_factor")["value"]
+    stiffness = sheet.force / (depth["value"] * si_factor(depth["unit"], "m"))
+    lever = sheet.lever if sheet.turns else 1.0
+    moving = sheet["mass"] * (sheet["length"] / lever) ** 2 / 3.0 if sheet.turns else sheet["mass"]
     damping = math.sqrt(stiffness * moving)
-    place = fixed("stop_place")["value"] / 100.0 * (upper - lower)
-    rows = []
-    for name, at in (("lower_stop", lower), ("upper_stop", upper)):
-        rows.append(
-            _entry(name, at, unit, f"{SHEET}: end of the stroke", (at - place, at + place), log=False)
-        )
     return [
-        *rows,
-        _entry(
-            "stop_stiffness",
-            stiffness,
-            f"N{' m' if of == 'rad' else ''}/{of}",
-            depth["source"],
-            (stiffness / spread, stiffness * spread),
-        ),
+        _entry("stop_stiffness", stiffness, "N/m", depth["source"], (stiffness / spread, stiffness * spread)),
         _entry(
             "stop_damping",
             damping,
-            f"N{' m' if of == 'rad' else ''} s/{of}",
+            "N s/m",
             f"assumed: half of critical with the mass; {fixed('stop_depth_factor')['source']}",
             (damping / spread, damping * spread),
         ),
+    ]
+
+
+def _end(sheet: Sheet, name: str, value: float, source: str) -> str:
+    """Where the stroke ends or begins [mm], to within what rods are screwed and built to."""
+    spread = 1e3 * fixed("stop_place")["value"] / 100.0 * sheet["stroke"]
+    return _entry(name, 1e3 * value, "mm", source, (1e3 * value - spread, 1e3 * value + spread), log=False)
+
+
+def _beyond(lower: float, upper: float, unit: str, of: str) -> list[str]:
+    """The load's own stops: none where the cylinder has some."""
+    rim = 0.05 * (upper - lower)
+    none = "none: the cylinder's own stops act"
+    torque = "N m" if of == "rad" else "N"
+    return [
+        _entry("lower_stop", lower - rim, unit, "assumed: behind the cylinder's own stop"),
+        _entry("upper_stop", upper + rim, unit, "assumed: behind the cylinder's own stop"),
+        _entry("stop_stiffness", 0.0, f"{torque}/{of}", none),
+        _entry("stop_damping", 0.0, f"{torque} s/{of}", none),
     ]
 
 
@@ -334,7 +341,7 @@ def _link(sheet: Sheet) -> list[str]:
     weighs = _entry("gravity", 0.0, "m/s^2", SHEET) if sheet["upright"] == "yes" else _kept("gravity")
     even = "assumed: spread evenly over the length"
     place = f"{SHEET}: place" if "centre" in sheet.answers else even
-    stops = _stops(sheet, lower, upper, sheet.lever, "deg", "rad")
+    stops = _beyond(lower, upper, "deg", "rad")
     return [
         "linkage:",
         "  variant: triangle",
@@ -342,7 +349,7 @@ def _link(sheet: Sheet) -> list[str]:
         f"  {_entry('distance_child', sheet.child, 'm', f'{SHEET}: link mount')}",
         f"  {_entry('angle_offset', math.degrees(sheet.offset), 'deg', f'{SHEET}: mounts at joint angle zero')}",
         f"  {_entry('direction', sheet.direction, '1', f'{SHEET}: extension turns the link this way')}",
-        f"  {_entry('zero_stroke_length', sheet.zero_length, 'm', f'{SHEET}: mounts and stroke')}",
+        f"  {_end(sheet, 'zero_stroke_length', sheet.zero_length, f'{SHEET}: mounts and stroke')}",
         "load:",
         "  variant: link",
         f"  {_asked(sheet, 'mass')}  # inertia and gravity follow from it and its place",
@@ -374,7 +381,7 @@ def _slide(sheet: Sheet) -> list[str]:
         "  variant: sliding",
         f"  {_asked(sheet, 'mass', 'inertia')}",
         f"  {_asked(sheet, 'guide_damping', 'damping')}",
-        *(f"  {line}" for line in _stops(sheet, 0.0, stroke, 1.0, "mm", "m")),
+        *(f"  {line}" for line in _beyond(0.0, stroke, "mm", "m")),
         f"  {_entry('initial_position', 0.5 * stroke, 'mm', 'half of the stroke')}",
         "sensor:",
         "  variant: position",
