@@ -141,12 +141,12 @@ def _stroke_and_stops(rig: Rig, joint: str) -> list[Complaint]:
 def _step(rig: Rig, joint: str) -> list[Complaint]:
     stated = rig.value("integration.longest_step")
     needed = step_that_agrees(rig, joint)
-    if needed is None or needed >= stated:
+    if needed == stated:
         return []
     return [
         Complaint(
             "integration.longest_step",
             f"{1e3 * stated:g} ms is too long for this machine: with finer steps it moves otherwise",
-            f"longest_step: {{value: {1e3 * needed:g}, unit: ms, ...}}",
+            f"longest_step: {{value: {1e3 * needed:g}, unit: ms, ...}}" if needed else "",
         )
     ]

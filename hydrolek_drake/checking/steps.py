@@ -14,7 +14,7 @@ SHARE_OF_PRESSURE = 5e-3
 FINER = 4.0
 """By so much the steps are finer with which others are compared: of second order, they err a sixteenth as much."""
 
-TRIED = (1.0, 0.5, 0.25, 0.1, 0.05, 0.02)
+TRIED = (1.0, 0.5, 0.25, 0.1, 0.05, 0.02, 0.01)
 """Shares of a rig's own step that are tried until one agrees."""
 
 SECONDS, EVERY, LEVEL = 3.0, 0.01, 0.6
