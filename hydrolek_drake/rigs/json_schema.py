@@ -6,6 +6,7 @@ from typing import Any
 from hydrolek_drake.effects.catalogue import EFFECTS
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.records import JOINT_STAGES, SHARED_STAGES
+from hydrolek_drake.rigs.parts import USES
 from hydrolek_drake.rigs.rig import LONGEST_STEP, SPOOL_STEPS
 
 _TEXT = {"type": "string"}
@@ -69,12 +70,16 @@ def rig_schema() -> dict[str, Any]:
 def _stage(stage: Stage) -> dict[str, Any]:
     """All parameters of any variant; those of one variant alone where it is named."""
     every = {p.name: p for variant in stage.variants for p in stage.parameters(variant)}
-    found = _parameters(every.values(), also={"variant": {"enum": list(stage.variants)}})
+    also = {
+        "variant": {"enum": list(stage.variants)},
+        USES: {"type": "string", "description": "file of a part"},
+    }
+    found = _parameters(every.values(), also=also)
     found["description"] = stage.meaning
     found["allOf"] = [
         {
             "if": {"properties": {"variant": {"const": name}}, "required": ["variant"]},
-            "then": {"propertyNames": {"enum": ["variant", *(p.name for p in stage.parameters(name))]}},
+            "then": {"propertyNames": {"enum": ["variant", USES, *(p.name for p in stage.parameters(name))]}},
         }
         for name in stage.variants
     ]
@@ -107,5 +112,5 @@ def _entry(parameter: Parameter) -> dict[str, Any]:
         "type": "object",
         "additionalProperties": False,
         "properties": {**_ENTRY_KEYS, "same_as": _TEXT},
-        "anyOf": [{"required": ["value", "unit", "source"]}, {"required": ["same_as"]}],
+        "anyOf": [{"required": ["value", "unit"]}, {"required": ["same_as"]}],
     }

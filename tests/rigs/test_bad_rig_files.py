@@ -49,7 +49,6 @@ def _refusal(tmp_path, text):
         ("supply/pressure/unit", "kg", ["supply.pressure", "'kg'", "Pa"]),
         ("supply/pressure/unit", "MegaPascalish", ["supply.pressure", "'MegaPascalish'", "Pa"]),
         ("supply/pressure/unit", REMOVED, ["supply.pressure", "'unit' is missing"]),
-        ("supply/pressure/source", REMOVED, ["supply.pressure", "'source' is missing"]),
         ("supply/pressure/sorce", "x", ["supply.pressure", "'sorce'", "source"]),
         ("supply/pressure", REMOVED, ["supply.pressure is missing", "pump pressure", "[Pa]"]),
         ("supply/pressure", 16, ["supply.pressure", "'16'", "{value: ..., unit: Pa"]),
