@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrolek_drake.cli.inputs import refuse_twice, rig_and_recordings
+from hydrolek_drake.cli.inputs import refuse_twice, rig_and_recordings, tell_what_looks_wrong
 from hydrolek_drake.cli.settings import ConfirmOption, SetOption
 from hydrolek_drake.errors import InputError
 
@@ -68,6 +68,8 @@ def diagnose(
         prepare_folder(out)
     count = workers or os.cpu_count() or 1
     with progress("starting") as tell, RolloutPool(count) as pool:
+        tell("checking ...")
+        tell_what_looks_wrong(loaded, [*train, *held], output)
 
         def say(text: str) -> None:
             tell(f"{text} ...")
