@@ -1,6 +1,7 @@
 """A rig from a data sheet: it loads, its numbers follow from the sheet's, and bad answers are refused in one line."""
 
 import json
+from pathlib import Path
 
 import jsonschema
 import numpy as np
@@ -10,9 +11,11 @@ from hydrolek_drake.cli.app import run
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import built_in_rigs, load_rig
 from hydrolek_drake.rigs.json_schema import rig_schema
-from hydrolek_drake.rigs.wizard import questions, read_answers
+from hydrolek_drake.rigs.reading import rig_from_tree
+from hydrolek_drake.rigs.wizard import questions, read_answers, rig_text
 from hydrolek_drake.rigs.wizard.making import written_rig
-from hydrolek_drake.yaml_files import read_yaml
+from hydrolek_drake.rigs.wizard.writing import Sheet
+from hydrolek_drake.yaml_files import parse_yaml, read_yaml
 
 LINK = {
     "moves": "link", "bore": "40 mm", "rod": "22 mm", "stroke": "0.2 m", "base_mount": "0.10, -0.30 m",
@@ -128,3 +131,25 @@ def test_the_schema_tells_a_wrong_key(capsys):
     validator = jsonschema.Draft202012Validator(json.loads(capsys.readouterr().out))
     assert not validator.is_valid({"schema": 1, "supply": {"presure": {}}})
     assert not validator.is_valid({"supply": {"variant": "pump", "flow_time_constant": {"same_as": "x"}}})
+
+
+STRANGE = (
+    "0", "-1", "1e308", "1e-308", "nan", "inf", "", "0 0", "1,2", "1;2 m", "5 %", "-5 %", "1e5 %", "mm", "40 mm mm",
+    "40 m^9^9", "40 degC", "1e30", "0x10", "link", "pump", "yes", "\x00", "'", "a" * 3000, "[1]", "0 0 0 0", "3.2 rad",
+)  # fmt: skip
+
+
+def test_strange_answers_give_a_rig_or_one_printable_line():
+    generator, done = np.random.default_rng(5), {True: 0, False: 0}
+    for _ in range(1000):
+        given = dict(LINK if generator.random() < 0.6 else SLIDE)
+        for key in generator.choice(list(questions()), size=generator.integers(1, 3)):
+            given[str(key)] = STRANGE[generator.integers(len(STRANGE))]
+        try:
+            text = rig_text("strange", Sheet(read_answers(given)), 5e-4)
+            rig_from_tree(parse_yaml(text, "strange"), Path("strange.yaml"))
+            done[True] += 1
+        except InputError as error:
+            assert str(error).isprintable()
+            done[False] += 1
+    assert min(done.values()) > 20

@@ -14,6 +14,16 @@ from hydrolek_drake.yaml_files import package_yaml
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _SPLIT = re.compile(rf"\s*(?P<numbers>{_NUMBER}(?:[,;\s]+{_NUMBER})*)\s*(?P<unit>[^\d\s,;.+-].*)?")
+SIGNED = ("base_mount", "link_mount", "centre", "mid_stroke_at", "overlap")
+MAY_BE_ZERO = (
+    "rod", "delay", "tank_pressure", "relief_hysteresis", "port_shares", "rated_flow", "angle_noise",
+    "position_noise", "pressure_noise", "bearing_damping", "guide_damping", "seal_damping",
+)  # fmt: skip
+"""Questions whose answers may be below zero, and zero."""
+
+SMALLEST, LARGEST = 1e-15, 1e15
+"""In SI; beyond, nothing can be calculated with an answer."""
+
 SI = {
     "mm": "m", "m": "m", "cm^3": "m^3", "l": "m^3", "deg": "rad", "kg": "kg", "N m s/rad": "N m s/rad",
     "N s/m": "N s/m", "ms": "s", "V": "V", "Hz": "rad/s", "1": "1", "l/min": "m^3/s", "bar": "Pa", "kPa": "Pa",
@@ -114,9 +124,13 @@ def answer(question: Question, text: str) -> Any:
     except InputError as error:
         raise InputError(f"{where}: {error}; such as '{_example(question)}'") from None
     values = tuple(number * factor for number in numbers)
-    positive = question.key not in ("base_mount", "link_mount", "centre", "mid_stroke_at", "overlap")
-    if positive and not all(value >= 0.0 for value in values):
-        raise InputError(f"{where}: must not be below zero")
+    for value in values:
+        if abs(value) > LARGEST or 0.0 < abs(value) < SMALLEST:
+            raise InputError(f"{where}: no machine has that")
+        if value < 0.0 and question.key not in SIGNED:
+            raise InputError(f"{where}: must not be below zero")
+        if value == 0.0 and question.key not in (*SIGNED, *MAY_BE_ZERO):
+            raise InputError(f"{where}: must be above zero")
     return values if question.numbers != (1,) else values[0]
 
 
@@ -157,6 +171,9 @@ def missing(answers: Mapping[str, Any]) -> list[Question]:
     left = [q for q in questions().values() if q.needed and q.key not in answers and q.applies(answers)]
     by_width = "spool_diameter" in answers and "port_shares" in answers
     by_flow = "rated_flow" in answers and "rated_drop" in answers
+    for one, other in (("rated_flow", "rated_drop"), ("rated_drop", "rated_flow")):
+        if one in answers and other not in answers:
+            return [*left, questions()[other]]
     if not by_width and not by_flow:
         names = ("spool_diameter", "port_shares")
         if "spool_diameter" not in answers and "port_shares" not in answers:
