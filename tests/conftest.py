@@ -13,7 +13,7 @@ from hydrolek_drake.rollout import lane_compiling
 from hydrolek_drake.rollout.together import JointsTogether
 
 in_one_thread()  # tests run side by side
-lane_compiling.WORTH = 10**9  # nothing is compiled beside them for later runs
+lane_compiling.WORTH = lane_compiling.WORTH_TOGETHER = 10**9  # nothing is compiled beside them for later runs
 
 MOVING = ("right_j2", "right_j3")
 

@@ -71,7 +71,8 @@ def measure_lanes(
     rows = []
     for label, rig in _machines():
         report(f"machines in lanes: {label}")
-        records, step = _varied(rig, max(COUNTS)), rig.value("integration.longest_step")
+        records = varied(np.repeat(rig.records()[:1], max(COUNTS)), np.random.default_rng(1))
+        step = rig.value("integration.longest_step")
 
         def alone(i: int, records: np.ndarray = records, step: float = step) -> Any:
             return roll_out(records[i : i + 1], times, volts, times, longest_step=step)
@@ -86,9 +87,9 @@ def measure_lanes(
 
         alone(0)  # both are compiled before anything is measured
         together(1)
-        one = _median_seconds(every, 1, repeats)
+        one = median_seconds(every, 1, repeats)
         for count in COUNTS:
-            used, scalar = _median_seconds(together, count, repeats), _median_seconds(every, count, repeats)
+            used, scalar = median_seconds(together, count, repeats), median_seconds(every, count, repeats)
             rows.append(LanesSpeed(label, count, used / one, scalar / one, count * float(times[-1]) / used))
     return rows
 
@@ -126,9 +127,9 @@ def measure_jacobians(
             problem.jacobian(at, base)
 
         roll_out_lanes(Run(record, times, volts, times, step).of(np.repeat(record, LANES)), at_once=True)
-        used, rollout = _median_seconds(whole, 1, repeats), _median_seconds(one, 1, repeats)
+        used, rollout = median_seconds(whole, 1, repeats), median_seconds(one, 1, repeats)
         with one_by_one():
-            scalar = _median_seconds(whole, 1, repeats)
+            scalar = median_seconds(whole, 1, repeats)
         seconds = len(free) * float(times[-1]) / used
         rows.append(LanesSpeed(label, len(free), used / rollout, scalar / rollout, seconds))
     return rows
@@ -158,16 +159,16 @@ def rubbing(rig: Rig) -> Rig:
     )
 
 
-def _varied(rig: Rig, count: int) -> np.ndarray:
-    records = np.repeat(rig.records()[:1], count)
-    generator = np.random.default_rng(1)
+def varied(records: np.ndarray, generator: np.random.Generator) -> np.ndarray:
+    """Records with numbers that differ, delays among them."""
+    found = records.copy()
     for name in ("supply.pressure", "fluid.bulk_modulus", "command.delay", "load.inertia", "valve.discharge"):
-        factors = generator.uniform(1.0 - SPREAD, 1.0 + SPREAD, size=count)
-        flat(records)[:, position_of(*name.split("."))] *= factors
-    return records
+        factors = generator.uniform(1.0 - SPREAD, 1.0 + SPREAD, size=len(found))
+        flat(found)[:, position_of(*name.split("."))] *= factors
+    return found
 
 
-def _median_seconds(work: Callable[[int], Any], count: int, repeats: int) -> float:
+def median_seconds(work: Callable[[int], Any], count: int, repeats: int) -> float:
     """Processor time of a piece of work."""
     taken = []
     for _ in range(repeats):

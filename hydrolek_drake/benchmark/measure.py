@@ -14,6 +14,7 @@ import numpy as np
 
 from hydrolek_drake.benchmark.commands import measure_commands
 from hydrolek_drake.benchmark.lanes import measure_jacobians, measure_lanes
+from hydrolek_drake.benchmark.lanes_together import measure_jacobian_together, measure_lanes_together
 from hydrolek_drake.benchmark.plain_bench import simulate_plainly
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
@@ -83,6 +84,8 @@ def measure(
     all_joints()
     all_name = f"rollout, both arms, {own_step * 1e3:g} ms"
     speeds.append(_speed(all_name, times[-1], all_joints, repeats))
+    of_all = measure_lanes_together(whole, times, volts, repeats, report)
+    jacobian_of_all = measure_jacobian_together(whole, times, volts, repeats, report)
     rig = load_rig("joint_bench")
     times, volts = random_voltage(40.0, 1, generator)
     report("one joint as a Drake diagram")
@@ -122,8 +125,8 @@ def measure(
             for s in speeds
             if s is not fast
         },
-        "lanes": [asdict(row) for row in lanes],
-        "jacobians": [asdict(row) for row in jacobians],
+        "lanes": [asdict(row) for row in (*lanes, *of_all)],
+        "jacobians": [asdict(row) for row in (*jacobians, jacobian_of_all)],
         "commands": [asdict(row) for row in commands],
         "rollout_error_deg": {
             "rms": float(np.sqrt(np.mean(error**2))),

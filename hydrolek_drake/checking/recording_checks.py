@@ -12,7 +12,8 @@ from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import SUPPLY_KEY, driven_joints, measured_position, position_key
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout import roll_out
-from hydrolek_drake.rollout.rollout import Signals, rest_state_at_reading
+from hydrolek_drake.rollout.rest import rest_state_at_reading
+from hydrolek_drake.rollout.rollout import Signals
 
 AGAINST = -0.4
 """Correlation of speeds below which a joint moves against what the rig says."""

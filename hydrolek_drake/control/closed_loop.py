@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 from hydrolek_drake.control.law import ControlLaw
 from hydrolek_drake.control.sdp_model import SdpModel
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.rollout.rollout import rest_state, roll_out
+from hydrolek_drake.rollout.rest import rest_state
+from hydrolek_drake.rollout.rollout import roll_out
 
 _EPSILON = 1e-9
 

@@ -9,7 +9,8 @@ from hydrolek_drake.identification.neighbours import rows_at
 from hydrolek_drake.identification.start import without_offset
 from hydrolek_drake.identification.thinning import Blocks, block_size
 from hydrolek_drake.rollout.kernel import PULLED
-from hydrolek_drake.rollout.rollout import Outcome, Signals, rest_state_at_reading
+from hydrolek_drake.rollout.rest import rest_state_at_reading
+from hydrolek_drake.rollout.rollout import Outcome, Signals
 from hydrolek_drake.rollout.run import Run
 
 

@@ -9,6 +9,8 @@ from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.recorded_together import OneRecording, recordings_of
+from hydrolek_drake.rollout.lane_view import LANES
+from hydrolek_drake.rollout.together_lanes import roll_out_together
 
 
 def problem_of(
@@ -28,8 +30,6 @@ def problem_of(
 
 class ProblemTogether(Problem):
     """Weighted residuals of joints that move together, of which all are rolled out at once."""
-
-    batch = 1
 
     def __init__(self, *given: Any, **named: Any) -> None:
         """Prepare; what is given is that of `Problem`."""
@@ -51,23 +51,29 @@ class ProblemTogether(Problem):
         if self.pull_time is not None:
             return super().residuals_of_all(units)
         self.evaluations += len(units)
-        found = []
-        for unit in units:
-            records = self.parameters.records(unit)
-            if self._all_move:
-                self._recordings = [recording.without_still(records) for recording in self._recordings]
-                self._all_move = False
-            parts = [self._of_recording(i, records) for i in range(len(self._recordings))]
-            found.append(self.bounded(parts))
-        return found
+        places = [self.parameters.records(unit) for unit in units]
+        if self._all_move and places:
+            self._recordings = [recording.without_still(places[0]) for recording in self._recordings]
+            self._all_move = False
+        parts: list[list[np.ndarray | None]] = [[] for _ in units]
+        for i, recording in enumerate(self._recordings):
+            known = [self._known_of(i, records) for records in places]
+            wanted = [k for k, part in enumerate(known) if part is None]
+            for at in range(0, len(wanted), LANES):  # what many joints do all the time takes much room
+                chosen = wanted[at : at + LANES]
+                runs = [recording.run(places[k], recording.times, self.longest_step) for k in chosen]
+                for k, done in zip(chosen, roll_out_together(runs), strict=True):
+                    known[k] = np.concatenate(
+                        [e.residuals(recording.signals_of(e, done)) for e in recording.group]
+                    )
+            for found, part in zip(parts, known, strict=True):
+                found.append(part)
+        return [self.bounded([part for part in found if part is not None]) for found in parts]
 
-    def _of_recording(self, i: int, records: np.ndarray) -> np.ndarray:
-        """Residuals of one recording; those of the anchor if the records of all joints that could move are the same."""
-        recording = self._recordings[i]
-        if self._at_anchor and records[recording.places].tobytes() == self._at_anchor[i][0]:
-            return self._at_anchor[i][1]
-        done = recording.roll_out(records, recording.times, self.longest_step)
-        return np.concatenate([e.residuals(recording.signals_of(e, done)) for e in recording.group])
+    def _known_of(self, i: int, records: np.ndarray) -> np.ndarray | None:
+        """Residuals of a recording at the anchor, if the records of all joints that could move are those of there."""
+        wanted = records[self._recordings[i].places].tobytes()
+        return self._at_anchor[i][1] if self._at_anchor and wanted == self._at_anchor[i][0] else None
 
     def _anew(self) -> "ProblemTogether":
         other = super()._anew()

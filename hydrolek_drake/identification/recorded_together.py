@@ -6,8 +6,9 @@ import numpy as np
 
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.rollout import Signals, rest_state_at_reading
-from hydrolek_drake.rollout.together import JointsTogether, Together, moving_with
+from hydrolek_drake.rollout.rest import rest_state_at_reading
+from hydrolek_drake.rollout.rollout import Signals
+from hydrolek_drake.rollout.together import JointsTogether, RunTogether, Together, moving_with
 
 STILL = 1e-6
 """A joint that was not recorded, draws nothing and moves by less [rad] while the others do may be held: rolling it out
@@ -49,6 +50,10 @@ class OneRecording:
         self._moving = JointsTogether(rig, joints or can_move)
 
     def roll_out(self, records: np.ndarray, times: np.ndarray, longest_step: float | None = None) -> Together:
+        """What the joints do; arguments as of `run`."""
+        return self.run(records, times, longest_step).outcome()
+
+    def run(self, records: np.ndarray, times: np.ndarray, longest_step: float | None = None) -> RunTogether:
         """All joints under the recorded commands, from where they were measured to rest.
 
         Args:
@@ -63,7 +68,7 @@ class OneRecording:
             if e.start is not None:
                 places[e.index] = rest_state_at_reading(records[e.index : e.index + 1], e.start)[4]
         moving = [self._rig.joints.index(joint) for joint in self._moving.joints]
-        return self._moving.roll_out(
+        return self._moving.run(
             records, self.group[0].command_times, volts[:, moving], times, places[moving], longest_step
         )
 

@@ -48,13 +48,19 @@ def no_probe() -> Probe:
 
 
 @njit
+def sample_at(time: float, begin: float, spacing: float, count: int) -> tuple[int, float]:
+    """Place of the last sample before a time, and the share of the way to the next one that has gone by then."""
+    place = min(max((time - begin) / spacing, 0.0), count - 1.0)
+    i = min(int(place), count - 2)
+    return i, place - i
+
+
+@njit
 def probe_at(time: float, begin: float, spacing: float, values: np.ndarray) -> Probe:
     """Probes at a time, on straight lines between samples of uniform spacing."""
     if len(values) == 0:
         return no_probe()
-    place = min(max((time - begin) / spacing, 0.0), len(values) - 1.0)
-    i = min(int(place), len(values) - 2)
-    f = place - i
+    i, f = sample_at(time, begin, spacing, len(values))
     a, b = values[i], values[i + 1]
     return Probe(
         a[0] + f * (b[0] - a[0]),

@@ -5,6 +5,8 @@ against the other. Everything is told in the axes of the base about its origin, 
 wrenches of several bodies are simply added (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 2, 5 and 6).
 """
 
+import math
+
 import numpy as np
 
 from hydrolek_drake.compiling import njit
@@ -81,7 +83,8 @@ def scratch(count: int) -> np.ndarray:
 @njit
 def motion_equation(
     links: np.ndarray,
-    q: np.ndarray,
+    sine: np.ndarray,
+    cosine: np.ndarray,
     w: np.ndarray,
     payload: np.ndarray,
     s: np.ndarray,
@@ -90,18 +93,22 @@ def motion_equation(
 ) -> None:
     """Mass matrix, and the moments that hold the speeds as they are, against gravity too.
 
+    What it does depends on the links alone, so that it can be compiled for numbers of many arms at once
+    (`rollout.lane_numbers`).
+
     Args:
         links: what turns, rows of `link`. # (n, 36)
-        q: joint angles [rad]. # (n,)
+        sine: of the joint angles. # (n,)
+        cosine: of the joint angles. # (n,)
         w: joint speeds [rad/s]. # (n,)
         payload: that hangs on each link that carries one [kg]. # (n,)
         s: `scratch`. # (n, 46)
         matrix: receives M [kg m^2], but for entries between links of two arms. # (n, n)
         bias: receives c [N m]. # (n,)
     """
-    n = len(q)
+    n = len(links)
     for k in range(n):
-        _put_link(links, k, q[k], w[k], payload[k] * links[k, CARRIES], s)
+        _put_link(links, k, sine[k], cosine[k], w[k], payload[k], s)
     for k in range(n - 1, -1, -1):
         z, lever = vector_at(s, k, _SCREW_W), vector_at(s, k, _SCREW_V)
         turning, moving = _momentum(_body_at(s, k), z, lever)
@@ -110,17 +117,25 @@ def motion_equation(
         while j != ROOT:
             matrix[j, k] = dot(vector_at(s, j, _SCREW_W), turning) + dot(vector_at(s, j, _SCREW_V), moving)
             matrix[k, j] = matrix[j, k]
-            j = int(links[j, PARENT])
-        p = int(links[k, PARENT])
+            j = _parent(links, j)
+        p = _parent(links, k)
         if p != ROOT:
             for r in range(_BODY, _SCRATCH_SIZE):
                 s[p, r] += s[k, r]
 
 
 @njit
-def _put_link(links: np.ndarray, k: int, angle: float, speed: float, hanging: float, s: np.ndarray) -> None:
+def _parent(links: np.ndarray, k: int) -> int:
+    """Row of the link on which one turns, or `ROOT`."""
+    return int(links[k, PARENT])
+
+
+@njit
+def _put_link(
+    links: np.ndarray, k: int, sine: float, cosine: float, speed: float, hanging: float, s: np.ndarray
+) -> None:
     """Place, motion, inertia and wrench of one link, from those of the link on which it turns."""
-    p = int(links[k, PARENT])
+    p = _parent(links, k)
     turn: Matrix = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     place = w = v = a_w = (0.0, 0.0, 0.0)
     a_v = scaled(-1.0, vector_at(links, k, GRAVITY))  # as if the base were accelerated upwards
@@ -130,7 +145,7 @@ def _put_link(links: np.ndarray, k: int, angle: float, speed: float, hanging: fl
         a_w, a_v = vector_at(s, p, _CHANGE_W), vector_at(s, p, _CHANGE_V)
     place = plus(place, turned(turn, vector_at(links, k, OFFSET)))
     axis = vector_at(links, k, AXIS)
-    turn = product(product(turn, matrix_at(links, k, TURN)), rotation(axis, angle))
+    turn = product(product(turn, matrix_at(links, k, TURN)), rotation(axis, sine, cosine))
     z = turned(turn, axis)
     lever = cross(place, z)
     # S' = v x S: the motion of the links before carries the axis along
@@ -140,7 +155,7 @@ def _put_link(links: np.ndarray, k: int, angle: float, speed: float, hanging: fl
     v = plus(v, scaled(speed, lever))
     inertia = matrix_at(links, k, INERTIA)
     body = _about_origin(links[k, MASS], vector_at(links, k, MOMENT), inertia, turn, place)
-    if hanging > 0.0:
+    if links[k, CARRIES] > 0.0:
         body = _with_point(body, hanging, plus(place, turned(turn, vector_at(links, k, TOOL))))
     turning, moving = _momentum(body, w, v)
     rising, pushing = _momentum(body, a_w, a_v)
@@ -249,34 +264,87 @@ def _moments_along(
     n = q.shape[1]
     matrix, bias = np.zeros((n, n)), np.empty(n)  # entries between two arms stay zero
     for k in range(len(q)):
-        motion_equation(links, q[k], w[k], payload[k], s, matrix, bias)
+        motion_equation(links, np.sin(q[k]), np.cos(q[k]), w[k], payload[k], s, matrix, bias)
+        moments_of(links, matrix, a[k], needed[k])
         for i in range(n):
-            needed[k, i] = bias[i]
-            for j in range(n):
-                needed[k, i] += matrix[i, j] * a[k, j]
+            needed[k, i] += bias[i]
 
 
 @njit
-def accelerations(matrix: np.ndarray, torque: np.ndarray) -> None:
-    """Solve M q'' = tau in place, by Cholesky's factors of M, of which entries between links of two arms are zero.
+def factored(links: np.ndarray, matrix: np.ndarray) -> None:
+    """M = L' L in place, of which only entries between a link and those that carry it are not zero.
+
+    Those of L stand below the diagonal, and one over its own on it (Featherstone, table 6.3).
 
     Args:
+        links: what turns, rows of `link`. # (n, 36)
+        matrix: M; overwritten. # (n, n)
+    """
+    for k in range(len(links) - 1, -1, -1):
+        matrix[k, k] = 1.0 / math.sqrt(matrix[k, k])
+        i = _parent(links, k)
+        while i != ROOT:
+            matrix[k, i] *= matrix[k, k]
+            i = _parent(links, i)
+        i = _parent(links, k)
+        while i != ROOT:
+            j = i
+            while j != ROOT:
+                matrix[i, j] -= matrix[k, i] * matrix[k, j]
+                j = _parent(links, j)
+            i = _parent(links, i)
+
+
+@njit
+def solved(links: np.ndarray, factor: np.ndarray, torque: np.ndarray) -> None:
+    """Solve M q'' = tau in place (Featherstone, table 6.5).
+
+    Args:
+        links: what turns, rows of `link`. # (n, 36)
+        factor: of M, see `factored`. # (n, n)
+        torque: tau; receives q''. # (n,)
+    """
+    for i in range(len(links) - 1, -1, -1):
+        torque[i] *= factor[i, i]
+        j = _parent(links, i)
+        while j != ROOT:
+            torque[j] -= factor[i, j] * torque[i]
+            j = _parent(links, j)
+    for i in range(len(links)):
+        j = _parent(links, i)
+        while j != ROOT:
+            torque[i] -= factor[i, j] * torque[j]
+            j = _parent(links, j)
+        torque[i] *= factor[i, i]
+
+
+@njit
+def accelerations(links: np.ndarray, matrix: np.ndarray, torque: np.ndarray) -> None:
+    """Solve M q'' = tau in place.
+
+    Args:
+        links: what turns, rows of `link`. # (n, 36)
         matrix: M; overwritten. # (n, n)
         torque: tau; receives q''. # (n,)
     """
-    n = len(torque)
-    for j in range(n):
-        for k in range(j):
-            matrix[j, j] -= matrix[j, k] * matrix[j, k]
-        matrix[j, j] = np.sqrt(matrix[j, j])
-        for i in range(j + 1, n):
-            for k in range(j):
-                matrix[i, j] -= matrix[i, k] * matrix[j, k]
-            matrix[i, j] /= matrix[j, j]
-        for k in range(j):
-            torque[j] -= matrix[j, k] * torque[k]
-        torque[j] /= matrix[j, j]
-    for j in range(n - 1, -1, -1):
-        for k in range(j + 1, n):
-            torque[j] -= matrix[k, j] * torque[k]
-        torque[j] /= matrix[j, j]
+    factored(links, matrix)
+    solved(links, matrix, torque)
+
+
+@njit
+def moments_of(links: np.ndarray, matrix: np.ndarray, acceleration: np.ndarray, moments: np.ndarray) -> None:
+    """M q''.
+
+    Args:
+        links: what turns, rows of `link`. # (n, 36)
+        matrix: M. # (n, n)
+        acceleration: q''. # (n,)
+        moments: receives them. # (n,)
+    """
+    for i in range(len(links)):
+        moments[i] = matrix[i, i] * acceleration[i]
+        j = _parent(links, i)
+        while j != ROOT:
+            moments[i] += matrix[i, j] * acceleration[j]
+            moments[j] += matrix[i, j] * acceleration[i]
+            j = _parent(links, j)

@@ -1,7 +1,5 @@
 """Vectors and matrices of space as tuples, for compiled code: in registers, without arrays."""
 
-import math
-
 import numpy as np
 
 from hydrolek_drake.compiling import njit
@@ -12,10 +10,10 @@ Matrix = tuple[float, float, float, float, float, float, float, float, float]
 
 
 @njit
-def rotation(axis: Vector, angle: float) -> Matrix:
-    """Rotation about a unit vector (Rodrigues)."""
-    c, s = math.cos(angle), math.sin(angle)
+def rotation(axis: Vector, sine: float, cosine: float) -> Matrix:
+    """Rotation about a unit vector (Rodrigues), by an angle of which sine and cosine are known."""
     x, y, z = axis
+    s, c = sine, cosine
     d = 1.0 - c
     return (
         c + d * x * x,

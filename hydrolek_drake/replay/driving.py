@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.rollout import Signals, rest_state_at_reading, roll_out
+from hydrolek_drake.rollout.rest import rest_state_at_reading
+from hydrolek_drake.rollout.rollout import Signals, roll_out
 from hydrolek_drake.rollout.together import JointsTogether, moving_with
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics.amplifier import Currents
-from hydrolek_drake.physics.angle import Angle
+from hydrolek_drake.physics.angle import AngleKept
 from hydrolek_drake.rollout.drive import Drive
 from hydrolek_drake.rollout.rates import Slopes, State, Turned
 
@@ -15,17 +15,21 @@ STATE, RATES, MIDDLE, LATER, SLOPES, NEAR, DRIVE, SPOOL, VOLTS, COMMAND, PLAY, I
     0, 10, 20, 30, 40, 46, 52, 57, 58, 59, 60, 61, 62, 63,
 )  # fmt: skip
 """Where a joint's numbers begin in its row: `State`, its rates at the beginning of a step, the state after the first
-stage and rates there, stiff slopes at the beginning, `Turned` at the last time written, `Drive`, the spool before the
+stage and rates there, stiff slopes at the beginning, `Turned` at the beginning, `Drive`, the spool before the
 step, the voltage that drives, the command, what the sensor's play reads, inertia with the others held, the rod's part
 of it, and the drag that enters a step through the mass matrix."""
 
-ROW_SIZE = 64
+MOMENT, SINE, COSINE, DRAWN, TOTAL = range(64, 69)
+"""What it tells the others where its rates were taken: the moment left for motion, sine and cosine of its angle, and
+the flow that it draws from the supply; and the flow that all of them draw."""
 
-TORQUE, BIAS, PAYLOAD, ANGLE, SPEED = range(5)
+ROW_SIZE = 69
+
+TORQUE, BIAS, PAYLOAD, SINES, COSINES, SPEEDS = range(6)
 """Rows of what the arms' equation of motion takes and gives, a number for each joint."""
 
-MASS, FACTOR = range(2)
-"""M at the beginning of a step, and a matrix that is factored."""
+MASS, LESSENED, THERE = range(3)
+"""M at the beginning of a step; M with stiff friction there, and M where the first stage ended, both factored."""
 
 OF_SUPPLY, W = State._fields.index("supply"), State._fields.index("w")
 STIFF_SUPPLY, STIFF_W = Slopes._fields.index("supply"), Slopes._fields.index("w")
@@ -34,8 +38,8 @@ X = 3
 
 
 def room(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Room for so many joints: rows, vectors and matrices. # (n, 64), (5, n), (2, n, n)."""
-    return np.zeros((n, ROW_SIZE)), np.zeros((5, n)), np.zeros((2, n, n))
+    """Room for so many joints: rows, vectors and matrices. # (n, 69), (6, n), (3, n, n)."""
+    return np.zeros((n, ROW_SIZE)), np.zeros((6, n)), np.zeros((3, n, n))
 
 
 @njit
@@ -72,9 +76,21 @@ def put_state(rows: np.ndarray, i: int, f: int, s: State) -> None:
 
 @njit
 def near_at(r: np.ndarray, i: int) -> Turned:
-    """How far a joint had turned at the last time written."""
+    """How far a joint had turned at the beginning of a step."""
     f = NEAR
-    return Turned(Angle(r[i, f], r[i, f + 1], r[i, f + 2]), Angle(r[i, f + 3], r[i, f + 4], r[i, f + 5]))
+    return Turned(
+        AngleKept(r[i, f], r[i, f + 1], r[i, f + 2], True),
+        AngleKept(r[i, f + 3], r[i, f + 4], r[i, f + 5], True),
+    )
+
+
+@njit
+def put_near(r: np.ndarray, i: int, near: Turned) -> None:
+    """Write that."""
+    f = NEAR
+    p, m = near.position, near.included
+    r[i, f], r[i, f + 1], r[i, f + 2], r[i, f + 3] = p.value, p.sine, p.cosine, m.value
+    r[i, f + 4], r[i, f + 5] = m.sine, m.cosine
 
 
 @njit
@@ -89,3 +105,11 @@ def drive_at(r: np.ndarray, i: int) -> Drive:
     """Ramp, coils and spool of a joint."""
     f = DRIVE
     return Drive(r[i, f], Currents(r[i, f + 1], r[i, f + 2]), r[i, f + 3], r[i, f + 4])
+
+
+@njit
+def put_drive(r: np.ndarray, i: int, d: Drive) -> None:
+    """Write them."""
+    f = DRIVE
+    r[i, f], r[i, f + 1], r[i, f + 2], r[i, f + 3] = d.behind, d.currents.a, d.currents.b, d.x
+    r[i, f + 4] = d.xd

@@ -15,13 +15,18 @@ from pathlib import Path
 
 import numba
 import numpy as np
+from llvmlite.binding import get_host_cpu_name
 
 from hydrolek_drake.physics.law import LAW
+from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.physics.records import JOINT
 from hydrolek_drake.rollout.lane_view import Kind
 
 WORTH = 200
 """Machines of a kind that have been asked for before its loop is compiled: a fit of some steps, and no single look."""
+
+WORTH_TOGETHER = 40
+"""The same of machines with joints of a kind that move together, which take longer: some Jacobians."""
 
 _lock = threading.Lock()
 _ready: set[str] = set()
@@ -45,10 +50,10 @@ def ready(kind: Kind, joint: np.ndarray, law: np.ndarray | None, count: int, spo
             return True
         _asked[kind.name] += count
         _running[:] = [process for process in _running if process.poll() is None]
-        if _asked[kind.name] >= WORTH and not _running:
+        if _asked[kind.name] >= (WORTH_TOGETHER if kind.together else WORTH) and not _running:
             _asked[kind.name] = 0  # should it fail, it is tried again after as many
             with contextlib.suppress(OSError):
-                _running.append(_begin(joint, law, spool_steps))
+                _running.append(_begin(joint, law, spool_steps, kind.probed, kind.together))
         return False
 
 
@@ -61,13 +66,21 @@ def compiled(kind: Kind) -> None:
 
 
 def _mark(kind: Kind) -> Path:
-    return Path(numba.config.CACHE_DIR or ".") / f"lanes_{kind.name}"
+    processor = numba.config.CPU_NAME or get_host_cpu_name()  # a home folder may be that of several computers
+    return Path(numba.config.CACHE_DIR or ".") / f"lanes_{kind.name}_{processor}"
 
 
-def _begin(joint: np.ndarray, law: np.ndarray | None, spool_steps: int) -> "subprocess.Popen[bytes]":
+def _begin(
+    joint: np.ndarray,
+    law: np.ndarray | None,
+    spool_steps: int,
+    probed: bool = False,
+    together: bool = False,
+) -> "subprocess.Popen[bytes]":
     """A process that compiles the loop for machines of a joint's kind, and outlives this one if need be."""
+    told = (spool_steps, int(probed), int(together))
     process = subprocess.Popen(
-        [sys.executable, "-m", "hydrolek_drake.rollout.lane_compiling", str(spool_steps)],
+        [sys.executable, "-m", "hydrolek_drake.rollout.lane_compiling", *map(str, told)],
         stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
@@ -83,14 +96,22 @@ def main() -> None:
     """Compile the loop for the joint whose record, and the law whose terms, are on standard input."""
     from hydrolek_drake.rollout.lanes import roll_out_lanes
     from hydrolek_drake.rollout.run import Run
+    from hydrolek_drake.rollout.together_lanes import compile_for
 
     with contextlib.suppress(OSError, AttributeError):
         os.nice(10)
     given = sys.stdin.buffer.read()
     joint, law = np.frombuffer(given[: JOINT.itemsize], JOINT), np.frombuffer(given[JOINT.itemsize :], LAW)
+    spool_steps, probed, together = (int(given) for given in sys.argv[1:4])
+    if together:
+        compile_for(joint, law if len(law) else None, spool_steps)
+        return
     step = 1e-3
     times = np.array([0.0, step])
-    run = Run(joint, times, np.zeros(2), times, step, int(sys.argv[1]), law=law if len(law) else None)
+    probes = (step, np.zeros((2, len(PROBES)))) if probed else None
+    run = Run(
+        joint, times, np.zeros(2), times, step, spool_steps, probes=probes, law=law if len(law) else None
+    )
     roll_out_lanes([run], at_once=True)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import command, hooks, load, sensor
 from hydrolek_drake.physics.amplifier import Currents
-from hydrolek_drake.physics.probes import no_probe
+from hydrolek_drake.physics.probes import no_probe, probe_at, sample_at
 from hydrolek_drake.rollout.drive import Drive, driven_on
 from hydrolek_drake.rollout.kernel import (
     arrived,
@@ -25,12 +25,18 @@ from hydrolek_drake.rollout.kernel import (
     written,
 )
 from hydrolek_drake.rollout.lane_table import (
+    COMMANDED,
     KEPT,
     NEAR,
     NEAR_NEXT,
     NEXT,
     NUMBERS_OF_JOINT,
+    PLANNED,
     ROD,
+    SAMPLE,
+    SAMPLE_NEXT,
+    SHARE,
+    SHARE_NEXT,
     STATE,
     TERMS,
     TIME,
@@ -38,11 +44,21 @@ from hydrolek_drake.rollout.lane_table import (
     H,
     drive_in,
     near_in,
+    probe_in,
     put,
     put_near,
+    put_sample,
     state_in,
 )
-from hydrolek_drake.rollout.lane_view import LANES, NUMBERS, early_of, lane_joint, lane_law, spool_steps_of
+from hydrolek_drake.rollout.lane_view import (
+    LANES,
+    NUMBERS,
+    early_of,
+    lane_joint,
+    lane_law,
+    probed_of,
+    spool_steps_of,
+)
 from hydrolek_drake.rollout.rates import State, carried_on, turned
 
 _L = LANES
@@ -58,19 +74,23 @@ def _all_lanes(kind: Any, b: np.ndarray) -> None:
     forceinline=True
 )  # and with it all that it calls: a call that is left keeps the loop from vector instructions
 def _loop(kind: Any, b: np.ndarray) -> None:
-    probe = no_probe()
     for lane in range(_L):
         joint = lane_joint(kind, b, NUMBERS_OF_JOINT * _L + lane)
         s, d, play = state_in(b, STATE, lane), drive_in(b, STATE, lane), b[(STATE + 14) * _L + lane]
         near = near_in(b, NEAR, lane)
         h, volts, time = b[H * _L + lane], b[VOLTS * _L + lane], b[TIME * _L + lane]
-        voltage = command.drive_voltage(volts, joint)
+        probe = probe_next = no_probe()
+        commanded = volts
+        if probed_of(kind):
+            probe, probe_next = probe_in(b, SAMPLE, SHARE, lane), probe_in(b, SAMPLE_NEXT, SHARE_NEXT, lane)
+            commanded = b[COMMANDED * _L + lane]
+        voltage = command.drive_voltage(commanded, joint)
         law = lane_law(kind, b, TERMS * _L + lane)
         e, drive = driven_on(
-            d, s, volts, voltage, time, h, spool_steps_of(kind), early_of(kind), probe, probe, law, joint
+            d, s, volts, voltage, time, h, spool_steps_of(kind), early_of(kind), probe, probe_next, law, joint
         )
         inertia = inertia_at(time, b[ROD * _L + lane], joint)
-        n = one_step(s, d.x, e.x, drive, time, h, inertia, probe, probe, law, near, joint)
+        n = one_step(s, d.x, e.x, drive, time, h, inertia, probe, probe_next, law, near, joint)
         played = sensor.played(play, n.q - n.tilt, joint)
         after = carried_on(near, n, joint)
         position, included = after.position, after.included
@@ -114,6 +134,9 @@ def integrate_lanes(
     most_steps: int,
     pull_time: np.ndarray,
     measured: np.ndarray,
+    probe_spacing: np.ndarray,
+    probe_places: np.ndarray,
+    probe_values: np.ndarray,
     out: np.ndarray,
     done: np.ndarray,
 ) -> None:
@@ -133,25 +156,36 @@ def integrate_lanes(
         most_steps: at least as many as any machine takes between two of its times.
         pull_time: as of `kernel.integrate` [s], shape (lanes,).
         measured: as of `kernel.integrate`, shape (lanes, k, 3), or (lanes, 0, 3) where none is pulled.
+        probe_spacing: as of `kernel.integrate` [s], shape (lanes,).
+        probe_places: where the samples of each machine's inputs from outside begin among all, and how many it has,
+            shape (lanes, 2).
+        probe_values: samples, shape (all, 15); no rows without such inputs.
         out: signals, shape (lanes, k, 8).
         done: rows written of each machine, shape (lanes,); fewer than its `rows` where one diverged at that row.
     """
-    machines, held, steps = np.zeros((_L, 2)), np.full(_L, -1), np.zeros((most_steps, 3, _L))
+    machines, held, steps = np.zeros((_L, 2)), np.full(_L, -1), np.zeros((most_steps, PLANNED, _L))
+    told = 3  # rows of these that a step takes
+    samples, loaded = np.zeros((most_steps, 2, _L), np.int64), np.full((2, _L), -1)
+    if probed_of(kind):
+        told = PLANNED
     b = _entered(joints, numbers, laws, states, times, machines)
     done[:] = rows
     for row in range(rows.max()):
         most = _plan(
             joints, row, rows, times, machines, command_times, command_values, longest_step, b,
-            held, steps,
+            held, steps, probe_spacing, probe_places, probe_values, samples,
         )  # fmt: skip
         for i in range(most):
-            b[H * _L : (H + 3) * _L] = steps[i].ravel()
+            b[H * _L : (H + told) * _L] = steps[i, :told].ravel()
+            if probed_of(kind):
+                _load_samples(b, samples[i], loaded, probe_values)
             _all_lanes(kind, b)
             b[STATE * _L : (STATE + KEPT) * _L] = b[NEXT * _L : (NEXT + KEPT) * _L]
             b[NEAR * _L : (NEAR + 6) * _L] = b[NEAR_NEXT * _L : (NEAR_NEXT + 6) * _L]
         _write(
-            joints, laws, row, rows, times, machines, command_values, held, pull_time, measured, b, out, done
-        )
+            joints, laws, row, rows, times, machines, command_values, held, pull_time, measured,
+            probe_spacing, probe_places, probe_values, b, out, done,
+        )  # fmt: skip
     _leave(joints, times, rows, machines, b, states)
 
 
@@ -190,10 +224,15 @@ def _plan(
     b: np.ndarray,
     held: np.ndarray,
     steps: np.ndarray,
+    probe_spacing: np.ndarray,
+    probe_places: np.ndarray,
+    probe_values: np.ndarray,
+    samples: np.ndarray,
 ) -> int:
     """Steps of all machines up to their next row: as many as that takes which needs most.
 
-    Their lengths [s], commands [V] and beginnings [s] are written to `steps`, shape (k, 3, lanes).
+    What the table holds of a step, from `H` on, is written to `steps`, shape (k, 6, lanes), and which samples of inputs
+    from outside come before its begin and its end, among all, to `samples`, shape (k, 2, lanes).
     """
     most, count = 0, np.zeros(_L, np.int64)
     for lane in range(_L):
@@ -214,9 +253,19 @@ def _plan(
                 joint,
             )
             held[lane] = stretch.held
+            first, many = probe_places[lane]
+            begin, spacing = times[lane, 0], probe_spacing[lane]
             if stretch.h > 0.0:
+                added = 0.0
+                if many > 0:
+                    added = probe_at(t, begin, spacing, probe_values[first : first + many]).command
                 for i in range(stretch.steps):
                     k = count[lane]
+                    steps[k, 3, lane] = stretch.volts + added
+                    if many > 0:
+                        for end in range(2):
+                            at, share = sample_at(t + (i + end) * stretch.h, begin, spacing, many)
+                            samples[k, end, lane], steps[k, 4 + end, lane] = first + at, share
                     steps[k, 0, lane], steps[k, 1, lane] = stretch.h, stretch.volts
                     steps[k, 2, lane] = t + i * stretch.h - machines[lane, 0]
                     count[lane] += 1
@@ -226,6 +275,16 @@ def _plan(
         for i in range(count[lane], most):
             steps[i, 0, lane] = 0.0
     return most
+
+
+@njit
+def _load_samples(b: np.ndarray, wanted: np.ndarray, loaded: np.ndarray, values: np.ndarray) -> None:
+    """Bring the samples of inputs from outside into the table that a step needs and the last one did not."""
+    for lane in range(_L):
+        for end in range(2):
+            if wanted[end, lane] != loaded[end, lane]:
+                loaded[end, lane] = wanted[end, lane]
+                put_sample(b, SAMPLE if end == 0 else SAMPLE_NEXT, lane, values, wanted[end, lane])
 
 
 @njit(cache=True)
@@ -240,6 +299,9 @@ def _write(
     held: np.ndarray,
     pull_time: np.ndarray,
     measured: np.ndarray,
+    probe_spacing: np.ndarray,
+    probe_places: np.ndarray,
+    probe_values: np.ndarray,
     b: np.ndarray,
     out: np.ndarray,
     done: np.ndarray,
@@ -259,7 +321,9 @@ def _write(
         inertia = inertia_at(time, b[ROD * _L + lane], joint)
         law = None if laws is None else laws[lane]
         near = near_in(b, NEAR, lane)
-        written(d, s, play, volts, time, inertia, no_probe(), law, near, joint, out[lane, row])
+        first, many = probe_places[lane]
+        probe = probe_at(t, times[lane, 0], probe_spacing[lane], probe_values[first : first + many])
+        written(d, s, play, volts, time, inertia, probe, law, near, joint, out[lane, row])
         if pull_time[lane] > 0.0 and row < last:
             share = 1.0 - math.exp((t - times[lane, row + 1]) / pull_time[lane])
             s, by = pulled(s, share, out[lane, row, 0], measured[lane, row])

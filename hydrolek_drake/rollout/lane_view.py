@@ -8,14 +8,14 @@ of which the compiler leaves out the branches.
 
 import hashlib
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numba import types
 from numba.core import cgutils
-from numba.core.imputils import lower_getattr_generic
+from numba.core.imputils import lower_constant, lower_getattr_generic
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import NativeValue, intrinsic, models, register_model, typeof_impl, unbox
 
@@ -39,19 +39,21 @@ class Kind:
         spool_steps: steps of the spool within one step.
         terms: of the law of every lane; 0 for none. Which factors they have may differ.
         early: whether the laws may act before the spool or on it.
+        probed: whether there are inputs from outside, `probes.PROBES`.
+        together: whether it is a joint of those that move together.
     """
 
     known: tuple[tuple[int, float], ...]
     spool_steps: int
     terms: int = 0
     early: bool = False
+    probed: bool = False
+    together: bool = False
 
     @cached_property
     def name(self) -> str:
         """Short, and another one for every kind."""
-        return hashlib.sha256(
-            repr((self.known, self.spool_steps, self.terms, self.early)).encode()
-        ).hexdigest()[:12]
+        return hashlib.sha256(repr(astuple(self)).encode()).hexdigest()[:12]
 
 
 class KindType(types.Opaque):
@@ -63,6 +65,11 @@ class KindType(types.Opaque):
 
 
 register_model(KindType)(models.OpaqueModel)
+
+
+@lower_constant(KindType)
+def _constant_kind(context: Any, builder: Any, typ: Any, kind: Any) -> Any:
+    return context.get_dummy_value()
 
 
 @unbox(KindType)
@@ -190,3 +197,6 @@ spool_steps_of = _constant(lambda kind: kind.spool_steps, types.intp)
 
 early_of = _constant(lambda kind: kind.early, types.boolean)
 """Whether laws may act before the spool or on it."""
+
+probed_of = _constant(lambda kind: kind.probed, types.boolean)
+"""Whether there are inputs from outside."""

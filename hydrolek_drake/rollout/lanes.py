@@ -4,52 +4,34 @@ import contextlib
 import os
 import threading
 from collections.abc import Iterator, Sequence
-from functools import cache
 from typing import Protocol
 
 import numpy as np
 
 from hydrolek_drake.compiled import read_only
-from hydrolek_drake.effects.catalogue import EFFECTS
-from hydrolek_drake.physics.law import LAW, MOST_TERMS
-from hydrolek_drake.physics.records import JOINT, STAGES, flat, position_of
-from hydrolek_drake.physics.solenoid import steps_needed
+from hydrolek_drake.physics.law import MOST_TERMS
+from hydrolek_drake.physics.probes import NO_PROBE
+from hydrolek_drake.physics.records import JOINT, flat
 from hydrolek_drake.rollout import kernel
-from hydrolek_drake.rollout.drive import acts_early
 from hydrolek_drake.rollout.lane_compiling import compiled, ready
 from hydrolek_drake.rollout.lane_kernel import integrate_lanes
+from hydrolek_drake.rollout.lane_kinds import kind_of
+from hydrolek_drake.rollout.lane_table import filled_up, side_by_side
 from hydrolek_drake.rollout.lane_view import LANES, Kind
+from hydrolek_drake.rollout.rest import rest_state
 from hydrolek_drake.rollout.rollout import (
     DIVIDED_BY_ZERO,
     Outcome,
     Signals,
     check_times,
     missing_number,
-    rest_state,
     why_diverged,
     with_own,
 )
 from hydrolek_drake.rollout.run import Run
 
-GROUPS = (
-    ("rod_friction", "load_friction"),
-    ("coil_gain", "flow_gain", "viscous_gain"),
-    ("spool_friction",),
-    ("linkage_gap",),
-    ("base_stiffness", "base_inertia"),
-)
-"""Hooks whose effects take time in every step, or make it another program. A loop over lanes is compiled with a group
-or without it; what enters at other hooks costs little, and is a number that may be zero."""
-
-SOMETIMES = ("command.ramp", "amplifier.coil_time", "valve.flow_force", "cylinder.stop_stiffness")
-"""Parameters of the stages that most machines have at zero, and that cost as much."""
-
-
 SWITCH, OFF = "HYDROLEK_LANES", "0"
 """Environment variable, and its value with which machines are rolled out one by one, as for a comparison."""
-
-TERMS = (1, 2, 3, MOST_TERMS)
-"""Numbers of a law's terms for which loops are compiled; a law in between gets terms of no size."""
 
 FEW = 2
 """So many machines take no longer one by one."""
@@ -103,8 +85,8 @@ def one_by_one() -> Iterator[None]:
 def roll_out_lanes(runs: Sequence[Run], *, at_once: bool = False) -> list[Outcome]:
     """Drive several machines side by side; each does what it does alone (`Run.outcome`), to the last bit.
 
-    They may differ in everything. What takes a program of its own (`kind_of`) goes with its like; machines with
-    probes, and laws of more than `MOST_TERMS` terms, are driven alone.
+    They may differ in everything. What takes a program of its own (`kind_of`) goes with its like; machines with laws of
+    more than `MOST_TERMS` terms are driven alone.
 
     Args:
         runs: machines, and what each is driven with.
@@ -127,7 +109,7 @@ def roll_out_lanes(runs: Sequence[Run], *, at_once: bool = False) -> list[Outcom
     laws = [with_own(run.law, run.joint) for run in runs]
     for i, (run, law) in enumerate(zip(runs, laws, strict=True)):
         if _in_lanes(run, law):
-            groups.setdefault(kind_of(run.joint, run.spool_steps, law), []).append(i)
+            groups.setdefault(_kind(run, law), []).append(i)
         else:
             found[i] = run.outcome()
     for kind, members in groups.items():
@@ -151,7 +133,7 @@ def one_table(kind: Kind, runs: Sequence[Run], laws: Sequence[np.ndarray | None]
 
     Args:
         kind: of all of them.
-        runs: machines without probes, and what each is driven with.
+        runs: machines, and what each is driven with.
         laws: of each, with that of its record.
     """
     lanes = [*runs, *[runs[-1]] * (LANES - len(runs))]
@@ -170,7 +152,7 @@ def one_table(kind: Kind, runs: Sequence[Run], laws: Sequence[np.ndarray | None]
     terms, numbers = None, flat(joints)
     if kind.terms:
         own = [law for law in laws if law is not None]
-        terms = np.stack([_filled_up(law, kind.terms) for law in (*own, *[own[-1]] * (LANES - len(own)))])
+        terms = np.stack([filled_up(law, kind.terms) for law in (*own, *[own[-1]] * (LANES - len(own)))])
         numbers = np.concatenate([numbers, terms.view(np.float64).reshape(LANES, -1)], axis=1)
     states = np.stack([rest_state(run.joint) if run.state is None else run.state for run in lanes])
     out = np.full((LANES, int(rows.max()), len(kernel.SIGNALS)), np.nan)
@@ -181,9 +163,9 @@ def one_table(kind: Kind, runs: Sequence[Run], laws: Sequence[np.ndarray | None]
         np.ascontiguousarray(numbers),
         terms,
         states,
-        _side_by_side([times for times, _ in commands], np.inf),
-        _side_by_side([values for _, values in commands], np.nan),
-        _side_by_side([run.times for run in lanes], np.nan),
+        side_by_side([times for times, _ in commands], np.inf),
+        side_by_side([values for _, values in commands], np.nan),
+        side_by_side([run.times for run in lanes], np.nan),
         rows,
         np.array([run.longest_step for run in lanes]),
         max(
@@ -192,6 +174,7 @@ def one_table(kind: Kind, runs: Sequence[Run], laws: Sequence[np.ndarray | None]
         ),
         np.array([0.0 if run.pull is None else run.pull[0] for run in lanes]),
         measured,
+        *_outside(lanes),
         out,
         done,
     )
@@ -213,27 +196,37 @@ def _changes(times: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndar
     return times[changes], values[changes]
 
 
-def _side_by_side(series: Sequence[np.ndarray], behind: float) -> np.ndarray:
-    """Series of different lengths in rows, filled up with a value."""
-    rows = np.full((len(series), max(map(len, series))), behind)
-    for row, values in zip(rows, series, strict=True):
-        row[: len(values)] = values
-    return rows
-
-
-def _filled_up(law: np.ndarray, count: int) -> np.ndarray:
-    """A law with terms of no size. # (k,) -> (count,)."""
-    terms = np.ones(count, dtype=LAW)  # what divides is not zero
-    for name in ("sine", "cosine", "frequency", "probe", "time", "place", "speed_shape", "other"):
-        terms[name] = 0.0
-    terms[: len(law)] = law
-    return terms
+def _outside(lanes: Sequence[Run]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Spacing, places and samples of inputs from outside, as of `integrate_lanes`, those of several machines once."""
+    spacing, places = np.ones(len(lanes)), np.zeros((len(lanes), 2), dtype=np.int64)
+    begins: dict[int, int] = {}
+    samples, end = [NO_PROBE], 0
+    for lane, run in enumerate(lanes):
+        if run.probes is None:
+            continue
+        spacing[lane], values = run.probes
+        if id(values) not in begins:
+            begins[id(values)] = end
+            # a single sample is a line between it and itself
+            samples.append(values if len(values) != 1 else np.repeat(values, 2, axis=0))
+            end += len(samples[-1])
+        places[lane] = begins[id(values)], max(len(values), 2) if len(values) else 0
+    return spacing, places, np.ascontiguousarray(np.concatenate(samples))
 
 
 def _in_lanes(run: Run, law: np.ndarray | None) -> bool:
     """Whether there can be a loop over lanes for a machine."""
-    few = law is None or len(law) <= MOST_TERMS
-    return run.probes is None and few and missing_number(run.joint) is None
+    return (law is None or len(law) <= MOST_TERMS) and missing_number(run.joint) is None and _begins(run)
+
+
+def _begins(run: Run) -> bool:
+    """Whether a machine has a state to begin with; one that divides by zero has none."""
+    if run.state is None:
+        try:
+            rest_state(run.joint)
+        except ZeroDivisionError:
+            return False
+    return True
 
 
 def compiled_kind_of(run: Run, law: np.ndarray | None) -> Kind | None:
@@ -245,49 +238,12 @@ def compiled_kind_of(run: Run, law: np.ndarray | None) -> Kind | None:
     """
     if not _in_lanes(run, law):
         return None
-    kind = kind_of(run.joint, run.spool_steps, law)
+    kind = _kind(run, law)
     return kind if ready(kind, run.joint, law, 1, run.spool_steps) else None
 
 
-def kind_of(joint: np.ndarray, spool_steps: int, law: np.ndarray | None = None) -> Kind:
-    """What of a machine is known when a loop over lanes is compiled.
-
-    Args:
-        joint: its record, shape (1,).
-        spool_steps: as of `roll_out`.
-        law: how inputs from outside follow from the state, rows of `law.LAW`, or None.
-    """
-    numbers = flat(joint)[0]
-    variants, groups, sometimes = _places()
-    known = {place: float(numbers[place]) for place in variants}
-    for sizes, places in groups:
-        if all(numbers[size] == neutral for size, neutral in sizes):
-            known |= {place: float(neutral) for place, neutral in places}
-    known |= {place: 0.0 for place in sometimes if not numbers[place] > 0.0}
-    steps = int(steps_needed(spool_steps, joint[0]))
-    if law is None:
-        return Kind(tuple(sorted(known.items())), steps)
-    terms = next(count for count in TERMS if count >= len(law))
-    return Kind(tuple(sorted(known.items())), steps, terms, bool(acts_early(law, joint[0])))
-
-
-_Places = tuple[tuple[int, float], ...]
-
-
-@cache
-def _places() -> tuple[tuple[int, ...], tuple[tuple[_Places, _Places], ...], tuple[int, ...]]:
-    """Places in a flat record: of variants; of each group: sizes, and all numbers, with neutral values; others."""
-    variants = tuple(position_of(stage, "variant") for stage in STAGES)
-    groups = []
-    for hooks in GROUPS:
-        effects = [effect for effect in EFFECTS.values() if any(hook in effect.hooks for hook in hooks)]
-        sizes = tuple((position_of(e.key, e.size), e.neutral_size) for e in effects)
-        numbers = tuple(
-            (position_of(e.key, p.name), float(p.neutral or 0.0)) for e in effects for p in e.parameters
-        )
-        groups.append((sizes, numbers))
-    sometimes = tuple(position_of(*path.split(".")) for path in SOMETIMES)
-    return variants, tuple(groups), sometimes
+def _kind(run: Run, law: np.ndarray | None) -> Kind:
+    return kind_of(run.joint, run.spool_steps, law, run.probes is not None and len(run.probes[1]) > 0)
 
 
 def _most_steps(times: np.ndarray, moments: np.ndarray, longest_step: float) -> int:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import linkage, load, supply, valve
+from hydrolek_drake.physics import linkage, load, valve
 from hydrolek_drake.physics.law import Seen, law_value
 
 
@@ -25,12 +25,6 @@ def inlet_conductance(p_supply: float, p_a: float, p_b: float, joint: Any) -> fl
 def stroke_and_lever(angle: float, joint: Any) -> tuple[float, float]:
     """Stroke [m] and lever [m] of a joint's linkage at an angle [rad]; see `linkage.stroke_and_lever`."""
     return linkage.stroke_and_lever(angle, joint)
-
-
-@njit(cache=True)
-def supply_at_rest(joint: Any) -> float:
-    """What a supply remembers of which nothing is drawn; see `supply.at_rest`."""
-    return supply.at_rest(joint)
 
 
 @njit(cache=True)

@@ -7,24 +7,13 @@ import numpy as np
 
 from hydrolek_drake.compiled import read_only
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.physics import amplifier, cylinder, hooks, load, sensor
 from hydrolek_drake.physics.law import law_of
 from hydrolek_drake.physics.probes import NO_PROBE
 from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, as_usual, flat, position_of
-from hydrolek_drake.rollout import kernel, one_point
-
-STATE_SIZE = 2 + len(kernel.State._fields) + 3 + len(amplifier.Currents._fields)
-
-START_STEPS = 8
-"""Steps of the search for a start: its error falls by the share that lean and bow change with position, at most a
-tenth, in each."""
+from hydrolek_drake.rollout import kernel
+from hydrolek_drake.rollout.rest import STATE_SIZE, rest_state
 
 DIVIDED_BY_ZERO = "a parameter by which something is divided is zero"
-
-UNPRESSED = 1e-3
-"""A play that the load presses together by less than this share of its gap is not taken up: friction of its pins holds
-as much, and a joint that was measured in balance is so only to within the noise, which tells no side. It starts centred
-then, at most half of its gap off."""
 
 
 @dataclass(frozen=True)
@@ -55,80 +44,6 @@ class Outcome:
     signals: Signals
     diverged: str | None
     state: np.ndarray
-
-
-def rest_state(
-    joint: np.ndarray, position: float | None = None, time: float = 0.0, carried: float | None = None
-) -> np.ndarray:
-    """State at rest in balance (bench.md 6): side B at its given pressure, side A carries the load.
-
-    Args:
-        joint: parameter record, shape (1,).
-        position: joint position [rad or m]; None for the rig's own.
-        time: since switching on [s], for loads that are picked up later and for what warms up.
-        carried: gravity's moment on it [N m]; None for what it is with the other joints held.
-    """
-    record = joint[0]
-    q = float(record["load"]["initial_position"]) if position is None else position
-    state = np.zeros(STATE_SIZE)
-    state[4] = state[11] = q
-    state[6] = state[16] = one_point.supply_at_rest(record)
-    state[12] = time
-    state[14], state[15] = amplifier.coil_currents(0.0, time, record)
-    if record["cylinder"]["variant"] == cylinder.ELECTRIC_MOTOR:
-        state[9] = q
-        return state
-    carried = load.gravity_load(q, time, record) if carried is None else carried
-    needed = carried - load.stop_load(q, 0.0, record)
-    tilt, lead = rest_tilt_and_lead(record, q, needed)
-    state[2], state[3] = rest_pressures(record, lead - tilt, needed)
-    state[7], state[9] = tilt, lead
-    state[11] = q - tilt
-    return state
-
-
-def rest_state_at_reading(joint: np.ndarray, reading: float) -> np.ndarray:
-    """State at rest in which the sensor reads a value [rad or m]: a leaning base or a bowed sensor is allowed for.
-
-    Args:
-        joint: parameter record, shape (1,).
-        reading: what was measured [rad or m].
-    """
-    position = reading
-    for _ in range(START_STEPS):
-        state = rest_state(joint, position)
-        off = reading - float(sensor.reading(state[11], 0.0, joint[0]))
-        if off == 0.0:
-            break
-        position += off
-    return state
-
-
-def rest_tilt_and_lead(record: np.void, position: float, needed: float) -> tuple[float, float]:
-    """Tilt of the base and position of the actuator's side [rad] under a held moment `needed` [N m]."""
-    stiffness = hooks.base_stiffness(record)
-    tilt = -needed / stiffness if stiffness > 0.0 else 0.0
-    lead = position
-    gap = hooks.linkage_gap(record)
-    if gap > 0.0:
-        pressed = needed / float(record["linkage"]["play_stiffness"])
-        if abs(pressed) > UNPRESSED * gap:
-            contact = float(np.sign(needed)) * 0.5 * gap + pressed
-            lead = position + float(record["linkage"]["play_taken_up"]) * contact
-    return tilt, lead
-
-
-def rest_pressures(record: np.void, side: float, needed: float) -> tuple[float, float]:
-    """Chamber pressures that hold a moment `needed` [N m] with the actuator's side at `side` [rad or m]."""
-    p = record["cylinder"]
-    area_a, area_b = float(p["area_a"]), float(p["area_b"])
-    _, lever = one_point.stroke_and_lever(side, record)
-    p_b = float(p["initial_pressure_b"])
-    p_a = (needed / lever + area_b * p_b) / area_a
-    if p_a < 0.0:  # the load pulls the rod out: side B carries it
-        p_a = float(record["supply"]["tank_pressure"])
-        p_b = (area_a * p_a - needed / lever) / area_b
-    return p_a, p_b
 
 
 def roll_out(

@@ -15,10 +15,11 @@ from hydrolek_drake.physics.serial_arm import LINK_SIZE, moments_along, scratch
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.joint_rows import DRIVE, PLAY, RATES, SPOOL, STATE, room
 from hydrolek_drake.rollout.kernel import SIGNALS
-from hydrolek_drake.rollout.rollout import DIVIDED_BY_ZERO, Signals, missing_number, rest_state, why_diverged
+from hydrolek_drake.rollout.rest import rest_state
+from hydrolek_drake.rollout.rollout import DIVIDED_BY_ZERO, Signals, missing_number, why_diverged
 from hydrolek_drake.rollout.together_kernel import TOLD, integrate_together
 
-_NO_LINKS = np.zeros((0, LINK_SIZE))
+NO_LINKS = np.zeros((0, LINK_SIZE))
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,92 @@ class Together:
         """
         column = self.joints.index(joint)
         return Signals(self.time[rows], **{name: self.signals[name][rows, column] for name in SIGNALS})
+
+
+@dataclass(frozen=True)
+class RunTogether:
+    """A machine whose joints move together, and what it is driven with: a rollout that has not been made yet.
+
+    Attributes:
+        joints: their names.
+        links: of the arms that they turn, rows of `serial_arm.link`, or none. # (joints, 36)
+        records: of the joints. # (joints,)
+        carriers: see `carriers_of`. # (joints,)
+        laws: of each joint, rows of `law.LAW`.
+        begun: states at rest, see `kernel.integrate`; None where there is none. # (joints, 16)
+        command_times: when commands change [s]. # (m,)
+        command_values: held from then on [V]. # (m, joints)
+        times: when signals are wanted [s]. # (k,)
+        longest_step: of the integration [s].
+        spool_steps: steps of the spool within one step.
+        diverged: why it cannot even begin, or None.
+    """
+
+    joints: tuple[str, ...]
+    links: np.ndarray
+    records: np.ndarray
+    carriers: np.ndarray
+    laws: tuple[np.ndarray, ...]
+    begun: np.ndarray | None
+    command_times: np.ndarray
+    command_values: np.ndarray
+    times: np.ndarray
+    longest_step: float
+    spool_steps: int
+    diverged: str | None = None
+
+    def outcome(self) -> Together:
+        """What the joints do, rolled out by themselves."""
+        told, n = self.nothing(), len(self.records)
+        if self.begun is None:
+            return self.told(told, 0)
+        rows, vectors, matrices = room(n)
+        put_begun(rows, self.begun)
+        done = integrate_together(
+            as_usual(self.records),
+            as_usual(self.carriers),
+            rows,
+            vectors,
+            matrices,
+            self.command_times,
+            self.command_values,
+            self.times,
+            self.longest_step,
+            self.spool_steps,
+            np.concatenate(self.laws) if any(map(len, self.laws)) else None,
+            np.concatenate([[0], np.cumsum([len(law) for law in self.laws])]),
+            self.links,
+            scratch(len(self.links)),
+            told,
+        )
+        return self.told(told, done)
+
+    def nothing(self) -> np.ndarray:
+        """Room for what is told. # (k, joints, 9)."""
+        return np.full((len(self.times), len(self.records), len(TOLD)), np.nan)
+
+    def told(self, told: np.ndarray, done: int) -> Together:
+        """The result of so many rows that were written before a divergence; `told` is kept."""
+        diverged = self.diverged
+        if diverged is None and done < len(self.times):
+            at = float(self.times[done])
+            reasons = [why_diverged(self.records[i : i + 1], at) for i in range(len(self.records))]
+            diverged = DIVIDED_BY_ZERO if DIVIDED_BY_ZERO in reasons else reasons[0]
+            if diverged == DIVIDED_BY_ZERO:
+                told[:] = np.nan
+        signals = dict(zip(TOLD, np.moveaxis(told, 2, 0), strict=True))
+        return Together(self.times, self.joints, signals, diverged)
+
+
+def put_begun(rows: np.ndarray, begun: np.ndarray) -> None:
+    """Write states at rest into rows of `room`, or of several machines with the lanes behind.
+
+    Args:
+        rows: # (joints, at least 69) or (joints, at least 69, lanes)
+        begun: # (joints, 17) or (joints, 17, lanes)
+    """
+    rows[:, STATE : RATES - 1], rows[:, RATES - 1], rows[:, PLAY] = begun[:, 2:11], begun[:, 16], begun[:, 11]
+    rows[:, DRIVE : DRIVE + 3], rows[:, DRIVE + 3 : SPOOL] = begun[:, 13:16], begun[:, :2]
 
 
 class JointsTogether:
@@ -88,65 +175,47 @@ class JointsTogether:
             positions: where the joints rest at the first of these [rad or m]. # (joints,)
             longest_step: of the integration [s]; None for the rig's own.
         """
-        own = np.ascontiguousarray(records[self._places])
-        carriers = carriers_of(self._rig, self.joints, records)
-        told = np.full((times.size, len(own), len(TOLD)), np.nan)
-        missing = (missing_number(own[i : i + 1]) for i in range(len(own)))
-        diverged = next((said for said in missing if said is not None), None)
-        if diverged is None:
-            try:
-                begun = [
-                    rest_state(own[i : i + 1], float(positions[i]), carried=carried)
-                    for i, carried in enumerate(self._carried(carriers, positions))
-                ]
-                done = self._integrated(
-                    own, carriers, begun, command_times, command_values, times, longest_step, told
-                )
-                if done < times.size:
-                    reasons = [why_diverged(own[i : i + 1], float(times[done])) for i in range(len(own))]
-                    diverged = DIVIDED_BY_ZERO if DIVIDED_BY_ZERO in reasons else reasons[0]
-                    if diverged == DIVIDED_BY_ZERO:
-                        told[:] = np.nan
-            except ZeroDivisionError:
-                told[:] = np.nan
-                diverged = DIVIDED_BY_ZERO
-        return Together(times, self.joints, dict(zip(TOLD, np.moveaxis(told, 2, 0), strict=True)), diverged)
+        return self.run(records, command_times, command_values, times, positions, longest_step).outcome()
 
-    def _integrated(
+    def run(
         self,
-        own: np.ndarray,
-        carriers: np.ndarray,
-        begun: Sequence[np.ndarray],
+        records: np.ndarray,
         command_times: np.ndarray,
         command_values: np.ndarray,
         times: np.ndarray,
-        longest_step: float | None,
-        told: np.ndarray,
-    ) -> int:
-        """Fill `told`; how many of its rows were written before a divergence. Arguments as of `roll_out`."""
+        positions: np.ndarray,
+        longest_step: float | None = None,
+    ) -> "RunTogether":
+        """The rollout that `roll_out` makes, to be made beside others (`together_lanes`); arguments as there."""
+        own = np.ascontiguousarray(records[self._places])
         found = [law_of(own[i : i + 1]) for i in range(len(own))]
-        laws = [np.zeros(0, LAW) if law is None else law for law in found]
         changes = np.concatenate([[True], np.any(np.diff(command_values, axis=0) != 0.0, axis=1)])
-        rows, vectors, matrices = room(len(own))
-        rows[:, STATE:RATES] = [[*state[2:11], state[16]] for state in begun]
-        rows[:, DRIVE:SPOOL] = [[*state[13:16], *state[:2]] for state in begun]
-        rows[:, PLAY] = [state[11] for state in begun]
-        return integrate_together(
-            as_usual(own),
-            as_usual(carriers),
-            rows,
-            vectors,
-            matrices,
+        missing = (missing_number(own[i : i + 1]) for i in range(len(own)))
+        diverged = next((said for said in missing if said is not None), None)
+        carriers, begun = carriers_of(self._rig, self.joints, records), None
+        if diverged is None:
+            try:
+                begun = np.array(
+                    [
+                        rest_state(own[i : i + 1], float(positions[i]), carried=carried)
+                        for i, carried in enumerate(self._carried(carriers, positions))
+                    ]
+                )
+            except ZeroDivisionError:
+                diverged = DIVIDED_BY_ZERO
+        return RunTogether(
+            self.joints,
+            self._links,
+            own,
+            carriers,
+            tuple(np.zeros(0, LAW) if law is None else law for law in found),
+            begun,
             read_only(command_times[changes]),
             read_only(command_values[changes]),
             read_only(times),
             longest_step or self._longest_step,
             self._spool_steps,
-            np.concatenate(laws) if any(map(len, laws)) else None,
-            np.concatenate([[0], np.cumsum([len(law) for law in laws])]),
-            self._links,
-            scratch(len(self._links)),
-            told,
+            diverged,
         )
 
     def _carried(self, carriers: np.ndarray, positions: np.ndarray) -> list[float | None]:
@@ -172,7 +241,7 @@ def arm_links(rig: Rig, joints: Sequence[str]) -> np.ndarray:
         joints: that move, each after those that carry it.
     """
     if not _of_arm(rig, joints[0]):
-        return _NO_LINKS
+        return NO_LINKS
     starts = {j: rig.value(f"joints.{j}.load.initial_position") for j in rig.joints if _of_arm(rig, j)}
     held = {j: q for j, q in {**starts, **rig.held}.items() if j not in joints}
     return _links_of(tuple(joints), tuple(sorted(held.items())))

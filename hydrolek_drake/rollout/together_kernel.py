@@ -9,48 +9,36 @@ import math
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import command, load, sensor
+from hydrolek_drake.physics import command, hooks, load
+from hydrolek_drake.physics.serial_arm import CARRIES
 from hydrolek_drake.physics.solenoid import steps_needed
-from hydrolek_drake.rollout.drive import acts_early, driven_on
+from hydrolek_drake.rollout.drive import acts_early
 from hydrolek_drake.rollout.joint_rows import (
     BIAS,
     COMMAND,
     DRIVE,
-    FACTOR,
-    INERTIA,
-    LATER,
     MASS,
     MIDDLE,
-    NEAR,
+    PAYLOAD,
     PLAY,
-    RATES,
     ROD,
-    SPOOL,
     STATE,
+    THERE,
     TORQUE,
-    VOLTS,
     X,
     drive_at,
     near_at,
-    put_state,
-    slopes_at,
+    put_near,
     state_at,
 )
-from hydrolek_drake.rollout.kernel import (
-    SIGNALS,
-    arrived,
-    first_stage,
-    inertia_at,
-    out_of_bounds,
-    second_stage,
-    written,
-)
-from hydrolek_drake.rollout.rates import turned
+from hydrolek_drake.rollout.kernel import SIGNALS, arrived, inertia_at, out_of_bounds, written
+from hydrolek_drake.rollout.rates import kept, turned
+from hydrolek_drake.rollout.together_joint import begins, ends, goes_on, halfway
 from hydrolek_drake.rollout.together_rates import (
-    all_rates,
     arm_begins,
     arm_equation,
     arm_goes_on,
+    drawn_by_all,
     from_others,
     own_law,
     shared_supply,
@@ -82,40 +70,72 @@ def _step(
         joint = joints[i]
         own = own_law(laws, first, i)
         outside = from_others(r, i, STATE, DRIVE + X, shared, time, laws, first, joints)
-        d = drive_at(r, i)
-        volts = r[i, COMMAND]
-        voltage = command.drive_voltage(volts, joint)
-        s = state_at(r, i, STATE)
-        r[i, SPOOL] = d.x
         steps = steps_needed(spool_steps, joint)
-        d, r[i, VOLTS] = driven_on(
-            d, s, volts, voltage, time, h, steps, acts_early(own, joint), outside, outside, own, joint
-        )
-        f = DRIVE
-        r[i, f], r[i, f + 1], r[i, f + 2], r[i, f + 3] = d.behind, d.currents.a, d.currents.b, d.x
-        r[i, f + 4] = d.xd
-        r[i, INERTIA] = inertia_at(time, r[i, ROD], joint)
-    linked = len(links) > 0
-    all_rates(r, STATE, SPOOL, RATES, time, laws, first, vectors, carriers, joints)
-    if linked:
-        arm_equation(r, vectors, matrices[MASS], links, scratch)
-        arm_begins(r, vectors[TORQUE], matrices, h)
+        begins(r, i, time, h, steps, acts_early(own, joint), outside, own, joint)
+    drawn_by_all(r)
+    if len(links) > 0:
+        put_payloads(vectors[PAYLOAD], links, carriers, time)
+        arm_equation(r, STATE, vectors, matrices[MASS], links, scratch)
+        arm_begins(r, vectors[TORQUE], matrices, links, h)
     for i in range(n):
-        put_state(
-            r,
-            i,
-            MIDDLE,
-            first_stage(state_at(r, i, STATE), state_at(r, i, RATES), slopes_at(r, i), h, joints[i]),
-        )
-    all_rates(r, MIDDLE, DRIVE + X, LATER, time + h, laws, first, vectors, carriers, joints)
-    if linked:
-        arm_equation(r, vectors, matrices[FACTOR], links, scratch)
-        arm_goes_on(r, vectors[TORQUE], vectors[BIAS], matrices, h)
+        halfway(r, i, h, joints[i])
+    shared = shared_supply(r, MIDDLE, DRIVE + X, time + h, laws, first, joints)
     for i in range(n):
-        begun, rate, later = state_at(r, i, STATE), state_at(r, i, RATES), state_at(r, i, LATER)
-        s = second_stage(begun, rate, later, slopes_at(r, i), h, joints[i])
-        put_state(r, i, STATE, s)
-        r[i, PLAY] = sensor.played(r[i, PLAY], s.q - s.tilt, joints[i])
+        own = own_law(laws, first, i)
+        outside = from_others(r, i, MIDDLE, DRIVE + X, shared, time + h, laws, first, joints)
+        goes_on(r, i, r[i, DRIVE + X], time + h, outside, own, joints[i])
+    drawn_by_all(r)
+    if len(links) > 0:
+        put_payloads(vectors[PAYLOAD], links, carriers, time + h)
+        arm_equation(r, MIDDLE, vectors, matrices[THERE], links, scratch)
+        arm_goes_on(r, vectors[TORQUE], vectors[BIAS], matrices, links)
+    for i in range(n):
+        ends(r, i, h, joints[i])
+
+
+@njit
+def put_payloads(payload: np.ndarray, links: np.ndarray, carriers: np.ndarray, time: float) -> None:
+    """Write what hangs on each link that carries something [kg], at a time since switching on [s]."""
+    for i in range(len(links)):
+        if links[i, CARRIES] > 0.0:
+            payload[i] = hooks.payload(time, carriers[i])
+
+
+@njit
+def next_stretch_of_all(
+    t: float,
+    target: float,
+    held: np.ndarray,
+    delays: np.ndarray,
+    command_times: np.ndarray,
+    command_values: np.ndarray,
+    longest_step: float,
+) -> tuple[float, int, float]:
+    """As of `kernel.next_stretch`, with the commands of all joints the same: its end, steps and their length.
+
+    Args:
+        t: [s].
+        target: [s].
+        held: place of the command of each joint that has acted, -1 for none; moved on. # (n,)
+        delays: of their commands [s]. # (n,)
+        command_times: [s]. # (m,)
+        command_values: [V]. # (m, n)
+        longest_step: [s].
+    """
+    last = len(command_times) - 1
+    until = target
+    for i in range(len(held)):
+        while held[i] < last and command_times[held[i] + 1] + delays[i] <= t + 1e-12:
+            held[i] += 1
+        following = held[i] + 1
+        while (
+            held[i] >= 0 and following <= last and command_values[following, i] == command_values[held[i], i]
+        ):
+            following += 1
+        if following <= last and command_times[following] + delays[i] < until:
+            until = max(command_times[following] + delays[i], t)
+    steps = max(math.ceil((until - t) / longest_step - 1e-9), 1)
+    return until, steps, (until - t) / steps
 
 
 @njit(cache=True, nogil=True)
@@ -159,7 +179,6 @@ def integrate_together(
         Number of rows written; less than k if the simulation diverged at that row.
     """
     n = len(joints)
-    last = len(command_times) - 1
     held = np.full(n, -1)
     delays = np.empty(n)
     for i in range(n):
@@ -170,27 +189,13 @@ def integrate_together(
     for row in range(len(times)):
         target = times[row]
         for i in range(n):
-            near = turned(state_at(r, i, STATE), joints[i])
-            f = NEAR
-            r[i, f], r[i, f + 1], r[i, f + 2] = near.position
-            r[i, f + 3], r[i, f + 4], r[i, f + 5] = near.included
+            put_near(r, i, kept(turned(state_at(r, i, STATE), joints[i])))
         while t < target:
-            until = target
+            until, steps, h = next_stretch_of_all(
+                t, target, held, delays, command_times, command_values, longest_step
+            )
             for i in range(n):
-                while held[i] < last and command_times[held[i] + 1] + delays[i] <= t + 1e-12:
-                    held[i] += 1
                 r[i, COMMAND] = arrived(command_values[:, i], held[i], joints[i])
-                following = held[i] + 1
-                while (
-                    held[i] >= 0
-                    and following <= last
-                    and command_values[following, i] == command_values[held[i], i]
-                ):
-                    following += 1
-                if following <= last and command_times[following] + delays[i] < until:
-                    until = max(command_times[following] + delays[i], t)
-            steps = max(math.ceil((until - t) / longest_step - 1e-9), 1)
-            h = (until - t) / steps
             if h > 0.0:
                 for step in range(steps):
                     time = t + step * h - on

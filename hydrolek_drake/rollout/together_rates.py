@@ -8,35 +8,35 @@ its slopes, with the whole mass matrix M: (M + GAMMA h D)^-1 M where a joint alo
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import hooks, load, supply
-from hydrolek_drake.physics.angle import angle_near
 from hydrolek_drake.physics.probes import SUPPLY, Probe, added, no_probe
-from hydrolek_drake.physics.serial_arm import accelerations, motion_equation
+from hydrolek_drake.physics.serial_arm import accelerations, factored, moments_of, motion_equation, solved
 from hydrolek_drake.physics.solenoid import GAMMA
 from hydrolek_drake.rollout.joint_rows import (
-    ANGLE,
     BIAS,
+    COSINE,
+    COSINES,
     DRAG,
-    FACTOR,
+    DRAWN,
     INERTIA,
     LATER,
+    LESSENED,
     MASS,
-    OF_SUPPLY,
+    MOMENT,
     PAYLOAD,
     RATES,
     ROD,
+    SINE,
+    SINES,
     SLOPES,
-    SPEED,
-    STIFF_SUPPLY,
+    SPEEDS,
     STIFF_W,
+    THERE,
     TORQUE,
-    VOLTS,
+    TOTAL,
     W,
-    near_at,
-    put_state,
     state_at,
 )
-from hydrolek_drake.rollout.rates import felt_at, rates
+from hydrolek_drake.rollout.rates import felt_at
 
 
 @njit
@@ -86,103 +86,70 @@ def from_others(
 
 
 @njit
-def all_rates(
-    r: np.ndarray,
-    at: int,
-    spool: int,
-    into: int,
-    time: float,
-    laws: np.ndarray | None,
-    first: np.ndarray,
-    vectors: np.ndarray,
-    carriers: np.ndarray,
-    joints: np.ndarray,
-) -> None:
-    """Rates of all joints with the other ones held, and the moments that are left for motion.
-
-    Args:
-        r: rows of `room`.
-        at: where the states begin in them.
-        spool: where the spools' positions stand.
-        into: where the rates begin; at the beginning of a step slopes are told too.
-        time: since switching on [s].
-        laws: as of `integrate_together`, and so `first`, `carriers` and `joints`.
-        first: see there.
-        vectors: those of `room`.
-        carriers: see there.
-        joints: see there.
-    """
-    n = len(joints)
-    shared = shared_supply(r, at, spool, time, laws, first, joints)
-    total = 0.0
-    for i in range(n):
-        joint = joints[i]
-        s = state_at(r, i, at)
-        outside = from_others(r, i, at, spool, shared, time, laws, first, joints)
-        near = near_at(r, i)
-        k, slope, _, _, drawn = rates(
-            s, r[i, spool], r[i, VOLTS], time, r[i, INERTIA], outside, own_law(laws, first, i), near, joint
-        )
-        put_state(r, i, into, k)
-        total += drawn
-        if into == RATES:
-            f = SLOPES
-            r[i, f], r[i, f + 1], r[i, f + 2], r[i, f + 3] = slope.p_a, slope.p_b, slope.w, slope.tilt_rate
-            r[i, f + 4] = slope.lead_w
-        carried = load.gravity_load_at(angle_near(s.q, near.position), time, joint)
-        vectors[TORQUE, i] = k.w * r[i, INERTIA] + carried
-        vectors[PAYLOAD, i] = hooks.payload(time, carriers[i])
-        vectors[ANGLE, i], vectors[SPEED, i] = s.q, s.w
-    for i in range(n):
-        r[i, into + OF_SUPPLY], slope_supply = supply.rate_of_change(r[i, at + OF_SUPPLY], total, joints[i])
-        if into == RATES:
-            r[i, SLOPES + STIFF_SUPPLY] = slope_supply
+def drawn_by_all(r: np.ndarray) -> None:
+    """Tell every joint what all of them draw from the supply."""
+    total = r[0, DRAWN]
+    for i in range(1, len(r)):
+        total = total + r[i, DRAWN]
+    for i in range(len(r)):
+        r[i, TOTAL] = total
 
 
 @njit
 def arm_equation(
-    r: np.ndarray, vectors: np.ndarray, matrix: np.ndarray, links: np.ndarray, scratch: np.ndarray
+    r: np.ndarray, at: int, vectors: np.ndarray, matrix: np.ndarray, links: np.ndarray, scratch: np.ndarray
 ) -> None:
-    """The arms' mass matrix with the rods, and their moments less what holds the speeds as they are."""
-    motion_equation(links, vectors[ANGLE], vectors[SPEED], vectors[PAYLOAD], scratch, matrix, vectors[BIAS])
-    for i in range(len(r)):
+    """The arms' mass matrix with the rods, and their moments less what holds the speeds as they are.
+
+    Args:
+        r: rows of the joints, of one machine or of numbers of each lane.
+        at: where the states begin in them.
+        vectors: those of `room`, with the payloads.
+        matrix: receives M.
+        links: as of `integrate_together`.
+        scratch: see there.
+    """
+    for i in range(len(links)):
+        vectors[SINES, i], vectors[COSINES, i], vectors[SPEEDS, i] = r[i, SINE], r[i, COSINE], r[i, at + W]
+    motion_equation(
+        links,
+        vectors[SINES],
+        vectors[COSINES],
+        vectors[SPEEDS],
+        vectors[PAYLOAD],
+        scratch,
+        matrix,
+        vectors[BIAS],
+    )
+    for i in range(len(links)):
         matrix[i, i] += r[i, ROD]
-        vectors[TORQUE, i] -= vectors[BIAS, i]
+        vectors[TORQUE, i] = r[i, MOMENT] - vectors[BIAS, i]
 
 
 @njit
-def _lessened(r: np.ndarray, torque: np.ndarray, matrices: np.ndarray, h: float) -> None:
-    """Solve (M + GAMMA h D) a = torque in place."""
-    for i in range(len(r)):
-        for k in range(len(r)):
-            matrices[FACTOR, i, k] = matrices[MASS, i, k]
-        matrices[FACTOR, i, i] += GAMMA * h * r[i, DRAG]
-    accelerations(matrices[FACTOR], torque)
-
-
-@njit
-def arm_begins(r: np.ndarray, torque: np.ndarray, matrices: np.ndarray, h: float) -> None:
+def arm_begins(r: np.ndarray, torque: np.ndarray, matrices: np.ndarray, links: np.ndarray, h: float) -> None:
     """Give the accelerations at the beginning, lessened by stiff friction, to the rates there."""
-    for i in range(len(r)):
+    for i in range(len(links)):
+        for k in range(i + 1):
+            matrices[LESSENED, i, k] = matrices[MASS, i, k]
         r[i, DRAG] = -r[i, SLOPES + STIFF_W] * r[i, INERTIA]
         r[i, SLOPES + STIFF_W] = 0.0
-    _lessened(r, torque, matrices, h)
-    for i in range(len(r)):
+        matrices[LESSENED, i, i] += GAMMA * h * r[i, DRAG]
+    factored(links, matrices[LESSENED])
+    solved(links, matrices[LESSENED], torque)
+    for i in range(len(links)):
         r[i, RATES + W] = torque[i]
 
 
 @njit
 def arm_goes_on(
-    r: np.ndarray, torque: np.ndarray, change: np.ndarray, matrices: np.ndarray, h: float
+    r: np.ndarray, torque: np.ndarray, change: np.ndarray, matrices: np.ndarray, links: np.ndarray
 ) -> None:
     """Give the later rates accelerations with which `second_stage` without a slope lessens them, see the module."""
-    accelerations(matrices[FACTOR], torque)
-    for i in range(len(r)):
+    accelerations(links, matrices[THERE], torque)
+    for i in range(len(links)):
         change[i] = torque[i] - 2.0 * r[i, RATES + W]
-    for i in range(len(r)):
-        torque[i] = 0.0
-        for k in range(len(r)):
-            torque[i] += matrices[MASS, i, k] * change[k]
-    _lessened(r, torque, matrices, h)
-    for i in range(len(r)):
+    moments_of(links, matrices[MASS], change, torque)
+    solved(links, matrices[LESSENED], torque)
+    for i in range(len(links)):
         r[i, LATER + W] = torque[i] + 2.0 * r[i, RATES + W]

@@ -12,7 +12,7 @@ from pydrake.systems.primitives import TrajectorySource
 from pydrake.trajectories import PiecewisePolynomial
 
 from hydrolek_drake.physics import cylinder, load
-from hydrolek_drake.rollout.rollout import rest_pressures, rest_tilt_and_lead
+from hydrolek_drake.rollout.rest import rest_pressures, rest_tilt_and_lead
 from hydrolek_drake.station.station import Station
 from hydrolek_drake.station.step_sizes import INTEGRATORS
 

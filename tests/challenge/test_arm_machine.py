@@ -13,7 +13,8 @@ from hydrolek_drake.challenge.driving import SAMPLE_S, Played, random_series, tu
 from hydrolek_drake.challenge.listed import LISTED, with_effects
 from hydrolek_drake.kinematics.arms import arms_urdf_path
 from hydrolek_drake.rigs import Rig, load_rig
-from hydrolek_drake.rollout.rollout import rest_state, roll_out
+from hydrolek_drake.rollout.rest import rest_state
+from hydrolek_drake.rollout.rollout import roll_out
 
 ALLOWED_DEG = 0.02
 """What the rollout's step may cost (hydrolek.yaml); less than half of the sensor's noise."""

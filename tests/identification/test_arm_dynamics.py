@@ -34,7 +34,7 @@ def test_mass_matrix_and_bias_are_those_of_the_plant(right_arm, seed):
     torque = (plant.CalcBiasTerm(context) - plant.CalcGravityGeneralizedForces(context))[indices]
     matrix, bias = np.empty((JOINTS, JOINTS)), np.empty(JOINTS)
     links = arm_bodies().with_masses(masses, GRAVITY)
-    motion_equation(links, q, v, np.zeros(JOINTS), scratch(JOINTS), matrix, bias)
+    motion_equation(links, np.sin(q), np.cos(q), v, np.zeros(JOINTS), scratch(JOINTS), matrix, bias)
     np.testing.assert_allclose(matrix, expected, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(bias, torque, rtol=1e-6, atol=1e-6 * np.abs(torque).max())
 

@@ -72,9 +72,9 @@ def test_columns_of_joints_that_cannot_move_cost_nothing_and_are_zero(recorded_t
     rolled = []
 
     class Counted(type(problem._recordings[0])):
-        def roll_out(self, *given, **named):
+        def run(self, *given, **named):
             rolled.append(self)
-            return super().roll_out(*given, **named)
+            return super().run(*given, **named)
 
     for one in problem._recordings:
         one.__class__ = Counted

@@ -22,7 +22,7 @@ from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.recordings.writing import write_recording
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
-from hydrolek_drake.rollout.rollout import rest_state
+from hydrolek_drake.rollout.rest import rest_state
 
 
 def test_sixteen_parameters_of_table_4_1_are_nine_of_every_arm_s_rig():

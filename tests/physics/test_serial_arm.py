@@ -15,7 +15,7 @@ from hydrolek_drake.kinematics.arms import (
     make_arms_plant,
 )
 from hydrolek_drake.kinematics.rigid_links import rigid_links
-from hydrolek_drake.physics.serial_arm import accelerations, moments_along
+from hydrolek_drake.physics.serial_arm import LINK_SIZE, PARENT, ROOT, accelerations, moments_along
 
 BOTH = arm_joint_names()
 SOME = ("right_j2", "right_j3", "right_j5", "left_j1", "left_j4")
@@ -74,10 +74,14 @@ def test_one_joint_alone_is_a_body_that_turns(joint) -> None:
 
 def test_accelerations_solve_the_equation_of_motion() -> None:
     rng = np.random.default_rng(9)
-    root = rng.normal(size=(6, 6))
-    matrix, torque = root @ root.T + np.eye(6), rng.normal(size=6)
+    links = np.zeros((6, LINK_SIZE))
+    links[:, PARENT] = [ROOT, ROOT, 0, 1, 3, 3]  # a fork, and links of two arms one after the other
+    between = [(2, 0), (3, 1), (4, 3), (4, 1), (5, 3), (5, 1)]
+    matrix, torque = 5.0 * np.eye(6), rng.normal(size=6)
+    for i, j in between:
+        matrix[i, j] = matrix[j, i] = rng.normal()
     found = torque.copy()
-    accelerations(matrix.copy(), found)
+    accelerations(links, matrix.copy(), found)
     assert matrix @ found == pytest.approx(torque)
 
 

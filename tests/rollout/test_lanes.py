@@ -15,9 +15,11 @@ from hydrolek_drake.physics.records import flat, position_of
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import lane_compiling
 from hydrolek_drake.rollout.kernel import SIGNALS
+from hydrolek_drake.rollout.lane_kinds import kind_of
 from hydrolek_drake.rollout.lane_view import LANES
-from hydrolek_drake.rollout.lanes import kind_of, roll_out_lanes
-from hydrolek_drake.rollout.rollout import rest_state_at_reading, roll_out
+from hydrolek_drake.rollout.lanes import roll_out_lanes
+from hydrolek_drake.rollout.rest import rest_state_at_reading
+from hydrolek_drake.rollout.rollout import roll_out
 from hydrolek_drake.rollout.run import Run
 
 SIZES = json.loads((Path(__file__).parents[2] / "scripts" / "agreement_effects.json").read_text())
@@ -171,6 +173,20 @@ def test_a_lane_that_diverges_or_has_no_number_disturbs_no_other_by_a_bit():
             np.testing.assert_array_equal(getattr(found[i].signals, name), getattr(good[i].signals, name))
 
 
+def test_a_lane_that_cannot_begin_disturbs_no_other():
+    """A play without stiffness, on a machine whose rig says nothing of one."""
+    rig = load_rig("joint_bench")
+    records = _varied(rig.records()[:1], np.random.default_rng(2), 4)
+    records[1]["effects"]["linkage_backlash"]["gap_rad"] = 0.005
+    records[1]["linkage"]["play_stiffness"] = 0.0
+    records[2]["linkage"]["direction"] = 0.0
+    times, volts = _driven(1.0)
+    found = _in_lanes(records, times, volts, longest_step=STEP)
+    for one, other in zip(found, _one_by_one(records, times, volts, longest_step=STEP), strict=True):
+        assert one.diverged == other.diverged
+    assert [one.diverged is None for one in found] == [True, False, False, True]
+
+
 def test_each_lane_has_its_own_recording_start_step_pull_and_time_constant():
     rig, rng = load_rig("joint_bench"), np.random.default_rng(4)
     records = _varied(rig.records()[:1], rng, 7)
@@ -243,6 +259,54 @@ def test_laws_of_different_factors_side_by_side():
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_laws_of_several_terms_and_before_the_spool(count):
     _side_by_side(count, {True, False})
+
+
+def _outside(rng, seconds, spacing, only=()):
+    """Inputs from outside that wander; `only` these, or all."""
+    sizes = [0.3, 0.05, 0.05, 1e5, 200.0, 40.0, 1e-3, 1e-5, 1e-13, 1e-13, 0.05, 0.05, 1e-3, 1e-3, 0.05]
+    rows = np.array(sizes) * rng.uniform(0.0, 1.0, (int(seconds / spacing) + 1, len(PROBES)))
+    if only:
+        rows[:, [i for i, name in enumerate(PROBES) if name not in only]] = 0.0
+    return spacing, rows
+
+
+def _probed(rig, law=None):
+    """Machines with inputs of their own, most of them pulled, some of which end before the rollout does."""
+    rng = np.random.default_rng(8)
+    runs = []
+    for i in range(LANES + 2):
+        seconds = 3.0 + 0.2 * i
+        times, volts = _driven(seconds, seed=i)
+        only = (PROBES[i],) if i % 2 else ()
+        measured = np.column_stack([0.02 * rng.standard_normal(times.size), np.full((times.size, 2), 5e6)])
+        runs.append(
+            Run(
+                _varied(rig.records()[:1], rng, 1),
+                times + 0.3 * i,
+                volts,
+                times + 0.3 * i,
+                STEP * (1 + i % 2),
+                probes=_outside(rng, seconds - 0.5 * (i % 2), 0.0037 * (1 + i), only),
+                pull=(0.1, measured) if i % 3 else None,
+                law=None if law is None else law(rng),
+            )
+        )
+    runs[2] = replace(runs[2], probes=(0.01, runs[2].probes[1][:1]))  # one that stays
+    runs[4] = replace(runs[4], probes=runs[5].probes)
+    for one, run in zip(roll_out_lanes(runs, at_once=True), runs, strict=True):
+        assert one.diverged is None
+        _alike(one, run.outcome())
+
+
+def test_each_lane_has_its_own_inputs_from_outside_also_where_it_is_pulled():
+    _probed(load_rig("joint_bench"))
+
+
+@pytest.mark.long("a minute: loops of three kinds are compiled")
+@pytest.mark.parametrize("name", ["joint_bench", "hydrolek_right_j2"])
+def test_inputs_from_outside_beside_laws(name):
+    rig = load_rig(name)
+    _probed(rig, lambda rng: _law(rng, 1))
 
 
 def test_rows_that_are_far_and_unevenly_apart():

@@ -7,7 +7,8 @@ import pytest
 
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout.kernel import PULLED
-from hydrolek_drake.rollout.rollout import rest_state, roll_out
+from hydrolek_drake.rollout.rest import rest_state
+from hydrolek_drake.rollout.rollout import roll_out
 
 TIMES = np.arange(0.0, 4.0, 0.01)
 COMMAND = np.where(TIMES < 0.5, 0.0, np.where(TIMES < 2.0, 6.0, -6.0))

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.rollout.rollout import rest_state_at_reading, rest_tilt_and_lead, roll_out
+from hydrolek_drake.rollout.rest import rest_state_at_reading, rest_tilt_and_lead
+from hydrolek_drake.rollout.rollout import roll_out
 
 READING = 0.7
 TIMES = np.arange(0.0, 1.0, 0.01)

@@ -57,12 +57,12 @@ def _simulate(
             if not abs(angles[i]) < 1e6:  # a turn count that no arm reaches
                 return
             out[k, i] = angles[i]
-        motion_equation(links, angles, rates, nothing, s, matrix, bias)
+        motion_equation(links, np.sin(angles), np.cos(angles), rates, nothing, s, matrix, bias)
         for i in range(n):
             push = gain * command[k, i] - bias[i] - damping * rates[i]
             bias[i] = step * (push - stiffness * (angles[i] + step * rates[i]))
             matrix[i, i] += added
-        accelerations(matrix, bias)
+        accelerations(links, matrix, bias)
         for i in range(n):
             rates[i] += bias[i]
             angles[i] += step * rates[i]

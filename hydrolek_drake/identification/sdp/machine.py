@@ -7,7 +7,8 @@ import numpy as np
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.sdp.step_test import StepTest, campaign_data
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.rollout import rest_state, roll_out
+from hydrolek_drake.rollout.rest import rest_state
+from hydrolek_drake.rollout.rollout import roll_out
 
 
 @dataclass(frozen=True)
