@@ -59,7 +59,7 @@ class RunTogether:
         records: of the joints. # (joints,)
         carriers: see `carriers_of`. # (joints,)
         laws: of each joint, rows of `law.LAW`.
-        begun: states at rest, see `kernel.integrate`; None where there is none. # (joints, 16)
+        begun: states at rest, see `kernel.integrate`; None where there is none. # (joints, 17)
         command_times: when commands change [s]. # (m,)
         command_values: held from then on [V]. # (m, joints)
         times: when signals are wanted [s]. # (k,)

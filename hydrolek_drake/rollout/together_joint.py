@@ -29,7 +29,6 @@ from hydrolek_drake.rollout.joint_rows import (
     SLOPES,
     SPOOL,
     STATE,
-    STIFF_SUPPLY,
     TOTAL,
     VOLTS,
     drive_at,
@@ -91,7 +90,7 @@ def begins(
     put_state(r, i, RATES, k)
     f = SLOPES
     r[i, f], r[i, f + 1], r[i, f + 2], r[i, f + 3] = slope.p_a, slope.p_b, slope.w, slope.tilt_rate
-    r[i, f + 4] = slope.lead_w
+    r[i, f + 4], r[i, f + 5] = slope.lead_w, slope.supply
     _tell(r, i, s, k.w, inertia, drawn, near, time, joint)
 
 
@@ -124,10 +123,9 @@ def halfway(r: np.ndarray, i: int, h: float, joint: Any) -> None:
         joint: parameter record.
     """
     s, k = state_at(r, i, STATE), state_at(r, i, RATES)
-    rate, r[i, SLOPES + STIFF_SUPPLY] = supply.rate_of_change(s.supply, r[i, TOTAL], joint)
-    k = _with_supply(k, rate)
-    r[i, RATES + OF_SUPPLY] = k.supply
-    put_state(r, i, MIDDLE, first_stage(s, k, slopes_at(r, i), h, joint))
+    rate, _ = supply.rate_of_change(s.supply, r[i, TOTAL], joint)
+    r[i, RATES + OF_SUPPLY] = rate
+    put_state(r, i, MIDDLE, first_stage(s, _with_supply(k, rate), slopes_at(r, i), h, joint))
 
 
 @njit
