@@ -103,6 +103,25 @@ def rate_of_change(remembered: float, drawn: float, joint: Any) -> tuple[float, 
 
 
 @njit
+def advanced(
+    remembered: float, relief: float, rate: float, slope: float, h: float, joint: Any
+) -> tuple[float, float]:
+    """What the supply remembers after `h` seconds with a held rate, and where its relief valve stands [Pa].
+
+    Args:
+        remembered: see `supply_pressure`.
+        relief: where the relief valve stands now; it stays so where there is none [Pa].
+        rate: of `rate_of_change`.
+        slope: of it, where it is left to the relief valve [1/s].
+        h: [s].
+        joint: parameter record.
+    """
+    if rare(joint) and joint.supply.variant == PUMP:
+        return relieved_with_play(remembered, relief, rate, slope, h, joint)
+    return remembered + h * rate, relief
+
+
+@njit
 def pumped(pressure: float, joint: Any) -> float:
     """Flow that the pump gives against a pressure [m^3/s]."""
     p = joint.supply

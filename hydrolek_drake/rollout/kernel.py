@@ -12,12 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import command, hooks, load, sensor
+from hydrolek_drake.physics import command, hooks, load, sensor, supply
 from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.probes import Probe, probe_at
 from hydrolek_drake.physics.solenoid import GAMMA, steps_needed
-from hydrolek_drake.physics.supply import relieved_with_play
-from hydrolek_drake.physics.usual import rare
 from hydrolek_drake.rollout.drive import Drive, acts_early, driven_on
 from hydrolek_drake.rollout.rates import Slopes, State, Turned, carried_on, felt_at, kept, rates, turned
 
@@ -36,21 +34,18 @@ def _implicit(h: float, slope: float) -> float:
 @njit
 def first_stage(s: State, k: State, slope: Slopes, h: float, joint: Any) -> State:
     """State after a step of `h` seconds with the rates at its beginning, the stiff ones lessened."""
-    if not rare(joint) or slope.supply == 0.0:
-        line, valve = s.supply + h * k.supply, s.relief
-    else:
-        line, valve = relieved_with_play(s.supply, s.relief, k.supply, slope.supply, h, joint)
+    remembered, relief = supply.advanced(s.supply, s.relief, k.supply, slope.supply, h, joint)
     return State(
         s.p_a + h * (k.p_a * _implicit(h, slope.p_a)),
         s.p_b + h * (k.p_b * _implicit(h, slope.p_b)),
         s.q + h * k.q,
         s.w + h * (k.w * _implicit(h, slope.w)),
-        line,
+        remembered,
         s.tilt + h * k.tilt,
         s.tilt_rate + h * (k.tilt_rate * _implicit(h, slope.tilt_rate)),
         s.lead_q + h * k.lead_q,
         s.lead_w + h * (k.lead_w * _implicit(h, slope.lead_w)),
-        valve,
+        relief,
     )
 
 
@@ -61,22 +56,19 @@ def second_stage(s: State, k: State, m: State, slope: Slopes, h: float, joint: A
     c_t, c_l = _implicit(h, slope.tilt_rate), _implicit(h, slope.lead_w)
     k_a, k_b, k_w, k_t, k_l = k.p_a * c_a, k.p_b * c_b, k.w * c_w, k.tilt_rate * c_t, k.lead_w * c_l
     half = 0.5 * h
-    if not rare(joint) or slope.supply == 0.0:
-        line, valve = s.supply + half * (k.supply + m.supply), s.relief
-    else:
-        mean = 0.5 * (k.supply + m.supply)
-        line, valve = relieved_with_play(s.supply, s.relief, mean, slope.supply, h, joint)
+    mean = 0.5 * (k.supply + m.supply)
+    remembered, relief = supply.advanced(s.supply, s.relief, mean, slope.supply, h, joint)
     return State(
         max(s.p_a + half * (3.0 * k_a + (m.p_a - 2.0 * k_a) * c_a), 0.0),
         max(s.p_b + half * (3.0 * k_b + (m.p_b - 2.0 * k_b) * c_b), 0.0),
         s.q + half * (k.q + m.q),
         s.w + half * (3.0 * k_w + (m.w - 2.0 * k_w) * c_w),
-        line,
+        remembered,
         s.tilt + half * (k.tilt + m.tilt),
         s.tilt_rate + half * (3.0 * k_t + (m.tilt_rate - 2.0 * k_t) * c_t),
         s.lead_q + half * (k.lead_q + m.lead_q),
         s.lead_w + half * (3.0 * k_l + (m.lead_w - 2.0 * k_l) * c_l),
-        valve,
+        relief,
     )
 
 

@@ -200,6 +200,7 @@ def test_all_joints_of_both_arms():
 
 
 @pytest.mark.long("half a minute: loops of another kind are compiled")
-def test_a_joint_of_no_arm():
-    rig = load_rig("joint_bench")
+@pytest.mark.parametrize("name", ["joint_bench", "hopsan_link"])
+def test_a_joint_of_no_arm(name):
+    rig = load_rig(name)
     _all_alike(_runs(rig, 4, joints=rig.joints))
