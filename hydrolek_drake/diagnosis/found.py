@@ -24,8 +24,6 @@ class Search:
         weighed_at: what the model left, over the noise, by which the data are weighed.
         law: beside the nominal model, which explains everything and ends the search: at once if it is of the machine,
             once two effects have been tried if it is the recordings' own; None for none.
-        costs: of the best structure after each round.
-        seeds: structures fitted to other data, from where fits begin too.
         repeated: whether effects were tried once more beside a model that they had led elsewhere.
     """
 
@@ -39,8 +37,6 @@ class Search:
     weighed_at: float = 0.0
     law: FoundLaw | None = None
     repeated: bool = False
-    costs: list[float] = field(default_factory=list)
-    seeds: list[Hypothesis] = field(default_factory=list)
 
     def keep(self, hypothesis: Hypothesis) -> None:
         """Remember it if it is the best fit of these effects."""
@@ -57,12 +53,6 @@ class Search:
             scores[:] = [
                 replace(s, candidate=wide) if s.candidate.size_path == wide.size_path else s for s in scores
             ]
-
-    def rounds_without_gain(self, patience: int) -> bool:
-        """Whether so many rounds have not changed which structure is best, to within a unit of log-odds."""
-        cost = cost_of(self.best)
-        self.costs.append(cost)
-        return len(self.costs) > patience and cost > self.costs[-1 - patience] - 2.0
 
     @property
     def baseline(self) -> Hypothesis:

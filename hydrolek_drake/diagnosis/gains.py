@@ -1,7 +1,5 @@
 """What a further effect must bring before it is believed, and what a model costs."""
 
-import math
-
 from hydrolek_drake.diagnosis.workbench import Hypothesis
 from hydrolek_drake.identification.least_squares import Fit
 
@@ -27,15 +25,4 @@ def gain_needed(fit: Fit) -> float:
 def cost_of(hypothesis: Hypothesis) -> float:
     """Squared residuals plus what chance alone would gain by so many parameters, chosen among many."""
     gain = gain_needed(hypothesis.fit)
-    return misfit(hypothesis.fit) + gain * sum(c.cost for c in hypothesis.effects) + 2.0 * hypothesis.extra
-
-
-def misfit(fit: Fit) -> float:
-    """Twice the negative log-likelihood of what a fit leaves, with the discrepancy of its model as a parameter.
-
-    A model that is right leaves squares as many as there are values, n; one that leaves s n has a discrepancy, whose
-    variance, as large as it is most likely, makes that n (1 + log s) (profile likelihood). What takes a share of a
-    misfit then counts by that share, and near the noise by its squares.
-    """
-    share = fit.objective / max(fit.counted, 1)
-    return fit.counted * (1.0 + math.log(share)) if share > 1.0 else fit.objective
+    return hypothesis.fit.objective + gain * len(hypothesis.effects) + 2.0 * hypothesis.extra

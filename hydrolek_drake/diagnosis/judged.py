@@ -33,6 +33,7 @@ class Judged:
         probability: among all that were judged.
         chi_squared: r' (I + J S J')^-1 r; None for r' r.
         spread: log det (I + J S J').
+        cost: of the training data; None for `gains.cost_of`.
     """
 
     hypothesis: Hypothesis
@@ -41,6 +42,7 @@ class Judged:
     probability: float = math.nan
     chi_squared: float | None = None
     spread: float = 0.0
+    cost: float | None = None
 
     @property
     def over_noise(self) -> float:
@@ -63,8 +65,9 @@ class Judged:
     def support(self) -> float:
         """Log-likelihood of held-out and training data, less the cost of its effects and parameters in each."""
         effect = max(EFFECT_COST, 0.5 * FIDELITY * self.held_out_counted)
-        cost = effect * len(self.hypothesis.effects) + PARAMETER_COST * self.hypothesis.extra
-        return -self.half_chi_squared - 0.5 * self.spread - cost - 0.5 * cost_of(self.hypothesis)
+        added = effect * len(self.hypothesis.effects) + PARAMETER_COST * self.hypothesis.extra
+        trained = cost_of(self.hypothesis) if self.cost is None else self.cost
+        return -self.half_chi_squared - 0.5 * self.spread - added - 0.5 * trained
 
     @property
     def half_chi_squared(self) -> float:

@@ -8,7 +8,6 @@ from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, POSSIBLE, Conclusion, conclude
 from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, COARSE, MORE_AHEAD
 from hydrolek_drake.diagnosis.evidence import judge_as_fitted
-from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.inquiry import BY_BOTH, INTERRUPTED, Answer
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_choice import alone
@@ -18,6 +17,7 @@ from hydrolek_drake.diagnosis.locating.terms_for import Offer, estimates_for, te
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.lost_commands import lost_commands
 from hydrolek_drake.diagnosis.splitting import mixed
+from hydrolek_drake.diagnosis.structures.cost import Tried
 from hydrolek_drake.diagnosis.structures.found_law import law_of, likeliest_side, terms_of
 from hydrolek_drake.diagnosis.structures.judging import judge_structures
 from hydrolek_drake.diagnosis.structures.searching import search_structures
@@ -58,7 +58,7 @@ class Inquiry:
         Raises:
             KeyboardInterrupt: before the nominal model was fitted.
         """
-        known, found = self._known(bench, held_out, Search())
+        known, found = self._known(bench, held_out, Tried())
         remarks: tuple[str, ...] = ()
         if not known.interrupted and self.apart and _astray(known):
             # numbers that the training data do not tell, the held-out ones ask for
@@ -80,7 +80,7 @@ class Inquiry:
             estimates = estimates_for(known.bench, known.found.baseline, joint, scales, self.cores)
         return Answer(replace(known, conclusion=conclusion), conclusion, law, remarks, estimates)
 
-    def _known(self, bench: Workbench, held_out: Sequence[Experiment], found: Search) -> tuple[Known, Search]:
+    def _known(self, bench: Workbench, held_out: Sequence[Experiment], found: Tried) -> tuple[Known, Tried]:
         """The search and its judgement."""
         interrupted = False
 
@@ -167,8 +167,8 @@ def _astray(known: Known) -> bool:
     return at_noise and best.over_noise > PREDICTED
 
 
-def _begun_from(found: Search) -> Search:
+def _begun_from(found: Tried) -> Tried:
     """A search that goes on from what another one found."""
-    again = Search()
+    again = Tried()
     again.seeds = list(found.hypotheses.values())
     return again

@@ -10,9 +10,9 @@ import numpy as np
 from hydrolek_drake.diagnosis.candidates import Candidate, redundant, widenings
 from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
-from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.ranges import widened
+from hydrolek_drake.diagnosis.structures.cost import Tried
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.structures.promise import Promise, promises_at
 from hydrolek_drake.diagnosis.structures.race import Entrant, Runner, problem_of, race
@@ -59,7 +59,7 @@ def opened(
     parent: Hypothesis,
     kind: str,
     additions: Sequence[Any],
-    found: Search,
+    found: Tried,
     settings: Settings,
     cores: int,
 ) -> Opening:
@@ -120,7 +120,7 @@ def enlarged(
     bench: Workbench,
     opening: Opening,
     candidates: Sequence[Candidate],
-    found: Search,
+    found: Tried,
     settings: Settings,
     cores: int,
 ) -> None:
@@ -174,7 +174,7 @@ def _steps(rungs: Sequence[Rung], fine: bool) -> tuple[Rung, ...]:
     return tuple(replace(rung, coarse=1.0) for rung in rungs) if fine else tuple(rungs)
 
 
-def _lessened(bench: Workbench, found: Search, settings: Settings, cores: int) -> None:
+def _lessened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
     """Backward elimination: the best structure without each of its additions, from where it led."""
     best = found.best
     entrants = [
@@ -185,7 +185,7 @@ def _lessened(bench: Workbench, found: Search, settings: Settings, cores: int) -
         found.keep(each)
 
 
-def _widened(bench: Workbench, found: Search, settings: Settings, cores: int) -> None:
+def _widened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
     """The best structure with wider ranges, where a number of what it adds lies at an end of one (`ranges`)."""
     best = found.best
     wide: tuple[Any, ...] = tuple(

@@ -17,9 +17,8 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.evidence import NEARBY, OUT_OF_REACH, pays, predictive, predicts
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
-from hydrolek_drake.diagnosis.found import Search
-from hydrolek_drake.diagnosis.gains import cost_of
 from hydrolek_drake.diagnosis.judged import SMALL, Judged, with_probabilities
+from hydrolek_drake.diagnosis.structures.cost import Tried, cost
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.structures.race import Entrant, problem_with, race
 from hydrolek_drake.diagnosis.structures.settings import Settings
@@ -31,7 +30,7 @@ MOST = 8
 
 
 def judge_structures(
-    bench: Workbench, found: Search, held_out: Sequence[Experiment], settings: Settings, cores: int
+    bench: Workbench, found: Tried, held_out: Sequence[Experiment], settings: Settings, cores: int
 ) -> list[Judged]:
     """Structures that may be right, the most probable first.
 
@@ -51,13 +50,11 @@ def judge_structures(
     return with_probabilities([j for j in judged if predicts(j, judged)])
 
 
-def _contenders(found: Search) -> list[Hypothesis]:
+def _contenders(found: Tried) -> list[Hypothesis]:
     """Those that may still be right, always with the nominal model and the best one less one addition."""
     best = found.best
-    ranked = sorted(found.hypotheses.values(), key=cost_of)
-    near = [
-        h for h in ranked if 0.5 * (cost_of(h) - cost_of(best)) < max(OUT_OF_REACH, 0.05 * best.fit.objective)
-    ]
+    ranked = sorted(found.hypotheses.values(), key=cost)
+    near = [h for h in ranked if 0.5 * (cost(h) - cost(best)) < max(OUT_OF_REACH, 0.05 * best.fit.objective)]
     lesser = [h for h in ranked if h.ids < best.ids and len(h.ids) == len(best.ids) - 1]
     unique = {h.ids: h for h in (best, found.baseline, *lesser, *near)}
     return list(unique.values())[:MOST]
@@ -86,7 +83,7 @@ def _predicted(
         slopes = np.concatenate([place.slopes for place in some])
         slopes[:, _phases(h)] = 0.0  # which were fitted to each recording
         chi_squared, spread = predictive(residuals, slopes, h.fit)
-        one = Judged(h, residuals, counted, chi_squared=chi_squared, spread=spread)
+        one = Judged(h, residuals, counted, chi_squared=chi_squared, spread=spread, cost=cost(h))
         is_far = one.over_noise > SMALL or float(residuals @ residuals) - chi_squared > NEARBY
         far.append(is_far and not _phases(h).any())
         judged.append(one)

@@ -7,11 +7,11 @@ from typing import Any, Protocol
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.effort import ABOVE_NOISE
-from hydrolek_drake.diagnosis.found import Search
-from hydrolek_drake.diagnosis.gains import PROMISING, cost_of, gain_needed
+from hydrolek_drake.diagnosis.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.laws import Span
 from hydrolek_drake.diagnosis.locating.terms_for import Offer
+from hydrolek_drake.diagnosis.structures.cost import Tried, cost
 from hydrolek_drake.diagnosis.structures.enlarging import Opening, enlarged, opened
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.structures.race import Entrant, race
@@ -39,7 +39,7 @@ class Unlisted(Protocol):
 def search_structures(
     bench: Workbench,
     candidates: Sequence[Candidate],
-    found: Search,
+    found: Tried,
     say: Callable[[str], None],
     settings: Settings,
     cores: int,
@@ -89,7 +89,7 @@ def search_structures(
 
 
 def _open(
-    found: Search, done: set[tuple[frozenset[str], str]], settings: Settings, *, laws: bool
+    found: Tried, done: set[tuple[frozenset[str], str]], settings: Settings, *, laws: bool
 ) -> list[tuple[Hypothesis, str]]:
     """Structures that may be enlarged, and by what.
 
@@ -104,11 +104,11 @@ def _open(
     else:
         items = []
         sizes: dict[int, int] = {}
-        for h in sorted(found.hypotheses.values(), key=cost_of):
+        for h in sorted(found.hypotheses.values(), key=cost):
             count = len(h.effects)
             sizes[count] = sizes.get(count, 0) + 1
             beyond = count >= settings.most_additions or sizes[count] > settings.beam
-            if beyond or (h.effects and cost_of(h) >= cost_of(found.baseline)):
+            if beyond or (h.effects and cost(h) >= cost(found.baseline)):
                 continue
             if not any(isinstance(c, LawTerm) for c in h.effects):
                 items.append((h, EFFECTS))
@@ -127,7 +127,7 @@ def _worth_while(opening: Opening) -> bool:
     )
 
 
-def _nominal(bench: Workbench, found: Search, settings: Settings, cores: int) -> None:
+def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
     """The nominal model by continuation, from the rig's own numbers and from the middle of their ranges."""
     centre = {free.path: free.from_unit(0.5) for free in bench.nominal}
     starts = [Entrant((), {}), Entrant((), centre)]
@@ -145,7 +145,7 @@ def _nominal(bench: Workbench, found: Search, settings: Settings, cores: int) ->
             found.keep(each)
 
 
-def _weigh(bench: Workbench, found: Search, settings: Settings, cores: int) -> None:
+def _weigh(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
     """Weigh the data by the best structure where it tells their noise better, and fit what is near it again."""
     best = found.best
     if best.fit.over_noise > settings.nearer * found.weighed_at:
@@ -164,6 +164,6 @@ def _weigh(bench: Workbench, found: Search, settings: Settings, cores: int) -> N
     trace(
         "  weighed: "
         + ", ".join(
-            f"{[c.id for c in h.effects]} {h.fit.over_noise:.4f}" for h in sorted(again, key=cost_of)[:4]
+            f"{[c.id for c in h.effects]} {h.fit.over_noise:.4f}" for h in sorted(again, key=cost)[:4]
         )
     )
