@@ -20,7 +20,9 @@ _TOKEN = re.compile(
 def _registry() -> Any:
     import pint  # takes a while to load, and SI-only input never needs it
 
-    return pint.UnitRegistry()
+    registry: Any = pint.UnitRegistry()
+    registry.define("@alias turn = rev")  # as pumps and motors are specified: cm^3/rev
+    return registry
 
 
 @cache

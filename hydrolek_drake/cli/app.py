@@ -52,6 +52,9 @@ COMMANDS: dict[str, CommandEntry] = {
     "rigs": CommandEntry(
         "hydrolek_drake.cli.rigs", "rigs", "list the built-in rigs, or one rig's parameters"
     ),
+    "rig": CommandEntry(
+        "hydrolek_drake.cli.rig", "rig", "a new rig from a data sheet, or what is implausible about one"
+    ),
     "ik": CommandEntry("hydrolek_drake.cli.ik", "ik", "joint angles for a target, or what prevents it"),
     "stand": CommandEntry(
         "hydrolek_drake.cli.stand", "stand", "where to stand so that a pipe can be grasped and cut"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrolek_drake.cli.inputs import refuse_twice, rig_and_recordings
+from hydrolek_drake.cli.inputs import refuse_twice, rig_and_recordings, tell_what_looks_wrong
 from hydrolek_drake.cli.settings import ConfirmOption, SetOption
 from hydrolek_drake.errors import InputError
 
@@ -77,6 +77,8 @@ def diagnose(
     # by evidence, what is to be rolled out at a moment fills whole tables of lanes by itself
     threads = RolloutPool(count) if method == "rules" else ThreadPoolExecutor(count)
     with progress("starting") as tell, threads as pool:
+        tell("checking ...")
+        tell_what_looks_wrong(loaded, [*train, *held], output)
 
         def say(text: str) -> None:
             tell(f"{text} ...")

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from hydrolek_drake.cli.inputs import chosen, refuse_twice, rig_and_recordings
+from hydrolek_drake.cli.inputs import chosen, refuse_twice, rig_and_recordings, tell_what_looks_wrong
 from hydrolek_drake.cli.settings import ConfirmOption, SetOption
 
 
@@ -74,6 +74,8 @@ def fit(
     from hydrolek_drake.identification.parameter_set import parameters_off
 
     output, progress = console(), Console(stderr=True)
+    with progress.status("checking"):
+        tell_what_looks_wrong(loaded, [*read, *held], output)
     profiled = check_profiled(loaded, profile or [], [f.path for f in searched(loaded, read, parameter)])
     with progress.status("fitting") as status:
         fitted = fit_rig(

@@ -8,6 +8,8 @@ from hydrolek_drake.cli.settings import parse_settings
 from hydrolek_drake.errors import InputError
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from hydrolek_drake.recordings import Recording
     from hydrolek_drake.rigs import Rig
 
@@ -49,4 +51,28 @@ def rig_and_recordings(
     from hydrolek_drake.rigs import load_rig
 
     loaded = load_rig(rig, parse_settings(settings))
-    return loaded, [[read_recording(path, loaded.columns) for path in group or []] for group in groups]
+    read = [[read_recording(path, loaded.columns) for path in group or []] for group in groups]
+    from hydrolek_drake.checking.clock import refuse_other_clock
+
+    for group in read:
+        for recording in group:
+            refuse_other_clock(loaded, recording)
+    return loaded, read
+
+
+def tell_what_looks_wrong(rig: "Rig", recordings: "Sequence[Recording]", console: "Console") -> None:
+    """Say before anything long what looks wrong about recordings of a machine, as `hydrolek rig check` does.
+
+    Args:
+        rig: the machine.
+        recordings: of it.
+        console: where to say it.
+    """
+    from hydrolek_drake.checking.recording_checks import check_recording
+
+    for recording in recordings:
+        for complaint in check_recording(rig, recording):
+            if complaint.wrong:
+                console.print(
+                    f"looks wrong: {recording.source}: {complaint.sentence()}", markup=False, soft_wrap=True
+                )

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from hydrolek_drake.cli.inputs import refuse_twice, rig_and_recordings
+from hydrolek_drake.cli.inputs import refuse_twice, rig_and_recordings, tell_what_looks_wrong
 from hydrolek_drake.cli.settings import SetOption
 
 
@@ -40,6 +40,8 @@ def replay(
     from hydrolek_drake.replay import replay as run_replay
     from hydrolek_drake.replay.table import signal_table
 
+    with progress.status("checking (the first time, the physics is compiled: some 10 s)"):
+        tell_what_looks_wrong(loaded, read, output)
     for path, recording in zip(recordings, read, strict=True):
         with progress.status(f"replaying {path} (the first time, the physics is compiled: some 10 s)"):
             replayed = run_replay(loaded, recording, between)

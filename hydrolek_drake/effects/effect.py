@@ -20,6 +20,7 @@ HOOKS = {
     "flow_gain": "(time, joint) -> factor on the flow coefficient",
     "viscous_gain": "(time, joint) -> factor on the cylinder's viscous friction",
     "supply_drop": "(flow, joint) -> Pa by which the supply falls",
+    "pump_loss": "(joint) -> share of the pump's flow that is missing",
     "compressibility": "(pressure, joint) -> 1/Pa added to the oil's compressibility",
     "cross_conductance": "(joint) -> m^3/(s Pa) from chamber A to B",
     "rod_friction": "(velocity, stroke, joint) -> N against the rod, and its slope in N s/m",

@@ -23,7 +23,7 @@ EFFECT = Effect(
     confused_with={
         "valve.asymmetric_overlap": "a shifted null leaves the pressures at rest alone",
     },
-    needs={"load": ("rotating", "arm", "sliding")},
+    needs={"load": ("rotating", "arm", "sliding", "link")},
     beneath="rod_payload",
 )
 

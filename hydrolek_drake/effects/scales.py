@@ -136,9 +136,15 @@ def hydraulic_scales(
     pressure = float(joint["supply"]["pressure"] - joint["supply"]["tank_pressure"])
     area = float(joint["cylinder"]["area_a"])
     valve, solenoid = joint["valve"], joint["solenoid"]
-    overlap = float(valve["overlap_a"]) or float(valve["full_opening_a"])
+    alike = not math.isnan(float(valve["overlap_a"]))  # else each of its edges has an overlap of its own
+    full_opening = float(valve["full_opening_a" if alike else "full_opening"])
+    overlap = abs(float(valve["overlap_a" if alike else "overlap_pa"])) or full_opening
     spring = float(solenoid["spring"])
     load = joint["load"]
+    inertia = float(load["inertia"])
+    if math.isnan(inertia):  # of a mass with its place
+        k, x, y = (float(load[name]) for name in ("gyration_radius", "centre_along", "centre_across"))
+        inertia = float(load["mass"]) * (k * k + x * x + y * y)
     weight = abs(float(load["payload_gravity_cos"])) + abs(float(load["payload_gravity_sin"]))
     spun = float(load["payload_inertia"])
     force = pressure * area
@@ -151,7 +157,7 @@ def hydraulic_scales(
         conductance=full_flow / pressure,
         resistance=pressure / full_flow,
         overlap=overlap,
-        spool_force=spring * float(valve["full_opening_a"]),
+        spool_force=spring * full_opening,
         air_fraction=(0.25 * pressure) ** 2
         / (float(joint["fluid"]["bulk_modulus"]) * float(joint["fluid"]["atmospheric_pressure"])),
         travel=travel,
@@ -159,10 +165,10 @@ def hydraulic_scales(
         nearest=max(nearest, 0.0),
         travel_time=travel * lever / speed,
         duration=duration,
-        inertia=float(joint["load"]["inertia"]),
+        inertia=inertia,
         payload=min(
             force * lever / weight if weight > 0.0 else math.inf,
-            SLOWED**2 * float(load["inertia"]) / spun if spun > 0.0 else math.inf,
+            SLOWED**2 * inertia / spun if spun > 0.0 else math.inf,
         ),
         capacity=area * travel * lever / pressure,
         rod_payload=float(joint["cylinder"]["rod_mass"]) * (levers[1] ** 2 - levers[0] ** 2) / spun

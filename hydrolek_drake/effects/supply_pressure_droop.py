@@ -22,7 +22,7 @@ EFFECT = Effect(
         "cylinder.cross_port_leakage": "leakage slows the joint under load even at small flow",
         "amplifier.gain_fade": "fading depends on time, droop on flow",
     },
-    needs={"cylinder": ("cylinder", "vane", "hydraulic_motor")},
+    needs={"supply": ("constant_pressure",), "cylinder": ("cylinder", "vane", "hydraulic_motor")},
 )
 
 

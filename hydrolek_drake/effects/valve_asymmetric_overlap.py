@@ -21,7 +21,7 @@ EFFECT = Effect(
         "load.payload": "a load acts on pressures at rest as well",
     },
     shifts={"valve.overlap_a": ("shift_m", 1.0), "valve.overlap_b": ("shift_m", -1.0)},
-    needs={"valve": ("plain", "pressure_compensated")},
+    needs={"valve": ("plain", "pressure_compensated", "four_edges")},
 )
 
 

@@ -28,7 +28,7 @@ EFFECT = Effect(
         "cylinder.cross_port_leakage": "a leaking piston lets the load sink; leaking lands also push both "
         "chambers to half the supply",
     },
-    needs={"valve": ("plain", "pressure_compensated")},
+    needs={"valve": ("plain", "pressure_compensated", "four_edges")},
 )
 
 

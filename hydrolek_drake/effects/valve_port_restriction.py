@@ -30,7 +30,7 @@ EFFECT = Effect(
         "supply.pressure_droop": "a drooping supply falls with all that is drawn, and slows the joint less in the "
         "direction that draws less; the ports choke both alike, by the opening",
     },
-    needs={"valve": ("plain",)},
+    needs={"valve": ("plain", "four_edges")},
 )
 
 

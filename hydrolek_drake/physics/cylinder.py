@@ -10,6 +10,7 @@ from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.fluid import effective_bulk_modulus
 from hydrolek_drake.physics.parameters import Parameter, Stage
+from hydrolek_drake.physics.usual import rare
 
 _CHAMBERS = (
     Parameter(
@@ -59,6 +60,14 @@ STAGE = Stage(
                 neutral=0.0,
                 lowest=0.0,
             ),
+            Parameter(
+                "stop_stiffness",
+                "N/m",
+                "stiffness of the piston's stops at both ends of the stroke",
+                neutral=0.0,
+                lowest=0.0,
+            ),
+            Parameter("stop_damping", "N s/m", "damping of these stops", neutral=0.0, lowest=0.0),
         ),
         "vane": (
             *_DISPLACEMENTS,
@@ -145,6 +154,25 @@ def hard_stop_force(stroke: float, velocity: float, joint: Any) -> float:
 
 
 @njit
+def elastic_stop(stroke: float, velocity: float, joint: Any) -> tuple[float, float]:
+    """Force of the piston's elastic stops against the rod [N], and its slope over velocity [N s/m].
+
+    Spring and damper beyond each end of the stroke, k s + d v (Hunt and Crossley, J. Applied Mechanics 42 (1975) 440,
+    without their weighting); they push back and never pull.
+    """
+    p = joint.cylinder
+    if not (rare(joint) and p.variant == CYLINDER and p.stop_stiffness > 0.0):
+        return 0.0, 0.0
+    over = max(stroke - p.stroke, 0.0) + min(stroke, 0.0)
+    if over == 0.0:
+        return 0.0, 0.0
+    force = p.stop_stiffness * over + p.stop_damping * velocity
+    if force * over <= 0.0:
+        return 0.0, 0.0
+    return force, p.stop_damping
+
+
+@njit
 def pressure_force(p_a: float, p_b: float, joint: Any) -> float:
     """Force of the oil on the piston [N], A_A P_A - A_B P_B in (4.9)."""
     return joint.cylinder.area_a * p_a - joint.cylinder.area_b * p_b
@@ -156,7 +184,8 @@ def friction_force(stroke: float, velocity: float, time: float, joint: Any) -> t
     viscous = joint.cylinder.viscous_friction * hooks.viscous_gain(time, joint)
     friction, slope = hooks.rod_friction(velocity, stroke, joint)
     stop = hard_stop_force(stroke, velocity, joint)
-    return viscous * velocity + friction + stop, viscous + slope
+    elastic, stop_slope = elastic_stop(stroke, velocity, joint)
+    return viscous * velocity + friction + stop + elastic, viscous + slope + stop_slope
 
 
 @njit

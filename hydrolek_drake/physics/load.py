@@ -7,6 +7,7 @@ from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.angle import Angle, angle
 from hydrolek_drake.physics.linkage import stroke_and_lever
 from hydrolek_drake.physics.parameters import Parameter, Stage
+from hydrolek_drake.physics.usual import rare
 
 _ROTATING_STOPS = (
     Parameter("lower_stop", "rad", "where the lower end stop begins"),
@@ -27,10 +28,7 @@ _ROTATING = (
         positive=True,
     ),
 )
-_MOMENTS = (
-    Parameter("inertia", "kg m^2", "moment of inertia about the joint axis", lowest=0.0, positive=True),
-    Parameter("gravity_cos", "N m", "gravity moment at joint angle zero", neutral=0.0),
-    Parameter("gravity_sin", "N m", "gravity moment at joint angle 90 deg", neutral=0.0),
+_PAYLOAD = (
     Parameter(
         "payload_inertia", "kg m^2/kg", "moment of inertia per kilogram of payload", neutral=0.0, lowest=0.0
     ),
@@ -40,6 +38,12 @@ _MOMENTS = (
     Parameter(
         "payload_gravity_sin", "N m/kg", "gravity moment at 90 deg per kilogram of payload", neutral=0.0
     ),
+)
+_MOMENTS = (
+    Parameter("inertia", "kg m^2", "moment of inertia about the joint axis", lowest=0.0, positive=True),
+    Parameter("gravity_cos", "N m", "gravity moment at joint angle zero", neutral=0.0),
+    Parameter("gravity_sin", "N m", "gravity moment at joint angle 90 deg", neutral=0.0),
+    *_PAYLOAD,
 )
 STAGE = Stage(
     "load",
@@ -67,11 +71,31 @@ STAGE = Stage(
                 positive=True,
             ),
         ),
+        "link": (
+            Parameter("mass", "kg", "of all that turns", lowest=0.0, positive=True),
+            Parameter("centre_along", "m", "centre of mass along the link: level at joint angle zero"),
+            Parameter(
+                "centre_across",
+                "m",
+                "centre of mass across the link: upwards at joint angle zero",
+                neutral=0.0,
+            ),
+            Parameter(
+                "gyration_radius",
+                "m",
+                "radius of gyration about the centre of mass; length / sqrt(12) of a uniform link",
+                lowest=0.0,
+            ),
+            Parameter("gravity", "m/s^2", "acceleration of gravity; 0 about an upright axis", lowest=0.0),
+            *_PAYLOAD,
+            *_ROTATING,
+        ),
     },
 )
 ROTATING = float(STAGE.code("rotating"))
 SLIDING = float(STAGE.code("sliding"))
 ARM = float(STAGE.code("arm"))
+LINK = float(STAGE.code("link"))
 
 
 @njit
@@ -85,21 +109,42 @@ def gravity_load_at(position: Angle, time: float, joint: Any) -> float:
     """Gravity's moment (or force) against the positive direction [N m or N].
 
     Everything beyond one moving joint is a rigid body that turns about a fixed axis, so the moment is
-    exactly g_c cos q + g_s sin q.
+    exactly g_c cos q + g_s sin q; of a mass m with its centre at (x, y) it is m g (x cos q - y sin q).
     """
     p = joint.load
     if p.variant == SLIDING:
         return p.gravity_cos
     mass = hooks.payload(time, joint)
-    along = p.gravity_cos + mass * p.payload_gravity_cos
-    across = p.gravity_sin + mass * p.payload_gravity_sin
+    own_along, own_across = gravity_moments(joint)
+    along = own_along + mass * p.payload_gravity_cos
+    across = own_across + mass * p.payload_gravity_sin
     return along * position.cosine + across * position.sine
+
+
+@njit
+def gravity_moments(joint: Any) -> tuple[float, float]:
+    """Gravity's moment on the load alone at joint angle zero and at 90 deg [N m]."""
+    p = joint.load
+    if rare(joint) and p.variant == LINK:
+        weight = p.mass * p.gravity
+        return weight * p.centre_along, -weight * p.centre_across
+    return p.gravity_cos, p.gravity_sin
+
+
+@njit
+def own_inertia(joint: Any) -> float:
+    """Inertia of the load alone [kg m^2 or kg]; m (k^2 + x^2 + y^2) of a mass with its place and radius of gyration."""
+    p = joint.load
+    if rare(joint) and p.variant == LINK:
+        k, x, y = p.gyration_radius, p.centre_along, p.centre_across
+        return p.mass * (k * k + x * x + y * y)
+    return p.inertia
 
 
 @njit
 def moving_inertia(time: float, joint: Any) -> float:
     """Inertia of the load with its payload [kg m^2 or kg]."""
-    return joint.load.inertia + hooks.payload(time, joint) * joint.load.payload_inertia
+    return own_inertia(joint) + hooks.payload(time, joint) * joint.load.payload_inertia
 
 
 @njit

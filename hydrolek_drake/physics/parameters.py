@@ -43,12 +43,15 @@ class Stage:
         meaning: what the stage does.
         common: parameters of every variant.
         variants: name -> further parameters; the record stores the variant as its position in this mapping.
+        default: the variant of a rig that names none; empty where a rig must, unless the first one needs nothing of its
+            own.
     """
 
     name: str
     meaning: str
     common: tuple[Parameter, ...]
     variants: dict[str, tuple[Parameter, ...]]
+    default: str = ""
 
     def parameters(self, variant: str) -> tuple[Parameter, ...]:
         """All parameters of one variant."""

@@ -22,6 +22,7 @@ from hydrolek_drake.physics import (
 )
 from hydrolek_drake.physics.law import LAW_RECORD
 from hydrolek_drake.physics.parameters import Stage
+from hydrolek_drake.physics.usual import MARK, RARE, RARE_NUMBERS
 
 SHARED_STAGES: dict[str, Stage] = {s.STAGE.name: s.STAGE for s in (supply, fluid)}
 """Stages that all joints of a rig share."""
@@ -41,6 +42,26 @@ JOINT = np.dtype(
     [(stage.name, stage.dtype()) for stage in STAGES.values()]
     + [("effects", EFFECT_RECORD), ("law", LAW_RECORD)]
 )
+
+_NAMES = JOINT.names or ()
+_USUAL = np.dtype(
+    {
+        "names": [*_NAMES, MARK],
+        "formats": [*(JOINT[name] for name in _NAMES), np.dtype(np.float64)],
+        "offsets": [*(JOINT.fields[name][1] for name in _NAMES), 0],  # type: ignore[index]
+        "itemsize": JOINT.itemsize,
+    }
+)  # type: ignore[call-overload]
+
+
+def as_usual(joints: np.ndarray) -> np.ndarray:
+    """The records, as the type for which rollouts are compiled without rare variants if none of them has any."""
+    for stage, variants in RARE.items():
+        if np.isin(joints[stage]["variant"], [STAGES[stage].code(variant) for variant in variants]).any():
+            return joints
+    if any((joints[stage][name] > 0.0).any() for stage, name in RARE_NUMBERS):
+        return joints
+    return joints.view(_USUAL)
 
 
 def flat(joints: np.ndarray) -> np.ndarray:

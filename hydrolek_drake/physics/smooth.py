@@ -1,4 +1,4 @@
-"""Exponential, hyperbolic tangent, sine and cosine in plain arithmetic, for loops over machines in lanes.
+"""Exponential, logarithm, hyperbolic tangent, sine and cosine in plain arithmetic, for loops over machines in lanes.
 
 The mathematical library's functions are calls, of which no compiler makes vector instructions. e^x = 2^n e^r with n the
 nearest whole number to x / ln 2 and |r| <= ln 2 / 2, for which the series (Abramowitz, Stegun, Handbook of Mathematical
@@ -9,6 +9,7 @@ by their series (4.3.65, 4.3.66) up to a quarter turn, and of twice the angle by
 import math
 from typing import Any
 
+import numpy as np
 from numba import types
 from numba.extending import intrinsic
 
@@ -20,6 +21,7 @@ _LN2_LOW = 1.90821492927058770002e-10
 _LOWEST, _HIGHEST = -700.0, 700.0  # beyond, e^x is no normal number
 _ROUNDING = 1.5 * 2.0**52  # added to a number, it leaves the nearest whole one in the lowest bits
 _BIAS, _MANTISSA_BITS = 1023, 52  # of a float64
+_HALF_ROOT_BITS = int(np.float64(math.sqrt(0.5)).view(np.int64))
 
 
 @intrinsic
@@ -53,6 +55,23 @@ def exponential(x: float) -> float:
         1.0 / 5040 + r * (1.0 / 40320 + r * (1.0 / 362880 + r * (1.0 / 3628800 + r * (
             1.0 / 39916800 + r * (1.0 / 479001600))))))))))))  # fmt: skip
     return series * _as_float((_as_bits(rounded) + _BIAS) << _MANTISSA_BITS)
+
+
+@njit
+def logarithm(x: float) -> float:
+    """Natural logarithm of a number above zero, to 1e-15 beside its rounding.
+
+    ln x = n ln 2 + ln m with m between sqrt(1/2) and sqrt(2): ln m = 2 artanh((m - 1)/(m + 1)) by its series
+    (4.1.27), at rounding after eleven terms.
+    """
+    bits = _as_bits(x)
+    n = (bits - _HALF_ROOT_BITS) >> _MANTISSA_BITS
+    m = _as_float(bits - (n << _MANTISSA_BITS))
+    z = (m - 1.0) / (m + 1.0)
+    w = z * z
+    series = 2.0 * z * (1.0 + w * (1.0 / 3 + w * (1.0 / 5 + w * (1.0 / 7 + w * (1.0 / 9 + w * (1.0 / 11 + w * (
+        1.0 / 13 + w * (1.0 / 15 + w * (1.0 / 17 + w * (1.0 / 19 + w * (1.0 / 21)))))))))))  # fmt: skip
+    return n * _LN2_HIGH + (series + n * _LN2_LOW)
 
 
 @njit

@@ -109,8 +109,8 @@ def spool_acceleration(
         - friction
     )
     if closing_a > 0.0 or closing_b > 0.0:
-        open_a, open_b = openings(x, joint)
-        force -= closing_a * open_a - closing_b * open_b
+        opened = openings(x, joint)
+        force -= closing_a * opened.pa - closing_b * opened.pb
     per_mass = 1.0 / p.moving_mass
     return force * per_mass, -(p.damping + friction_slope) * per_mass
 

@@ -1,12 +1,18 @@
-"""The four-way directional valve, equations (4.7), (4.8) with overlap, for both directions."""
+"""The four-way directional valve, equations (4.7), (4.8) with overlap, for both directions; also edge by edge."""
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.fluid import orifice_conductance
 from hydrolek_drake.physics.parameters import Parameter, Stage
+from hydrolek_drake.physics.usual import rare
+
+EDGES = ("pa", "at", "pb", "bt")
+"""P-A and B-T open towards A, P-B and A-T towards B."""
+
+_WAYS = {"pa": "from P to A", "at": "from A to the tank", "pb": "from P to B", "bt": "from B to the tank"}
 
 STAGE = Stage(
     "valve",
@@ -48,26 +54,76 @@ STAGE = Stage(
             ),
         ),
         "none": (),
+        "four_edges": (
+            Parameter(
+                "full_opening",
+                "m",
+                "spool travel at which every edge is open widest",
+                lowest=0.0,
+                positive=True,
+            ),
+            *(
+                Parameter(
+                    f"overlap_{edge}",
+                    "m",
+                    f"spool travel before the edge {way} opens; below zero for an underlap",
+                )
+                for edge, way in _WAYS.items()
+            ),
+            *(
+                Parameter(
+                    f"area_gradient_{edge}",
+                    "m^2/m",
+                    f"area that the edge {way} opens per travel: the width of its ports",
+                    lowest=0.0,
+                )
+                for edge, way in _WAYS.items()
+            ),
+            Parameter("discharge", "1", "contraction coefficient C_q in (4.7)", lowest=0.0),
+        ),
     },
 )
 PLAIN = float(STAGE.code("plain"))
 PRESSURE_COMPENSATED = float(STAGE.code("pressure_compensated"))
 NO_VALVE = float(STAGE.code("none"))
+FOUR_EDGES = float(STAGE.code("four_edges"))
+
+
+class Openings(NamedTuple):
+    """How far the edges are open, shares of their full opening (0 to 1)."""
+
+    pa: float
+    at: float
+    pb: float
+    bt: float
 
 
 @njit
-def openings(x: float, joint: Any) -> tuple[float, float]:
-    """Shares of full opening (0 to 1) towards A and towards B at spool position `x` [m].
+def openings(x: float, joint: Any) -> Openings:
+    """How far the edges are open at spool position `x` [m].
 
     Between the overlaps the valve is closed: the dead-zone. `land_shift` moves the spool's null without
-    changing the slope of the opening.
+    changing the slope of the opening. But for a valve of four edges, both edges of a direction open alike.
     """
     p = joint.valve
     shift = hooks.land_shift(joint)
-    return (
-        _opened(x - (p.overlap_a + shift), p.full_opening_a - p.overlap_a),
-        _opened(-x - (p.overlap_b - shift), p.full_opening_b - p.overlap_b),
-    )
+    if rare(joint) and p.variant == FOUR_EDGES:
+        return Openings(
+            _opened(x - (p.overlap_pa + shift), p.full_opening - p.overlap_pa),
+            _opened(-x - (p.overlap_at - shift), p.full_opening - p.overlap_at),
+            _opened(-x - (p.overlap_pb - shift), p.full_opening - p.overlap_pb),
+            _opened(x - (p.overlap_bt + shift), p.full_opening - p.overlap_bt),
+        )
+    towards_a = _opened(x - (p.overlap_a + shift), p.full_opening_a - p.overlap_a)
+    towards_b = _opened(-x - (p.overlap_b - shift), p.full_opening_b - p.overlap_b)
+    return Openings(towards_a, towards_b, towards_b, towards_a)
+
+
+@njit
+def widened(opened: Openings, more: float) -> Openings:
+    """Openings that are larger by a share."""
+    by = 1.0 + more
+    return Openings(by * opened.pa, by * opened.at, by * opened.pb, by * opened.bt)
 
 
 @njit
@@ -103,13 +159,14 @@ def flow_forces(p_supply: float, p_a: float, p_b: float, more: float, joint: Any
 
 @njit
 def edge_conductances(
-    open_a: float, open_b: float, p_supply: float, p_a: float, p_b: float, time: float, joint: Any
+    opened: Openings, p_supply: float, p_a: float, p_b: float, time: float, joint: Any
 ) -> tuple[float, float, float, float]:
     """Flow over pressure drop of the four edges P-A, A-T, P-B, B-T [m^3/(s Pa)], equations (4.7), (4.8).
 
+    The largest area of one edge among four is its area gradient times its travel beyond the overlap.
+
     Args:
-        open_a: share of opening towards A.
-        open_b: share of opening towards B.
+        opened: how far the edges are open.
         p_supply: pressure at port P [Pa].
         p_a: pressure at port A [Pa].
         p_b: pressure at port B [Pa].
@@ -127,21 +184,36 @@ def edge_conductances(
     if p.variant == PLAIN:
         coefficient = p.discharge * gain
         choke = hooks.port_drop(joint)
-        if open_a > 0.0:
-            area = _choked(open_a, choke) * p.max_area_a
+        if opened.pa > 0.0:
+            area = _choked(opened.pa, choke) * p.max_area_a
             pa += orifice_conductance(area, p_supply - p_a, coefficient, joint)
             bt += orifice_conductance(area, p_b - p_tank, coefficient, joint)
-        if open_b > 0.0:
-            area = _choked(open_b, choke) * p.max_area_b
+        if opened.pb > 0.0:
+            area = _choked(opened.pb, choke) * p.max_area_b
             pb += orifice_conductance(area, p_supply - p_b, coefficient, joint)
             at += orifice_conductance(area, p_a - p_tank, coefficient, joint)
     elif p.variant == PRESSURE_COMPENSATED:
-        if open_a > 0.0:
-            pa += gain * _compensated_conductance(open_a, p_supply - p_a, joint)
-            bt += gain * _return_conductance(open_a, p_b - p_tank, joint)
-        if open_b > 0.0:
-            pb += gain * _compensated_conductance(open_b, p_supply - p_b, joint)
-            at += gain * _return_conductance(open_b, p_a - p_tank, joint)
+        if opened.pa > 0.0:
+            pa += gain * _compensated_conductance(opened.pa, p_supply - p_a, joint)
+            bt += gain * _return_conductance(opened.pa, p_b - p_tank, joint)
+        if opened.pb > 0.0:
+            pb += gain * _compensated_conductance(opened.pb, p_supply - p_b, joint)
+            at += gain * _return_conductance(opened.pb, p_a - p_tank, joint)
+    elif rare(joint) and p.variant == FOUR_EDGES:
+        coefficient = p.discharge * gain
+        choke = hooks.port_drop(joint)
+        if opened.pa > 0.0:
+            area = _choked(opened.pa, choke) * p.area_gradient_pa * (p.full_opening - p.overlap_pa)
+            pa += orifice_conductance(area, p_supply - p_a, coefficient, joint)
+        if opened.bt > 0.0:
+            area = _choked(opened.bt, choke) * p.area_gradient_bt * (p.full_opening - p.overlap_bt)
+            bt += orifice_conductance(area, p_b - p_tank, coefficient, joint)
+        if opened.pb > 0.0:
+            area = _choked(opened.pb, choke) * p.area_gradient_pb * (p.full_opening - p.overlap_pb)
+            pb += orifice_conductance(area, p_supply - p_b, coefficient, joint)
+        if opened.at > 0.0:
+            area = _choked(opened.at, choke) * p.area_gradient_at * (p.full_opening - p.overlap_at)
+            at += orifice_conductance(area, p_a - p_tank, coefficient, joint)
     return pa, at, pb, bt
 
 
@@ -158,8 +230,7 @@ def _choked(opening: float, port_drop: float) -> float:
 
 @njit
 def chamber_flows(
-    open_a: float,
-    open_b: float,
+    opened: Openings,
     p_supply: float,
     p_a: float,
     p_b: float,
@@ -175,7 +246,7 @@ def chamber_flows(
     pressure settle, for the integrator.
     """
     p_tank = joint.supply.tank_pressure
-    pa, at, pb, bt = edge_conductances(open_a, open_b, p_supply, p_a, p_b, time, joint)
+    pa, at, pb, bt = edge_conductances(opened, p_supply, p_a, p_b, time, joint)
     at *= max(1.0 + back_a, 0.0)
     bt *= max(1.0 + back_b, 0.0)
     cross = hooks.cross_conductance(joint)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from hydrolek_drake.effects.catalogue import EFFECTS
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.physics.valve import EDGES
 from hydrolek_drake.rigs.entries import Entry
 
 if TYPE_CHECKING:
@@ -100,15 +101,27 @@ def _check_triangle(rig: "Rig", where: str, lower: float, upper: float) -> None:
         inner = direction * (lower if direction > 0 else upper) + offset
         shortest = math.sqrt(max(a * a + b * b - 2.0 * a * b * math.cos(inner), 0.0))
         zero = rig.value(f"{where}.linkage.zero_stroke_length")
-        if zero > shortest * (1.0 + 1e-6) + 1e-6:
+        # a stop gives way, and may lie a little beyond zero stroke; but the piston does not pass the dead volume
+        room = rig.value(f"{where}.cylinder.dead_volume_a") / rig.value(f"{where}.cylinder.area_a")
+        if zero - shortest > room:
             raise InputError(
-                f"{rig.path}: {where}.linkage.zero_stroke_length: {zero:g} m is longer than the mounts "
-                f"ever come together ({shortest:g} m)"
+                f"{rig.path}: {where}.linkage.zero_stroke_length: {zero:g} m is longer by {zero - shortest:g} m than "
+                f"the mounts come together ({shortest:g} m, at the stops); at most dead_volume_a over area_a, "
+                f"{room:g} m, lies beyond zero stroke"
             )
 
 
 def _check_valve(rig: "Rig", where: str) -> None:
     if rig.variants[f"{where}.valve"] == "none":
+        return
+    if rig.variants[f"{where}.valve"] == "four_edges":
+        full = rig.value(f"{where}.valve.full_opening")
+        for edge in EDGES:
+            if not (overlap := rig.value(f"{where}.valve.overlap_{edge}")) < full:
+                raise InputError(
+                    f"{rig.path}: {where}.valve: full_opening ({full:g} m) must be larger than "
+                    f"overlap_{edge} ({overlap:g} m)"
+                )
         return
     for side in ("a", "b"):
         overlap, full = (rig.value(f"{where}.valve.{name}_{side}") for name in ("overlap", "full_opening"))

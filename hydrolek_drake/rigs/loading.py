@@ -10,6 +10,7 @@ from typing import Any
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.files import is_file
+from hydrolek_drake.rigs.parts import with_parts
 from hydrolek_drake.rigs.reading import rig_from_tree
 from hydrolek_drake.rigs.rig import Rig
 from hydrolek_drake.yaml_files import read_yaml
@@ -84,7 +85,7 @@ def _resolve(path: Path, seen: tuple[Path, ...]) -> dict[str, Any]:
         raise InputError(f"{path}: based_on goes in a circle")
     if len(seen) >= _MOST_FILES:
         raise InputError(f"{path}: more than {_MOST_FILES} files that are based on each other")
-    tree = _read(path)
+    tree = with_parts(_read(path), path, _merged)
     base = tree.pop("based_on", None)
     if base is not None:
         beside = path.parent / f"{base}"

@@ -85,9 +85,7 @@ def _read_stage(
     if not isinstance(section, Mapping):
         raise InputError(f"{path}: {where} must be a mapping of parameters")
     choices = tuple(stage.variants)
-    plain = (
-        choices[0] if not stage.variants[choices[0]] else None
-    )  # the variant that needs nothing of its own
+    plain = stage.default or (choices[0] if not stage.variants[choices[0]] else None)
     variant = section.get("variant", plain)
     if variant not in choices:
         said = "is missing" if variant is None else f"'{variant}' is unknown"

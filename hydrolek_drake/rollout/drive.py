@@ -62,7 +62,7 @@ def driven_on(
     currents, driving = amplifier.following(d.currents, drive, time + 0.5 * h, h, now.coil_time, joint)
     gain += 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
     closing_a, closing_b = valve.flow_forces(
-        supply.supply_pressure(s.flow, joint) + now.supply, s.p_a, s.p_b, now.flow_force, joint
+        supply.supply_pressure(s.supply, joint) + now.supply, s.p_a, s.p_b, now.flow_force, joint
     )
     x, xd = solenoid.advanced(
         d.x, d.xd, gain * driving.a, gain * driving.b, h, spool_steps, joint, closing_a, closing_b

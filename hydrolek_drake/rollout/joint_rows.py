@@ -12,18 +12,18 @@ from hydrolek_drake.rollout.drive import Drive
 from hydrolek_drake.rollout.rates import Slopes, State, Turned
 
 STATE, RATES, MIDDLE, LATER, SLOPES, NEAR, DRIVE, SPOOL, VOLTS, COMMAND, PLAY, INERTIA, ROD, DRAG = (
-    0, 9, 18, 27, 36, 41, 47, 52, 53, 54, 55, 56, 57, 58,
+    0, 10, 20, 30, 40, 46, 52, 57, 58, 59, 60, 61, 62, 63,
 )  # fmt: skip
 """Where a joint's numbers begin in its row: `State`, its rates at the beginning of a step, the state after the first
 stage and rates there, stiff slopes at the beginning, `Turned` at the beginning, `Drive`, the spool before the
 step, the voltage that drives, the command, what the sensor's play reads, inertia with the others held, the rod's part
 of it, and the drag that enters a step through the mass matrix."""
 
-MOMENT, SINE, COSINE, DRAWN, TOTAL = range(59, 64)
+MOMENT, SINE, COSINE, DRAWN, TOTAL = range(64, 69)
 """What it tells the others where its rates were taken: the moment left for motion, sine and cosine of its angle, and
 the flow that it draws from the supply; and the flow that all of them draw."""
 
-ROW_SIZE = 64
+ROW_SIZE = 69
 
 TORQUE, BIAS, PAYLOAD, SINES, COSINES, SPEEDS = range(6)
 """Rows of what the arms' equation of motion takes and gives, a number for each joint."""
@@ -31,14 +31,14 @@ TORQUE, BIAS, PAYLOAD, SINES, COSINES, SPEEDS = range(6)
 MASS, LESSENED, THERE = range(3)
 """M at the beginning of a step; M with stiff friction there, and M where the first stage ended, both factored."""
 
-FLOW, W = State._fields.index("flow"), State._fields.index("w")
-STIFF_W = Slopes._fields.index("w")
+OF_SUPPLY, W = State._fields.index("supply"), State._fields.index("w")
+STIFF_SUPPLY, STIFF_W = Slopes._fields.index("supply"), Slopes._fields.index("w")
 X = 3
-"""Places of the supply's flow and of the speed in `State`, of the speed in `Slopes`, and of the spool in `Drive`."""
+"""Places of what the supply remembers and of the speed in `State` and in `Slopes`, and of the spool in `Drive`."""
 
 
 def room(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Room for so many joints: rows, vectors and matrices. # (n, 64), (6, n), (3, n, n)."""
+    """Room for so many joints: rows, vectors and matrices. # (n, 69), (6, n), (3, n, n)."""
     return np.zeros((n, ROW_SIZE)), np.zeros((6, n)), np.zeros((3, n, n))
 
 
@@ -56,6 +56,7 @@ def state_at(rows: np.ndarray, i: int, f: int) -> State:
         r[i, f + 6],
         r[i, f + 7],
         r[i, f + 8],
+        r[i, f + 9],
     )
 
 
@@ -67,9 +68,10 @@ def put_state(rows: np.ndarray, i: int, f: int, s: State) -> None:
         s.p_b,
         s.q,
         s.w,
-        s.flow,
+        s.supply,
     )
     rows[i, f + 5], rows[i, f + 6], rows[i, f + 7], rows[i, f + 8] = s.tilt, s.tilt_rate, s.lead_q, s.lead_w
+    rows[i, f + 9] = s.relief
 
 
 @njit
@@ -95,7 +97,7 @@ def put_near(r: np.ndarray, i: int, near: Turned) -> None:
 def slopes_at(r: np.ndarray, i: int) -> Slopes:
     """Stiff slopes at the beginning of a step."""
     f = SLOPES
-    return Slopes(r[i, f], r[i, f + 1], r[i, f + 2], r[i, f + 3], r[i, f + 4])
+    return Slopes(r[i, f], r[i, f + 1], r[i, f + 2], r[i, f + 3], r[i, f + 4], r[i, f + 5])
 
 
 @njit

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import command, hooks, load, sensor
+from hydrolek_drake.physics import command, hooks, load, sensor, supply
 from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.probes import Probe, probe_at
 from hydrolek_drake.physics.solenoid import GAMMA, steps_needed
@@ -32,38 +32,43 @@ def _implicit(h: float, slope: float) -> float:
 
 
 @njit
-def first_stage(s: State, k: State, slope: Slopes, h: float) -> State:
+def first_stage(s: State, k: State, slope: Slopes, h: float, joint: Any) -> State:
     """State after a step of `h` seconds with the rates at its beginning, the stiff ones lessened."""
+    remembered, relief = supply.advanced(s.supply, s.relief, k.supply, slope.supply, h, joint)
     return State(
         s.p_a + h * (k.p_a * _implicit(h, slope.p_a)),
         s.p_b + h * (k.p_b * _implicit(h, slope.p_b)),
         s.q + h * k.q,
         s.w + h * (k.w * _implicit(h, slope.w)),
-        s.flow + h * k.flow,
+        remembered,
         s.tilt + h * k.tilt,
         s.tilt_rate + h * (k.tilt_rate * _implicit(h, slope.tilt_rate)),
         s.lead_q + h * k.lead_q,
         s.lead_w + h * (k.lead_w * _implicit(h, slope.lead_w)),
+        relief,
     )
 
 
 @njit
-def second_stage(s: State, k: State, m: State, slope: Slopes, h: float) -> State:
+def second_stage(s: State, k: State, m: State, slope: Slopes, h: float, joint: Any) -> State:
     """State after a step of `h` seconds: rates `k` at its beginning, `m` where the first stage ended."""
     c_a, c_b, c_w = _implicit(h, slope.p_a), _implicit(h, slope.p_b), _implicit(h, slope.w)
     c_t, c_l = _implicit(h, slope.tilt_rate), _implicit(h, slope.lead_w)
     k_a, k_b, k_w, k_t, k_l = k.p_a * c_a, k.p_b * c_b, k.w * c_w, k.tilt_rate * c_t, k.lead_w * c_l
     half = 0.5 * h
+    mean = 0.5 * (k.supply + m.supply)
+    remembered, relief = supply.advanced(s.supply, s.relief, mean, slope.supply, h, joint)
     return State(
         max(s.p_a + half * (3.0 * k_a + (m.p_a - 2.0 * k_a) * c_a), 0.0),
         max(s.p_b + half * (3.0 * k_b + (m.p_b - 2.0 * k_b) * c_b), 0.0),
         s.q + half * (k.q + m.q),
         s.w + half * (3.0 * k_w + (m.w - 2.0 * k_w) * c_w),
-        s.flow + half * (k.flow + m.flow),
+        remembered,
         s.tilt + half * (k.tilt + m.tilt),
         s.tilt_rate + half * (3.0 * k_t + (m.tilt_rate - 2.0 * k_t) * c_t),
         s.lead_q + half * (k.lead_q + m.lead_q),
         s.lead_w + half * (3.0 * k_l + (m.lead_w - 2.0 * k_l) * c_l),
+        relief,
     )
 
 
@@ -84,9 +89,9 @@ def one_step(
 ) -> State:
     """One Rosenbrock-W step of `h` seconds; the spool goes from `x` to `x_next` meanwhile."""
     k, slope, _, _, _ = rates(s, x, voltage, time, inertia, probe, law, near, joint)
-    middle = first_stage(s, k, slope, h)
+    middle = first_stage(s, k, slope, h, joint)
     m, _, _, _, _ = rates(middle, x_next, voltage, time + h, inertia, probe_next, law, near, joint)
-    return second_stage(s, k, m, slope, h)
+    return second_stage(s, k, m, slope, h, joint)
 
 
 @njit
@@ -110,7 +115,7 @@ def out_of_bounds(x: float, s: State) -> bool:
         and s.p_a < 1e12
         and s.p_b < 1e12
         and abs(x) < 1e3
-        and abs(s.flow) < 1e3
+        and abs(s.supply) < 1e12
         and abs(s.tilt) < 1e3
         and abs(s.lead_q) < 1e3
     )
@@ -162,7 +167,16 @@ def pulled(s: State, share: float, reading: float, measured: np.ndarray) -> tupl
     p_a = s.p_a + share * (measured[1] - s.p_a) if math.isfinite(measured[1]) else s.p_a
     p_b = s.p_b + share * (measured[2] - s.p_b) if math.isfinite(measured[2]) else s.p_b
     moved = State(
-        max(p_a, 0.0), max(p_b, 0.0), s.q + by, s.w, s.flow, s.tilt, s.tilt_rate, s.lead_q + by, s.lead_w
+        max(p_a, 0.0),
+        max(p_b, 0.0),
+        s.q + by,
+        s.w,
+        s.supply,
+        s.tilt,
+        s.tilt_rate,
+        s.lead_q + by,
+        s.lead_w,
+        s.relief,
     )
     return moved, by
 
@@ -233,9 +247,9 @@ def integrate(
 
     Args:
         joints: parameter record, shape (1,).
-        state: x, spool velocity, then `State`, what the sensor's play reads, the time since switching on [s] at
-            the first of `times`, the voltage behind the ramp [V], and the coils' `Currents`; shape (16,); holds the
-            final state afterwards.
+        state: x, spool velocity, then `State` but its last, what the sensor's play reads, the time since switching on
+            [s] at the first of `times`, the voltage behind the ramp [V], the coils' `Currents`, and `State.relief`;
+            shape (17,); holds the final state afterwards.
         command_times: when the command changes [s], shape (m,).
         command_values: held from then on [V], shape (m,); neutral before the first one has arrived.
         times: when to write [s], shape (n,); the integration starts at the first.
@@ -254,7 +268,9 @@ def integrate(
     """
     joint = joints[0]
     d = Drive(state[13], Currents(state[14], state[15]), state[0], state[1])
-    s = State(state[2], state[3], state[4], state[5], state[6], state[7], state[8], state[9], state[10])
+    s = State(
+        state[2], state[3], state[4], state[5], state[6], state[7], state[8], state[9], state[10], state[16]
+    )
     playing = hooks.linkage_gap(joint) > 0.0
     rocking = hooks.base_stiffness(joint) > 0.0
     early = acts_early(law, joint)
@@ -300,12 +316,13 @@ def integrate(
             s, by = pulled(s, share, out[row, 0], measured[row])
             play += by
     if not playing:
-        s = State(s.p_a, s.p_b, s.q, s.w, s.flow, s.tilt, s.tilt_rate, s.q, s.w)
+        s = State(s.p_a, s.p_b, s.q, s.w, s.supply, s.tilt, s.tilt_rate, s.q, s.w, s.relief)
     if not rocking:
-        s = State(s.p_a, s.p_b, s.q, s.w, s.flow, 0.0, 0.0, s.lead_q, s.lead_w)
+        s = State(s.p_a, s.p_b, s.q, s.w, s.supply, 0.0, 0.0, s.lead_q, s.lead_w, s.relief)
     state[0], state[1] = d.x, d.xd
-    state[2], state[3], state[4], state[5], state[6] = s.p_a, s.p_b, s.q, s.w, s.flow
+    state[2], state[3], state[4], state[5], state[6] = s.p_a, s.p_b, s.q, s.w, s.supply
     state[7], state[8], state[9], state[10] = s.tilt, s.tilt_rate, s.lead_q, s.lead_w
     state[11], state[12] = play, times[-1] - on
     state[13], state[14], state[15] = d.behind, d.currents.a, d.currents.b
+    state[16] = s.relief
     return len(times)

@@ -99,7 +99,7 @@ def _loop(kind: Any, b: np.ndarray) -> None:
         b[f + _L] = n.p_b if go else s.p_b
         b[f + 2 * _L] = n.q if go else s.q
         b[f + 3 * _L] = n.w if go else s.w
-        b[f + 4 * _L] = n.flow if go else s.flow
+        b[f + 4 * _L] = n.supply if go else s.supply
         b[f + 5 * _L] = n.tilt if go else s.tilt
         b[f + 6 * _L] = n.tilt_rate if go else s.tilt_rate
         b[f + 7 * _L] = n.lead_q if go else s.lead_q
@@ -110,6 +110,7 @@ def _loop(kind: Any, b: np.ndarray) -> None:
         b[f + 12 * _L] = e.currents.a if go else d.currents.a
         b[f + 13 * _L] = e.currents.b if go else d.currents.b
         b[f + 14 * _L] = played if go else play
+        b[f + 15 * _L] = n.relief if go else s.relief
         b[g] = position.value if go else near.position.value
         b[g + _L] = position.sine if go else near.position.sine
         b[g + 2 * _L] = position.cosine if go else near.position.cosine
@@ -146,7 +147,7 @@ def integrate_lanes(
         joints: their records, shape (lanes,).
         numbers: the same as numbers, shape (lanes, n).
         laws: terms of their laws, rows of `law.LAW`, shape (lanes, terms); None without.
-        states: see `kernel.integrate`, shape (lanes, 16); hold the final states afterwards.
+        states: see `kernel.integrate`, shape (lanes, 17); hold the final states afterwards.
         command_times: [s], infinite behind the last one, shape (lanes, m).
         command_values: [V], NaN there, shape (lanes, m).
         times: when to write [s], shape (lanes, k).
@@ -203,7 +204,7 @@ def _entered(
         joint, v = joints[lane], states[lane]
         for i in range(numbers.shape[1]):
             b[(NUMBERS_OF_JOINT + i) * _L + lane] = numbers[lane, i]
-        s = State(v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10])
+        s = State(v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10], v[16])
         put(b, STATE, lane, s, Drive(v[13], Currents(v[14], v[15]), v[0], v[1]), v[11])
         b[ROD * _L + lane] = load.reflected_rod_inertia(joint)
         machines[lane, 0], machines[lane, 1] = times[lane, 0] - v[12], command.transport_delay(joint)
@@ -343,8 +344,8 @@ def _leave(
         joint = joints[lane]
         s, d, v = state_in(b, STATE, lane), drive_in(b, STATE, lane), states[lane]
         playing, rocking = hooks.linkage_gap(joint) > 0.0, hooks.base_stiffness(joint) > 0.0
-        v[0], v[1], v[2], v[3], v[4], v[5], v[6] = d.x, d.xd, s.p_a, s.p_b, s.q, s.w, s.flow
+        v[0], v[1], v[2], v[3], v[4], v[5], v[6] = d.x, d.xd, s.p_a, s.p_b, s.q, s.w, s.supply
         v[7], v[8] = (s.tilt, s.tilt_rate) if rocking else (0.0, 0.0)
         v[9], v[10] = (s.lead_q, s.lead_w) if playing else (s.q, s.w)
         v[11], v[12] = b[(STATE + 14) * _L + lane], times[lane, rows[lane] - 1] - machines[lane, 0]
-        v[13], v[14], v[15] = d.behind, d.currents.a, d.currents.b
+        v[13], v[14], v[15], v[16] = d.behind, d.currents.a, d.currents.b, s.relief

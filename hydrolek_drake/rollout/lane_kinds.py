@@ -21,7 +21,7 @@ GROUPS = (
 """Hooks whose effects take time in every step, or make it another program. A loop over lanes is compiled with a group
 or without it; what enters at other hooks costs little, and is a number that may be zero."""
 
-SOMETIMES = ("command.ramp", "amplifier.coil_time", "valve.flow_force")
+SOMETIMES = ("command.ramp", "amplifier.coil_time", "valve.flow_force", "cylinder.stop_stiffness")
 """Parameters of the stages that most machines have at zero, and that cost as much."""
 
 TERMS = (1, 2, 3, MOST_TERMS)

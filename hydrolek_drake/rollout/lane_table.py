@@ -17,7 +17,8 @@ _L = LANES
 
 # Rows of the one table that the loop over the lanes works in. With several arrays the compiler would have to suppose
 # that what it writes to one is what it reads from another.
-# Of a state: p_a, p_b, q, w, flow, tilt, tilt_rate, lead_q, lead_w, x, xd, behind, current a, current b, play.
+# Of a state: p_a, p_b, q, w, supply, tilt, tilt_rate, lead_q, lead_w, x, xd, behind, current a, current b, play,
+# relief.
 STATE, NEXT = 0, 16
 NEAR, NEAR_NEXT = 32, 38  # value, sine, cosine of the link's angle and of the one between the mounts
 # Step [s], command that acts [V], time since switching on [s]; with inputs from outside also the command with what they
@@ -27,7 +28,7 @@ PLANNED = 6  # these rows
 ROD = 50
 # Samples of the inputs from outside, and by how much they rise to the next ones, before and after the step.
 SAMPLE, RISE, SAMPLE_NEXT, RISE_NEXT = 51, 66, 81, 96
-KEPT = 15  # rows of `STATE`
+KEPT = 16  # rows of `STATE`
 NUMBERS_OF_JOINT = 111
 TERMS = NUMBERS_OF_JOINT + NUMBERS  # of a law, one after the other
 
@@ -46,6 +47,7 @@ def state_in(b: np.ndarray, first: int, lane: int) -> State:
         b[f + 6 * _L],
         b[f + 7 * _L],
         b[f + 8 * _L],
+        b[f + 15 * _L],
     )
 
 
@@ -60,10 +62,11 @@ def drive_in(b: np.ndarray, first: int, lane: int) -> Drive:
 def put(b: np.ndarray, first: int, lane: int, s: State, d: Drive, play: float) -> None:
     """Write a machine's state, drive, and what its sensor's play reads."""
     f = first * _L + lane
-    b[f], b[f + _L], b[f + 2 * _L], b[f + 3 * _L], b[f + 4 * _L] = s.p_a, s.p_b, s.q, s.w, s.flow
+    b[f], b[f + _L], b[f + 2 * _L], b[f + 3 * _L], b[f + 4 * _L] = s.p_a, s.p_b, s.q, s.w, s.supply
     b[f + 5 * _L], b[f + 6 * _L], b[f + 7 * _L], b[f + 8 * _L] = s.tilt, s.tilt_rate, s.lead_q, s.lead_w
     b[f + 9 * _L], b[f + 10 * _L], b[f + 11 * _L] = d.x, d.xd, d.behind
     b[f + 12 * _L], b[f + 13 * _L], b[f + 14 * _L] = d.currents.a, d.currents.b, play
+    b[f + 15 * _L] = s.relief
 
 
 @njit

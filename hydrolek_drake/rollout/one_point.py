@@ -8,14 +8,16 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import linkage, valve
+from hydrolek_drake.physics import linkage, load, valve
 from hydrolek_drake.physics.law import Seen, law_value
 
 
 @njit(cache=True)
 def inlet_conductance(p_supply: float, p_a: float, p_b: float, joint: Any) -> float:
     """Conductance of the inlet edge of side A of a valve that is wide open [m^3/(s Pa)]."""
-    inlet, _, _, _ = valve.edge_conductances(1.0, 0.0, p_supply, p_a, p_b, 0.0, joint)
+    inlet, _, _, _ = valve.edge_conductances(
+        valve.Openings(1.0, 0.0, 0.0, 1.0), p_supply, p_a, p_b, 0.0, joint
+    )
     return inlet
 
 
@@ -23,6 +25,18 @@ def inlet_conductance(p_supply: float, p_a: float, p_b: float, joint: Any) -> fl
 def stroke_and_lever(angle: float, joint: Any) -> tuple[float, float]:
     """Stroke [m] and lever [m] of a joint's linkage at an angle [rad]; see `linkage.stroke_and_lever`."""
     return linkage.stroke_and_lever(angle, joint)
+
+
+@njit(cache=True)
+def own_inertia(joint: Any) -> float:
+    """Inertia of a joint's load [kg m^2 or kg]; see `load.own_inertia`."""
+    return load.own_inertia(joint)
+
+
+@njit(cache=True)
+def gravity_moments(joint: Any) -> tuple[float, float]:
+    """Gravity's moment on a joint's load at 0 and at 90 deg [N m]; see `load.gravity_moments`."""
+    return load.gravity_moments(joint)
 
 
 @njit(cache=True)

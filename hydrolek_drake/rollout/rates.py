@@ -21,11 +21,12 @@ class State(NamedTuple):
     p_b: float  # pressure on side B [Pa]
     q: float  # joint position [rad or m]
     w: float  # joint velocity
-    flow: float  # flow that the supply feels [m^3/s]
+    supply: float  # what the supply remembers, `supply.supply_pressure`: a flow [m^3/s] or a pressure [Pa]
     tilt: float  # of the base [rad]
     tilt_rate: float
     lead_q: float  # position of the cylinder's side of a play [rad]
     lead_w: float
+    relief: float  # where a relief valve stands [Pa]
 
 
 class Slopes(NamedTuple):
@@ -36,6 +37,7 @@ class Slopes(NamedTuple):
     w: float
     tilt_rate: float
     lead_w: float
+    supply: float
 
 
 class Turned(NamedTuple):
@@ -129,18 +131,16 @@ def rates(
     probe, braking = felt(outside, law, lever, seen)
 
     rate_a = rate_b = slope_a = slope_b = 0.0
-    flow_rate = drawn = 0.0
+    supply_rate = slope_supply = drawn = 0.0
     p_supply = 0.0
     slope_f = 0.0
     if not oil:
         force = cylinder.motor_force(voltage, joint)
     else:
-        p_supply = supply.supply_pressure(s.flow, joint) + probe.supply
-        open_a, open_b = valve.openings(x, joint)
-        open_a *= 1.0 + probe.valve
-        open_b *= 1.0 + probe.valve
+        p_supply = supply.supply_pressure(s.supply, joint) + probe.supply
+        opened = valve.widened(valve.openings(x, joint), probe.valve)
         flow_a, flow_b, drawn, settle_a, settle_b = valve.chamber_flows(
-            open_a, open_b, p_supply, s.p_a, s.p_b, time, joint, probe.back_a, probe.back_b
+            opened, p_supply, s.p_a, s.p_b, time, joint, probe.back_a, probe.back_b
         )
         rate_a, rate_b, stiff_a, stiff_b = cylinder.pressure_rates(
             s.p_a, s.p_b, flow_a, flow_b, stroke, v, joint
@@ -151,7 +151,7 @@ def rates(
         slope_b = -stiff_b * settle_b
         friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
         force = cylinder.pressure_force(s.p_a, s.p_b, joint) - friction
-        flow_rate = supply.flow_rate_of_change(s.flow, drawn + probe.flow, joint)
+        supply_rate, slope_supply = supply.rate_of_change(s.supply, drawn + probe.flow, joint)
 
     force += probe.cylinder
     moment = force * lever
@@ -179,13 +179,14 @@ def rates(
             rate_b,
             s.w,
             acceleration,
-            flow_rate,
+            supply_rate,
             s.tilt_rate,
             tilt_acceleration,
             s.lead_w,
             lead_acceleration,
+            0.0,
         ),
-        Slopes(slope_a, slope_b, slope_w, slope_tilt, slope_lead),
+        Slopes(slope_a, slope_b, slope_w, slope_tilt, slope_lead, slope_supply),
         p_supply,
         force,
         drawn,

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import amplifier, cylinder, hooks, linkage, load, sensor
+from hydrolek_drake.physics import amplifier, cylinder, hooks, linkage, load, sensor, supply
 from hydrolek_drake.rollout.rates import State
 
 STATE_SIZE = 2 + len(State._fields) + 3 + len(amplifier.Currents._fields)
@@ -78,6 +78,7 @@ def _rest(
     joint = joints[0]
     state[:] = 0.0
     state[4] = state[11] = q
+    state[6] = state[16] = supply.at_rest(joint)
     state[12] = time
     state[14], state[15] = amplifier.coil_currents(0.0, time, joint)
     if joint.cylinder.variant == cylinder.ELECTRIC_MOTOR:

@@ -9,7 +9,7 @@ from hydrolek_drake.compiled import read_only
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.law import law_of
 from hydrolek_drake.physics.probes import NO_PROBE
-from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, flat, position_of
+from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, as_usual, flat, position_of
 from hydrolek_drake.rollout import kernel
 from hydrolek_drake.rollout.rest import STATE_SIZE, rest_state
 
@@ -93,7 +93,7 @@ def roll_out(
         try:
             start = rest_state(joint) if state is None else start
             rows = kernel.integrate(
-                joint,
+                as_usual(joint),
                 start,
                 read_only(command_times[changes]),
                 read_only(command_values[changes]),

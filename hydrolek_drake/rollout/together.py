@@ -10,6 +10,7 @@ from hydrolek_drake.compiled import read_only
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.law import LAW, law_of
+from hydrolek_drake.physics.records import as_usual
 from hydrolek_drake.physics.serial_arm import LINK_SIZE, moments_along, scratch
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.joint_rows import DRIVE, PLAY, RATES, SPOOL, STATE, room
@@ -58,7 +59,7 @@ class RunTogether:
         records: of the joints. # (joints,)
         carriers: see `carriers_of`. # (joints,)
         laws: of each joint, rows of `law.LAW`.
-        begun: states at rest, see `kernel.integrate`; None where there is none. # (joints, 16)
+        begun: states at rest, see `kernel.integrate`; None where there is none. # (joints, 17)
         command_times: when commands change [s]. # (m,)
         command_values: held from then on [V]. # (m, joints)
         times: when signals are wanted [s]. # (k,)
@@ -88,8 +89,8 @@ class RunTogether:
         rows, vectors, matrices = room(n)
         put_begun(rows, self.begun)
         done = integrate_together(
-            self.records,
-            self.carriers,
+            as_usual(self.records),
+            as_usual(self.carriers),
             rows,
             vectors,
             matrices,
@@ -127,10 +128,10 @@ def put_begun(rows: np.ndarray, begun: np.ndarray) -> None:
     """Write states at rest into rows of `room`, or of several machines with the lanes behind.
 
     Args:
-        rows: # (joints, at least 64) or (joints, at least 64, lanes)
-        begun: # (joints, 16) or (joints, 16, lanes)
+        rows: # (joints, at least 69) or (joints, at least 69, lanes)
+        begun: # (joints, 17) or (joints, 17, lanes)
     """
-    rows[:, STATE:RATES], rows[:, PLAY] = begun[:, 2:11], begun[:, 11]
+    rows[:, STATE : RATES - 1], rows[:, RATES - 1], rows[:, PLAY] = begun[:, 2:11], begun[:, 16], begun[:, 11]
     rows[:, DRIVE : DRIVE + 3], rows[:, DRIVE + 3 : SPOOL] = begun[:, 13:16], begun[:, :2]
 
 

@@ -17,11 +17,11 @@ from hydrolek_drake.rollout.joint_rows import (
     COMMAND,
     COSINE,
     DRAWN,
-    FLOW,
     INERTIA,
     LATER,
     MIDDLE,
     MOMENT,
+    OF_SUPPLY,
     PLAY,
     RATES,
     ROD,
@@ -90,7 +90,7 @@ def begins(
     put_state(r, i, RATES, k)
     f = SLOPES
     r[i, f], r[i, f + 1], r[i, f + 2], r[i, f + 3] = slope.p_a, slope.p_b, slope.w, slope.tilt_rate
-    r[i, f + 4] = slope.lead_w
+    r[i, f + 4], r[i, f + 5] = slope.lead_w, slope.supply
     _tell(r, i, s, k.w, inertia, drawn, near, time, joint)
 
 
@@ -123,15 +123,15 @@ def halfway(r: np.ndarray, i: int, h: float, joint: Any) -> None:
         joint: parameter record.
     """
     s, k = state_at(r, i, STATE), state_at(r, i, RATES)
-    k = _with_flow(k, supply.flow_rate_of_change(s.flow, r[i, TOTAL], joint))
-    r[i, RATES + FLOW] = k.flow
-    put_state(r, i, MIDDLE, first_stage(s, k, slopes_at(r, i), h))
+    rate, _ = supply.rate_of_change(s.supply, r[i, TOTAL], joint)
+    r[i, RATES + OF_SUPPLY] = rate
+    put_state(r, i, MIDDLE, first_stage(s, _with_supply(k, rate), slopes_at(r, i), h, joint))
 
 
 @njit
-def _with_flow(k: State, rate: float) -> State:
-    """Rates with that of the supply's flow replaced."""
-    return State(k.p_a, k.p_b, k.q, k.w, rate, k.tilt, k.tilt_rate, k.lead_q, k.lead_w)
+def _with_supply(k: State, rate: float) -> State:
+    """Rates with that of what the supply remembers replaced."""
+    return State(k.p_a, k.p_b, k.q, k.w, rate, k.tilt, k.tilt_rate, k.lead_q, k.lead_w, k.relief)
 
 
 @njit
@@ -159,8 +159,9 @@ def goes_on(
 def ends(r: np.ndarray, i: int, h: float, joint: Any) -> None:
     """The state after the step, and what the sensor's play reads then; arguments as of `halfway`."""
     begun, middle = state_at(r, i, STATE), state_at(r, i, MIDDLE)
-    m = _with_flow(state_at(r, i, LATER), supply.flow_rate_of_change(middle.flow, r[i, TOTAL], joint))
-    n = second_stage(begun, state_at(r, i, RATES), m, slopes_at(r, i), h)
+    rate, _ = supply.rate_of_change(middle.supply, r[i, TOTAL], joint)
+    m = _with_supply(state_at(r, i, LATER), rate)
+    n = second_stage(begun, state_at(r, i, RATES), m, slopes_at(r, i), h, joint)
     play, near = r[i, PLAY], near_at(r, i)
     played, after = sensor.played(play, n.q - n.tilt, joint), carried_on(near, n, joint)
     go = h > 0.0
@@ -173,11 +174,12 @@ def ends(r: np.ndarray, i: int, h: float, joint: Any) -> None:
             n.p_b if go else begun.p_b,
             n.q if go else begun.q,
             n.w if go else begun.w,
-            n.flow if go else begun.flow,
+            n.supply if go else begun.supply,
             n.tilt if go else begun.tilt,
             n.tilt_rate if go else begun.tilt_rate,
             n.lead_q if go else begun.lead_q,
             n.lead_w if go else begun.lead_w,
+            n.relief if go else begun.relief,
         ),
     )
     r[i, PLAY] = played if go else play

@@ -161,7 +161,8 @@ def integrate_together(
     Args:
         joints: parameter records, shape (n,).
         carriers: records that say what hangs on each link, shape (n,).
-        r: rows of `room`, with `STATE`, all of which have the flow of the supply, `DRIVE` and `PLAY` at the beginning.
+        r: rows of `room`, with `STATE`, all of which have what the supply remembers, `DRIVE` and `PLAY` at the
+            beginning.
         vectors: those of `room`.
         matrices: those of `room`.
         command_times: when commands change [s], shape (m,).

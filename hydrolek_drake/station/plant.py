@@ -25,6 +25,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.arms import add_arms, arm_joint_names
 from hydrolek_drake.physics import load
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rollout import one_point
 
 _AXIS = np.array([0.0, 0.0, 1.0])
 _UPRIGHT = RollPitchYaw(math.pi / 2.0, 0.0, 0.0)  # a joint's plane: X forward, Y up, as the arms' base frames
@@ -114,8 +115,9 @@ def _add_simple_joint(plant: MultibodyPlant, name: str, joint: np.ndarray) -> li
         )
     gravity = plant.gravity_field().gravity_vector()
     g = float(np.linalg.norm(gravity))
-    inertia = float(p["inertia"])
-    moment = math.hypot(p["gravity_cos"], p["gravity_sin"])
+    inertia = one_point.own_inertia(joint)
+    gravity_cos, gravity_sin = one_point.gravity_moments(joint)
+    moment = math.hypot(gravity_cos, gravity_sin)
     if moment > 0.0:
         # Half of the inertia as a point mass at the centre of gravity, half about it: any such body has the
         # same equation of motion, and this one is physically possible.
@@ -126,7 +128,7 @@ def _add_simple_joint(plant: MultibodyPlant, name: str, joint: np.ndarray) -> li
                 f"joints.{name}.load: an inertia of {inertia:g} kg m^2 and a gravity moment of {moment:g} N m "
                 f"make no body: {mass:g} kg at {arm:g} m"
             )
-        angle = math.atan2(-p["gravity_sin"], p["gravity_cos"])
+        angle = math.atan2(-gravity_sin, gravity_cos)
         centre = arm * np.array([math.cos(angle), math.sin(angle), 0.0])
         about_centre = UnitInertia.SolidSphere(math.sqrt(2.5 * 0.5 * inertia / mass))
         spatial = SpatialInertia.MakeFromCentralInertia(mass, centre, about_centre * mass)

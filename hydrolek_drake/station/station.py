@@ -164,7 +164,11 @@ def _wire_hydraulics(
     ahead = sizes.step if sizes.integrator == "symplectic_euler" and sizes.plant_step == 0.0 else 0.0
     amplifier = add(ProportionalAmplifier(joints, sizes.step))
     spool = add(SolenoidSpool(joints, sizes.step, round(rig.value("integration.spool_steps"))))
-    valve, supply, actuator = add(FourWayValve(joints)), add(Supply(joints)), add(Actuator(joints, ahead))
+    valve, supply, actuator = (
+        add(FourWayValve(joints)),
+        add(Supply(joints, sizes.step)),
+        add(Actuator(joints, ahead)),
+    )
     builder.Connect(_behind_the_ramp(builder, add, joints, sizes, delay.arriving), amplifier.voltage)
     builder.Connect(amplifier.current, spool.current)
     builder.Connect(spool.position, valve.spool)

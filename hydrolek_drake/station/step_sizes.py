@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.rigs import Rig
@@ -48,9 +50,12 @@ def sizes_for(rig: Rig) -> StepSizes:
 
     With them it stays as near the rollout as a sensor's noise (docs/agreement.md). A rollout bears stiff frictions by
     an implicit method, a Diagram's explicit one needs steps that see them: two of the rollout's, and a quarter of that
-    where a play closes, whose blows take 0.2 ms.
+    where a play closes, whose blows take 0.2 ms, or a relief valve sticks in its hysteresis, while nothing but the
+    line's volume holds the pressure.
     """
     step = min(StepSizes.step, 2.0 * rig.value("integration.longest_step"))
-    if any(hooks.linkage_gap(record) > 0.0 for record in rig.records()):
+    records = rig.records()
+    sticks = bool(np.any(records["supply"]["relief_hysteresis"] > 0.0))
+    if sticks or any(hooks.linkage_gap(record) > 0.0 for record in records):
         step /= 4.0
     return StepSizes(step=step, log_period=step)

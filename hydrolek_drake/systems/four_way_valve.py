@@ -5,7 +5,7 @@ from numba import njit
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from hydrolek_drake.physics.probes import BACK_A, BACK_B, VALVE
-from hydrolek_drake.physics.valve import chamber_flows, openings
+from hydrolek_drake.physics.valve import chamber_flows, openings, widened
 from hydrolek_drake.systems.short_law import Outside
 
 
@@ -22,11 +22,9 @@ def _flows(
     n = len(joints)
     for i in range(n):
         joint = joints[i]
-        open_a, open_b = openings(x[i], joint)
-        gain = 1.0 + outside[i, VALVE]
+        opened = widened(openings(x[i], joint), outside[i, VALVE])
         out[i], out[n + i], out[2 * n + i], _, _ = chamber_flows(
-            gain * open_a,
-            gain * open_b,
+            opened,
             p_supply,
             pressure[i],
             pressure[n + i],

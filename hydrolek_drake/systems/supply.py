@@ -2,29 +2,53 @@
 
 import numpy as np
 from numba import njit
-from pydrake.systems.framework import BasicVector, Context, ContinuousState, LeafSystem
+from pydrake.systems.framework import BasicVector, Context, ContinuousState, DiscreteValues, LeafSystem
 
 from hydrolek_drake.physics.probes import SUPPLY
-from hydrolek_drake.physics.supply import flow_rate_of_change, supply_pressure
+from hydrolek_drake.physics.supply import PUMP, at_rest, rate_of_change, relieved_with_play, supply_pressure
 from hydrolek_drake.systems.short_law import Outside
 
 
 @njit(cache=True)
-def _pressure(joints: np.ndarray, flow: float, share: float) -> float:
+def _pressure(joints: np.ndarray, remembered: float, share: float) -> float:
     tank = joints[0].supply.tank_pressure
-    return tank + min(max(share, 0.0), 1.0) * (supply_pressure(flow, joints[0]) - tank)
+    return tank + min(max(share, 0.0), 1.0) * (supply_pressure(remembered, joints[0]) - tank)
 
 
 @njit(cache=True)
-def _rate(joints: np.ndarray, flow: float, flows: np.ndarray) -> float:
+def _rate(joints: np.ndarray, remembered: float, flows: np.ndarray) -> tuple[float, float]:
     drawn = 0.0
     for i in range(2 * len(joints), 3 * len(joints)):
         drawn += flows[i]
-    return flow_rate_of_change(flow, drawn, joints[0])
+    return rate_of_change(remembered, drawn, joints[0])
+
+
+@njit(cache=True)
+def _filled(
+    joints: np.ndarray, above: float, valve: float, before: float, flows: np.ndarray, h: float
+) -> tuple[float, float, float]:
+    """Pressure and valve after a step, and the rate at its beginning.
+
+    The rate is carried on from the step before to the middle of this one (Adams and Bashforth), so that what the
+    joints draw meanwhile counts to second order.
+    """
+    rate, slope = _rate(joints, above, flows)
+    middle = rate if np.isnan(before) else 1.5 * rate - 0.5 * before
+    above, valve = relieved_with_play(above, valve, middle, slope, h, joints[0])
+    return above, valve, rate
+
+
+@njit(cache=True)
+def _at_rest(joints: np.ndarray) -> float:
+    return at_rest(joints[0])
 
 
 class Supply(LeafSystem):
     """Supply pressure from the flow that all joints draw together.
+
+    A constant pressure remembers that flow, low-passed, as a continuous state. A line with a relief valve settles in
+    a tenth of a millisecond: it advances in the diagram's steps by the one-step method of the rollout,
+    `supply.relieved_with_play`, from the flow that a step begins with, and hands on its mean over the running step.
 
     Ports:
         in `oil_flow` (3n): its last n entries are drawn from the supply [m^3/s].
@@ -34,22 +58,35 @@ class Supply(LeafSystem):
         out `supply_pressure` (1) [Pa].
     """
 
-    def __init__(self, joints: np.ndarray):
-        """Build for the joints' records; the supply's own parameters are those of the first joint."""
+    def __init__(self, joints: np.ndarray, step: float):
+        """Build.
+
+        Args:
+            joints: their records; the supply's own parameters are those of the first joint.
+            step: of the diagram [s].
+        """
         super().__init__()
         self.set_name("supply")
         self._joints = joints
+        self._step = step
         self._n = len(joints)
         self.flow = self.DeclareVectorInputPort("oil_flow", 3 * self._n)
         self.available = self.DeclareVectorInputPort("pressure_available", 1)
         self.outside = Outside(self, self._n)
-        self._state = self.DeclareContinuousState(BasicVector([0.0]))
+        self._pump = bool(joints["supply"]["variant"][0] == PUMP)
+        start = _at_rest(joints)
+        if self._pump:
+            self._ends = self.DeclareDiscreteState([start, start, np.nan])
+            self._mean = self.DeclareDiscreteState([start])
+            self.DeclarePeriodicDiscreteUpdateEvent(step, 0.0, self._update)
+        else:
+            self.DeclareContinuousState(BasicVector([start]))
         self.pressure = self.DeclareVectorOutputPort(
             "supply_pressure",
             1,
             self._calc,
             prerequisites_of_calc={
-                self.xc_ticket(),
+                self.xd_ticket() if self._pump else self.xc_ticket(),
                 self.available.ticket(),
                 self.outside.port.ticket(),
             },
@@ -57,12 +94,23 @@ class Supply(LeafSystem):
 
     def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:
         """Low-pass of the flow drawn."""
-        flow = context.get_continuous_state_vector().GetAtIndex(0)
-        rate = _rate(self._joints, flow, self.flow.Eval(context))
-        derivatives.get_mutable_vector().SetAtIndex(0, rate)
+        if not self._pump:
+            flow = context.get_continuous_state_vector().GetAtIndex(0)
+            rate, _ = _rate(self._joints, flow, self.flow.Eval(context))
+            derivatives.get_mutable_vector().SetAtIndex(0, rate)
+
+    def _update(self, context: Context, values: DiscreteValues) -> None:
+        """`values` begins as a copy of the state."""
+        begins, valve, before = values.get_value(self._ends)
+        ends, *rest = _filled(self._joints, begins, valve, before, self.flow.Eval(context), self._step)
+        values.get_mutable_value(self._ends)[:] = ends, *rest
+        values.get_mutable_value(self._mean)[0] = 0.5 * (begins + ends)
 
     def _calc(self, context: Context, output: BasicVector) -> None:
-        flow = context.get_continuous_state_vector().GetAtIndex(0)
+        if self._pump:
+            remembered = float(context.get_discrete_state(self._mean).get_value()[0])
+        else:
+            remembered = context.get_continuous_state_vector().GetAtIndex(0)
         share = self.available.Eval(context)[0] if self.available.HasValue(context) else 1.0
         added = float(self.outside.eval(context)[:, SUPPLY].sum())
-        output.SetAtIndex(0, _pressure(self._joints, flow, share) + added)
+        output.SetAtIndex(0, _pressure(self._joints, remembered, share) + added)

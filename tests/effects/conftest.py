@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
 
@@ -19,14 +20,27 @@ def bench():
 
 
 @pytest.fixture(scope="session")
+def machine_for(bench):
+    """A function: id of an effect -> a rig that it can act on."""
+    link = load_rig("hopsan_link")
+    return lambda effect_id: link if EFFECTS[effect_id].needs.get("supply") == ("pump",) else bench
+
+
+@pytest.fixture(scope="session")
 def drive(bench):
     """A function: values by path (SI), command, times -> signals; by default a command with all motions."""
     done = {}
 
-    def roll(values=None, command=(CHANGES, VOLTS), times=TIMES, longest_step=5e-4):
-        key = (tuple((values or {}).items()), tuple(map(tuple, command)), tuple(times), longest_step)
+    def roll(values=None, command=(CHANGES, VOLTS), times=TIMES, longest_step=5e-4, rig=bench):
+        key = (
+            tuple((values or {}).items()),
+            tuple(map(tuple, command)),
+            tuple(times),
+            longest_step,
+            rig.name,
+        )
         if key not in done:
-            records = bench.with_values(values or {}).records()
+            records = rig.with_values(values or {}).records()
             outcome = roll_out(records, *map(np.asarray, command), times, longest_step=longest_step)
             assert outcome.diverged is None
             done[key] = outcome.signals

@@ -50,6 +50,7 @@ ON = {
     "valve.spool_stiction": {"force_N": 0.2},
     "valve.null_leakage": {"conductance_m3_per_s_Pa": 1e-13},
     "supply.pressure_droop": {"resistance_Pa_s_per_m3": 3e10},
+    "supply.pump_loss": {"fraction": 0.6},
     "fluid.entrained_air": {"air_fraction": 0.05},
     "fluid.warm_up": {"fraction": 0.2, "time_constant_s": 5.0},
     "cylinder.cross_port_leakage": {"conductance_m3_per_s_Pa": 1e-12},
@@ -131,7 +132,7 @@ def test_an_effect_s_parameters_have_neutral_values_and_their_unit_in_their_name
 
 
 @pytest.mark.parametrize("effect_id", EFFECTS)
-def test_neutral_changes_nothing_bit_for_bit(drive, effect_id):
+def test_neutral_changes_nothing_bit_for_bit(drive, machine_for, effect_id):
     """With its size neutral and every other parameter of it away from neutral."""
     size = EFFECTS[effect_id].size
     others = {name: value for name, value in ON[effect_id].items() if name != size}
@@ -139,22 +140,26 @@ def test_neutral_changes_nothing_bit_for_bit(drive, effect_id):
         others["coulomb_N"] = 0.0  # a size of its own: without it the effect is Coulomb friction
     if effect_id == "load.friction_asymmetry":
         others = {}  # two sizes
-    plain, neutral = drive(), drive(_values(effect_id, others))
+    rig = machine_for(effect_id)
+    plain, neutral = drive(rig=rig), drive(_values(effect_id, others), rig=rig)
     for name in kernel.SIGNALS:
         np.testing.assert_array_equal(getattr(plain, name), getattr(neutral, name))
 
 
 @pytest.mark.parametrize("effect_id", EFFECTS)
-def test_switched_on_it_shows_in_the_reading(drive, effect_id):
+def test_switched_on_it_shows_in_the_reading(drive, machine_for, effect_id):
     assert set(ON[effect_id]) == {p.name for p in EFFECTS[effect_id].parameters}
-    change = np.abs(drive(_values(effect_id, ON[effect_id])).reading - drive().reading).max()
+    rig = machine_for(effect_id)
+    on, off = drive(_values(effect_id, ON[effect_id]), rig=rig), drive(rig=rig)
+    change = np.abs(on.reading - off.reading).max()
     assert np.degrees(change) > 0.05  # the bench's noise
 
 
 @pytest.mark.parametrize("effect_id", EFFECTS)
-def test_a_rig_knows_which_effects_are_on(bench, effect_id):
-    assert bench.effects_on("joint") == ()
-    assert bench.with_values(_values(effect_id, ON[effect_id])).effects_on("joint") == (effect_id,)
+def test_a_rig_knows_which_effects_are_on(machine_for, effect_id):
+    rig = machine_for(effect_id)
+    assert rig.effects_on("joint") == ()
+    assert rig.with_values(_values(effect_id, ON[effect_id])).effects_on("joint") == (effect_id,)
 
 
 def test_a_new_file_is_found_and_acts_without_any_other_change(tmp_path):

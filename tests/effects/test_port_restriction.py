@@ -17,8 +17,9 @@ def test_ports_and_edges_are_orifices_in_series(bench):
     joint = bench.with_values({"effects.valve.port_restriction.ratio": ratio}).records()[0]
     tank = bench.value("supply.tank_pressure")
     for share in (0.1, 0.5, 1.0):
-        plain = valve.edge_conductances(share, 0.0, p_supply, p_a, p_b, 0.0, bench.records()[0])
-        choked = valve.edge_conductances(share, 0.0, p_supply, p_a, p_b, 0.0, joint)
+        opened = valve.Openings(share, 0.0, 0.0, share)
+        plain = valve.edge_conductances(opened, p_supply, p_a, p_b, 0.0, bench.records()[0])
+        choked = valve.edge_conductances(opened, p_supply, p_a, p_b, 0.0, joint)
         for edge, drop in ((0, p_supply - p_a), (3, p_b - tank)):
             flow = choked[edge] * drop
             full = plain[edge] * np.sqrt(drop) / share  # k

@@ -36,3 +36,14 @@ def slide_joint():
         return rig.with_values(values or {}).records()[0]
 
     return make
+
+
+@pytest.fixture(scope="session")
+def link_joint():
+    """A function: values by path (SI) -> record of a joint with four edges and a pump."""
+    rig = load_rig("hopsan_link")
+
+    def make(values=None):
+        return rig.with_values(values or {}).records()[0]
+
+    return make

@@ -81,3 +81,28 @@ def test_electric_motor_is_a_force_constant():
     constant = joint["cylinder"]["force_constant"]
     assert constant > 0
     assert_allclose(cylinder.motor_force(-1.7, joint), -1.7 * constant, rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("stroke", "velocity", "force"),
+    [
+        (0.1, 0.3, 0.0),
+        (-0.002, -0.1, -0.002 * 5e6 - 0.1 * 3e3),
+        (-0.002, 0.1, -0.002 * 5e6 + 0.1 * 3e3),
+        (-0.002, 9.0, 0.0),  # it leaves faster than the stop follows, and is not pulled
+        (0.203, 0.1, 0.003 * 5e6 + 0.1 * 3e3),
+        (0.203, -9.0, 0.0),
+    ],
+)
+def test_a_piston_s_stops_push_back_beyond_its_stroke_and_never_pull(link_joint, stroke, velocity, force):
+    joint = link_joint(
+        {
+            "cylinder.stroke": 0.2,
+            "cylinder.stop_stiffness": 5e6,
+            "cylinder.stop_damping": 3e3,
+            "cylinder.viscous_friction": 0.0,
+        }
+    )
+    found, slope = cylinder.friction_force(stroke, velocity, 0.0, joint)
+    assert_allclose(found, force, rtol=1e-12, atol=1e-9)
+    assert slope == (3e3 if force else 0.0)

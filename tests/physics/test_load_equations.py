@@ -84,3 +84,28 @@ def test_a_rocking_base_is_the_bench_s_equation(bench_joint):
     damping = 0.1 * np.sqrt(3e4 * 80.0)
     assert_allclose(acceleration, (-moment - 3e4 * tilt - damping * rate) / 80.0, rtol=1e-12)
     assert_allclose(slope, -damping / 80.0, rtol=1e-12)
+
+
+def test_one_mass_and_its_place_give_inertia_and_gravity_together(link_joint, bench_joint):
+    """A uniform link of 0.5 m and 20 kg: m l^2/3 and m g l/2."""
+    mass, length = 20.0, 0.5
+    joint = link_joint(
+        {
+            "load.mass": mass,
+            "load.centre_along": length / 2,
+            "load.gyration_radius": length / np.sqrt(12.0),
+            "load.gravity": 9.81,
+        }
+    )
+    assert_allclose(load.moving_inertia(0.0, joint), mass * length**2 / 3, rtol=1e-12)
+    for q in (-0.4, 0.0, 1.1):
+        assert_allclose(load.gravity_load(q, 0.0, joint), mass * 9.81 * length / 2 * np.cos(q), rtol=1e-12)
+
+
+def test_a_mass_across_the_link_pulls_it_down_behind_the_axis(link_joint):
+    joint = link_joint(
+        {"load.mass": 7.0, "load.centre_along": 0.3, "load.centre_across": 0.2, "load.gravity": 9.81}
+    )
+    q = 0.7
+    x = 0.3 * np.cos(q) - 0.2 * np.sin(q)  # of the centre, level
+    assert_allclose(load.gravity_load(q, 0.0, joint), 7.0 * 9.81 * x, rtol=1e-12)

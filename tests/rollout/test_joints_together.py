@@ -71,6 +71,16 @@ def test_both_arms_move_as_in_the_diagram() -> None:
     assert _off_deg(whole, joints=whole.joints, seconds=1.5).max() < ALLOWED_DEG
 
 
+def test_joints_on_one_pump_move_as_in_the_diagram(on_a_pump) -> None:
+    assert _off_deg(on_a_pump).max() < ALLOWED_DEG
+    records, setting = on_a_pump.records(), on_a_pump.value("supply.pressure")
+    places = records["load"]["initial_position"]
+    done = JointsTogether(on_a_pump, MOVING).roll_out(records, TIME, _volts(2), TIME, places)
+    pressure = done.signals["supply_pressure"]
+    assert pressure.min() < 0.9 * setting < setting < pressure.max()  # relief valve closed, and open
+    np.testing.assert_array_equal(pressure[:, 0], pressure[:, 1])
+
+
 @pytest.mark.long("a quarter of a minute: loops with laws are compiled")
 def test_laws_of_two_joints_act_as_in_the_diagram(two_joints) -> None:
     span = Span(Reach(1.0, 1.0, 0.0, 0.3, "rad"), None, 1.0, 1.0, 1.0)

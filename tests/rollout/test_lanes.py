@@ -116,10 +116,24 @@ def test_a_batch_of_machines_with_other_effects():
         _alike(one, other)
 
 
+@pytest.mark.long("half a minute: a loop is compiled")
+def test_machines_with_a_pump_and_four_edges():
+    rig, rng = load_rig("hopsan_link"), np.random.default_rng(8)
+    records = _varied(rig.records()[:1], rng, LANES)
+    records["supply"]["relief_hysteresis"][::2] = 0.0
+    times, volts = _driven(5.0)
+    for one, other in zip(
+        _in_lanes(records, times, volts, longest_step=STEP),
+        _one_by_one(records, times, volts, longest_step=STEP),
+        strict=True,
+    ):
+        _alike(one, other)
+
+
 @pytest.mark.long("five minutes: every effect on every joint, the programs of all kinds compiled")
 @pytest.mark.parametrize(
     "name",
-    ["joint_bench", "emps", "festo_tp511", "patu_lift"]
+    ["joint_bench", "emps", "festo_tp511", "patu_lift", "hopsan_link"]
     + [f"hydrolek_{side}_j{n}" for side in ("right", "left") for n in range(1, 6)],
 )
 def test_every_effect_on_every_machine_for_40_seconds(name):

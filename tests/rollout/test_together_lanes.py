@@ -177,6 +177,22 @@ def test_effects(two_joints, effect):
     _all_alike(_runs(rig, 5))
 
 
+@pytest.mark.long("a minute: loops of another kind are compiled")
+def test_joints_on_one_pump(on_a_pump):
+    def other_pump(i, records):
+        """Too small for the joints or not, its relief valve with or without a hysteresis."""
+        records["supply"]["displacement"] *= 0.3 + 0.1 * i
+        if i % 3 == 0:
+            records["supply"]["relief_hysteresis"] = 0.0
+        return records
+
+    runs = _runs(on_a_pump, LANES + 3, each=other_pump)
+    setting = on_a_pump.value("supply.pressure")
+    lowest = np.array([run.outcome().signals["supply_pressure"].min() for run in runs])
+    assert np.sum(lowest < 0.9 * setting) >= 3  # their relief valves close for a while
+    _all_alike(runs)
+
+
 @pytest.mark.long("two minutes: loops of four kinds are compiled")
 def test_all_joints_of_both_arms():
     rig = load_rig("hydrolek")
@@ -184,6 +200,7 @@ def test_all_joints_of_both_arms():
 
 
 @pytest.mark.long("half a minute: loops of another kind are compiled")
-def test_a_joint_of_no_arm():
-    rig = load_rig("joint_bench")
+@pytest.mark.parametrize("name", ["joint_bench", "hopsan_link"])
+def test_a_joint_of_no_arm(name):
+    rig = load_rig(name)
     _all_alike(_runs(rig, 4, joints=rig.joints))

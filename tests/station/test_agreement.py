@@ -11,7 +11,7 @@ from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import make_station
-from hydrolek_drake.station.step_sizes import StepSizes
+from hydrolek_drake.station.step_sizes import StepSizes, sizes_for
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
 import agreement  # the study that docs/agreement.md records, here for a few seconds a case
@@ -26,7 +26,20 @@ def test_every_instrumented_joint_agrees_with_its_rollout(joint):
     assert largest <= REQUIRED_DEG
 
 
-@pytest.mark.parametrize(("number", "effect"), list(enumerate(sorted(EFFECTS))))
+ON_THE_ARMS = [e for e in sorted(EFFECTS) if EFFECTS[e].needs.get("supply") != ("pump",)]
+
+
+@pytest.mark.parametrize(
+    "values", [{}, {"supply.relief_hysteresis": 0.0, "effects.supply.pump_loss.fraction": 0.5}]
+)
+def test_a_pump_with_its_relief_valve_and_four_edges_agree_with_their_rollout(values):
+    """A line that settles in a tenth of a millisecond, in both executions' steps."""
+    rig = load_rig("hopsan_link").with_values(values)
+    [(_, largest)] = agreement.compare(rig, 3.0, sizes_for(rig).step, 5)
+    assert largest <= REQUIRED_DEG
+
+
+@pytest.mark.parametrize(("number", "effect"), list(enumerate(ON_THE_ARMS)))
 def test_every_effect_agrees_with_its_rollout(number, effect):
     joint = agreement.JOINTS[number % len(agreement.JOINTS)]
     rig = agreement.with_effect(load_rig(joint), effect)

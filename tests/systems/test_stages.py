@@ -137,7 +137,7 @@ def test_four_way_valve_conserves_oil():
         FourWayValve(JOINTS), "oil_flow", spool_position=x, pressure=pressure, supply_pressure=[15.3e6]
     ).reshape(3, N)
     for i, joint in enumerate(JOINTS):
-        open_a, open_b = valve.openings(x[i], joint)
+        open_a, _, open_b, _ = valve.openings(x[i], joint)
         drop_a, drop_b = 15.3e6 - pressure[i], 15.3e6 - pressure[N + i]
         p = joint["valve"]
         drawn = open_a * fluid.orifice_conductance(p["max_area_a"], drop_a, p["discharge"], joint) * drop_a
@@ -146,7 +146,7 @@ def test_four_way_valve_conserves_oil():
 
 
 def test_supply_falls_to_the_tank_when_a_hose_bursts():
-    system = Supply(JOINTS)
+    system = Supply(JOINTS, 1e-3)
     flow = np.zeros(3 * N)
     assert evaluate(system, "supply_pressure", oil_flow=flow)[0] == JOINTS[0]["supply"]["pressure"]
     lost = evaluate(system, "supply_pressure", oil_flow=flow, pressure_available=[0.0])[0]
@@ -223,7 +223,7 @@ def test_noise_and_resolution_come_from_the_rig_and_the_generator():
             FourWayValve(JOINTS),
             {(name, "oil_flow") for name in ("spool_position", "pressure", "supply_pressure", "outside")},
         ),
-        (Supply(JOINTS), {(name, "supply_pressure") for name in ("pressure_available", "outside")}),
+        (Supply(JOINTS, 1e-3), {(name, "supply_pressure") for name in ("pressure_available", "outside")}),
         (Actuator(JOINTS, 0.0), {(name, "rod_force") for name in ("rod_motion", "outside")}),
         (Actuator(JOINTS, 1e-3), {(name, "rod_force") for name in ("rod_motion", "outside", "oil_flow")}),
         (

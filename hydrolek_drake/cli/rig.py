@@ -1,0 +1,148 @@
+"""`hydrolek rig`: a new rig from a data sheet, what is implausible about one, and the schema for editors."""
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hydrolek_drake.cli.settings import SetOption, parse_settings
+from hydrolek_drake.errors import InputError
+
+rig = typer.Typer(add_completion=False, rich_markup_mode=None, no_args_is_help=True)
+"""The commands."""
+
+WRONG = 1
+"""Exit status of a check that found something wrong."""
+
+
+@rig.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+def new(
+    context: typer.Context,
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="rig file to be written, such as my_axis.yaml")
+    ],
+    questions: Annotated[bool, typer.Option("--questions", help="list all questions and end")] = False,
+    force: Annotated[bool, typer.Option("--force", help="write over a file that is there")] = False,
+) -> None:
+    """Write a commented rig from what a data sheet says.
+
+    Each question is an option, such as --bore '40 mm'; in a terminal, those that are needed and missing are asked.
+    What nobody knows is assumed, with a wide range, and says so in the file.
+    """
+    from hydrolek_drake.cli.output import console
+    from hydrolek_drake.rigs.wizard import questions as all_questions
+
+    out = console()
+    if questions:
+        for each in all_questions().values():
+            kind = f" [{each.unit}]" if each.unit else f" ({', '.join(each.choices)})" if each.choices else ""
+            told = "needed" if each.needed else "optional"
+            out.print(f"{each.option:<20} {each.asks}{kind}, {told}", markup=False, soft_wrap=True)
+        return
+    if file.suffix not in (".yaml", ".yml"):
+        raise InputError(f"rig new: {file} is no YAML file; name it {file.with_suffix('.yaml')}")
+    if file.exists() and not force:
+        raise InputError(f"rig new: {file} is there already; --force writes over it")
+    given = _pairs(context.args)
+    if sys.stdin.isatty():
+        _ask(given)
+
+    from hydrolek_drake.files import write_whole
+    from hydrolek_drake.rigs.wizard.making import written_rig
+
+    text, made = written_rig(file.stem, given)
+    write_whole(file, text)
+    free = made.free_parameters()
+    assumed = [path for path, entry in made.entries.items() if entry.source.startswith("assumed")]
+    out.print(f"wrote {file}: {len(free)} numbers with a range, {len(assumed)} assumed", markup=False)
+    _say(made, None)
+
+
+@rig.command()
+def check(
+    name: Annotated[str, typer.Argument(metavar="RIG", help="name of a built-in rig, or a rig file")],
+    recordings: Annotated[
+        list[Path] | None, typer.Argument(metavar="[RECORDING]...", help="recordings of the machine")
+    ] = None,
+    set_: SetOption = None,
+) -> int:
+    """Say what looks wrong about a rig and its recordings, with the line that mends it.
+
+    Exit status 1 if anything does.
+    """
+    from hydrolek_drake.cli.output import console
+    from hydrolek_drake.recordings import read_recording
+    from hydrolek_drake.rigs import load_rig
+
+    loaded = load_rig(name, parse_settings(set_))
+    wrong = _say(loaded, None)
+    for path in recordings or []:
+        wrong += _say(loaded, read_recording(path, loaded.columns))
+    if not wrong:
+        console().print("nothing looks wrong")
+    return WRONG if wrong else 0
+
+
+@rig.command()
+def schema() -> None:
+    """Print the JSON schema of rig files, for completion and checks in editors."""
+    from hydrolek_drake.rigs.json_schema import rig_schema
+
+    print(json.dumps(rig_schema(), indent=1))
+
+
+def _say(loaded: object, recording: object) -> int:
+    """Print complaints; how many of them are wrong."""
+    from hydrolek_drake.checking.recording_checks import check_recording
+    from hydrolek_drake.checking.rig_checks import check_rig
+    from hydrolek_drake.cli.output import console
+
+    out = console()
+    found = check_rig(loaded) if recording is None else check_recording(loaded, recording)  # type: ignore[arg-type]
+    for each in found:
+        begin = "wrong?" if each.wrong else "note:"
+        out.print(f"{begin} {each.sentence()}", markup=False, soft_wrap=True)
+    return sum(each.wrong for each in found)
+
+
+def _pairs(arguments: list[str]) -> dict[str, str]:
+    """`--name value` and `--name=value` as pairs."""
+    given: dict[str, str] = {}
+    left = list(arguments)
+    while left:
+        name = left.pop(0)
+        if not name.startswith("--"):
+            raise InputError(f"rig new: '{name}' stands behind no option; write --bore '40 mm', in quotes")
+        name, equals, value = name.partition("=")
+        if not equals:
+            if not left:
+                raise InputError(f"rig new: {name} needs a value")
+            value = left.pop(0)
+        if name in given:
+            raise InputError(f"rig new: {name} is given twice")
+        given[name] = value
+    return given
+
+
+def _ask(given: dict[str, str]) -> None:
+    """Ask for what is missing, until each answer is one; Enter leaves open what can be assumed."""
+    from hydrolek_drake.rigs.wizard import questions, read_answers
+
+    for question in questions().values():
+        answers = read_answers(given)
+        if question.key in answers or not question.applies(answers):
+            continue
+        kind = f" [{question.unit}]" if question.unit else f" ({'/'.join(question.choices)})"
+        while True:
+            text = typer.prompt(f"{question.asks}{kind}", default="", show_default=False).strip()
+            if not text and not question.needed:
+                break
+            try:
+                read_answers({question.key: text})
+            except InputError as error:
+                typer.echo(str(error), err=True)
+                continue
+            given[question.option] = text
+            break

@@ -1,0 +1,38 @@
+"""From answers to a rig that loads, in steps that are short enough for it."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from hydrolek_drake.checking.steps import differs, driven_about
+from hydrolek_drake.rigs.reading import rig_from_tree
+from hydrolek_drake.rigs.rig import Rig
+from hydrolek_drake.rigs.wizard.sheet import fixed, read_answers
+from hydrolek_drake.rigs.wizard.writing import Sheet, rig_text
+from hydrolek_drake.units import si_factor
+from hydrolek_drake.yaml_files import parse_yaml
+
+MARGIN = 0.5
+"""Share of what a step may err by, of one that a new rig gets: other commands and fitted numbers ask for more."""
+
+
+def written_rig(name: str, given: Mapping[str, str]) -> tuple[str, Rig]:
+    """The rig's file and the rig.
+
+    Args:
+        name: of the machine.
+        given: question -> answer as text, as of `read_answers`.
+
+    Raises:
+        InputError: an answer that is none, or one that is missing.
+    """
+    sheet = Sheet(read_answers(given))
+    steps = fixed("steps")
+    tried = [step * si_factor(steps["unit"], "s") for step in steps["value"]]
+    for step in tried:
+        text = rig_text(name, sheet, step)
+        rig = rig_from_tree(parse_yaml(text, name), Path(f"{name}.yaml"))
+        times, volts = driven_about(rig.value("command.limit"))
+        off = differs(rig, rig.joints[0], times, volts, step)
+        if off is not None and off <= MARGIN:
+            break
+    return text, rig

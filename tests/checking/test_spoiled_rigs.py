@@ -1,0 +1,41 @@
+"""Slips in a rig that is loaded without a word: they are told, with the line that mends them."""
+
+import pytest
+
+from hydrolek_drake.checking.rig_checks import check_rig
+from hydrolek_drake.rigs import built_in_rigs, load_rig
+
+
+@pytest.mark.parametrize("name", [name for name in built_in_rigs() if name != "hydrolek"])
+def test_built_in_rigs_are_left_alone(name):
+    assert [c.sentence() for c in check_rig(load_rig(name)) if c.wrong] == []
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "says"),
+    [
+        ("cylinder.stroke", "300 m", "stroke: {value: 0.3, unit: m"),
+        ("cylinder.area_b", "876 m^2", "is the unit right?"),
+        ("fluid.bulk_modulus", "1 MPa", "bulk_modulus: {value: 1e+09, unit: Pa"),
+        ("fluid.density", "0.87 kg/m^3", "density: {value: 870, unit: kg/m^3"),
+        ("supply.pressure", "120 Pa", "is the unit right?"),
+        ("command.delay", "15 s", "delay: {value: 0.015, unit: s"),
+        ("solenoid.full_stroke", "1 m", "full_stroke: {value: 0.001, unit: m"),
+        ("load.mass", "20 mg", "is the unit right?"),
+        ("command.limit", "10 kV", "limit: {value: 10, unit: V"),
+        ("supply.line_volume", "1000 m^3", "line_volume: {value: 1, unit: m^3"),
+        ("integration.longest_step", "20 ms", "too long for this machine"),
+        ("cylinder.stroke", "50 mm", "the cylinder has 0.05 m"),
+    ],
+)
+def test_a_slip_is_told_with_the_line_that_mends_it(path, text, says):
+    rig = load_rig("hopsan_link", {path: text})
+    told = [complaint.sentence() for complaint in check_rig(rig) if complaint.wrong]
+    assert any(path.split(".")[-1] in said or path.split(".")[0] in said for said in told)
+    assert any(says in said for said in told)
+
+
+def test_a_displacement_per_turn_that_stands_per_radian_is_asked_about():
+    rig = load_rig("hopsan_link", {"supply.displacement": "3e-5 m^3/rad"})
+    [told] = check_rig(rig)
+    assert "meant per turn" in told.says and "cm^3/rev" in told.line and not told.wrong

@@ -1,0 +1,155 @@
+"""A rig from a data sheet: it loads, its numbers follow from the sheet's, and bad answers are refused in one line."""
+
+import json
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pytest
+
+from hydrolek_drake.cli.app import run
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.rigs import built_in_rigs, load_rig
+from hydrolek_drake.rigs.json_schema import rig_schema
+from hydrolek_drake.rigs.reading import rig_from_tree
+from hydrolek_drake.rigs.wizard import questions, read_answers, rig_text
+from hydrolek_drake.rigs.wizard.making import written_rig
+from hydrolek_drake.rigs.wizard.writing import Sheet
+from hydrolek_drake.yaml_files import parse_yaml, read_yaml
+
+LINK = {
+    "moves": "link", "bore": "40 mm", "rod": "22 mm", "stroke": "0.2 m", "base_mount": "0.10, -0.30 m",
+    "link_mount": "0.25, 0 m", "mid_stroke_at": "0.1 rad", "mass": "20 kg", "length": "0.5 m", "spool_diameter": "6",
+    "port_shares": "1 1 0.8 0.8", "supply": "pump", "supply_pressure": "120 bar", "displacement": "30 cm^3/rev",
+}  # fmt: skip
+SLIDE = {
+    "moves": "slide", "bore": "25", "rod": "16", "stroke": "300", "mass": "8", "rated_flow": "24 l/min",
+    "rated_drop": "5 bar", "supply": "constant", "supply_pressure": "6 MPa",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def link():
+    """A turning link from its shortest data sheet."""
+    return written_rig("link", LINK)[1]
+
+
+def test_the_numbers_of_a_link_follow_from_its_sheet(link):
+    assert np.isclose(link.value("cylinder.area_a"), np.pi * 0.02**2, rtol=1e-4)
+    assert np.isclose(link.value("cylinder.area_b"), np.pi * (0.02**2 - 0.011**2), rtol=1e-4)
+    assert np.isclose(link.value("linkage.distance_parent"), np.hypot(0.1, 0.3), rtol=1e-4)
+    assert np.isclose(link.value("valve.area_gradient_at"), 0.8 * np.pi * 6e-3, rtol=1e-4)
+    assert np.isclose(link.value("supply.displacement"), 30e-6 / (2 * np.pi), rtol=1e-4)
+    a, b = link.value("linkage.distance_parent"), link.value("linkage.distance_child")
+    included = 0.1 + link.value("linkage.angle_offset")  # half of the stroke
+    length = np.sqrt(a * a + b * b - 2 * a * b * np.cos(included))
+    assert np.isclose(length - link.value("linkage.zero_stroke_length"), 0.1, atol=1e-4)
+    assert link.value("load.lower_stop") < 0.1 < link.value("load.upper_stop")
+
+
+def test_what_nobody_said_is_assumed_and_wide(link):
+    for path in ("fluid.bulk_modulus", "joints.joint.cylinder.dead_volume_a", "joints.joint.load.damping"):
+        entry = link.entries[path]
+        assert entry.source.startswith("assumed")
+        assert entry.range is not None and entry.range[1] / entry.range[0] >= 4.0
+    said = link.entries["joints.joint.load.mass"]
+    assert said.source == "data sheet" and said.range is not None and said.range[1] / said.range[0] < 2.0
+
+
+def test_a_slide_with_a_rated_flow_gives_that_flow():
+    rig = written_rig("axis", SLIDE)[1]
+    opening = rig.value("valve.full_opening") - rig.value("valve.overlap_pa")
+    area = rig.value("valve.area_gradient_pa") * opening
+    flow = rig.value("valve.discharge") * area * np.sqrt(2 * 5e5 / 870)
+    assert np.isclose(flow, 24e-3 / 60, rtol=1e-3)
+    assert rig.variants["supply"] == "constant_pressure"
+
+
+def test_the_built_in_link_is_what_the_wizard_writes_from_its_data_sheet(tmp_path):
+    """docs/own_machine.md has the command."""
+    text = (built_in_rigs()["hopsan_link"]).read_text()
+    assert text.startswith("# Written by `hydrolek rig new`")
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"bore": "40 kg"}, "--bore '40 kg'"),
+        ({"bore": "wide"}, "not a number with a unit"),
+        ({"bore": "-40"}, "below zero"),
+        ({"rod": "50"}, "not thinner than --bore"),
+        ({"moves": "wheel"}, "choose link or slide"),
+        ({"base_mount": "0.1"}, "1 numbers, where 2 belong"),
+        ({"stroke": "3 m"}, "a cylinder cannot reach"),
+        ({"boar": "40"}, "did you mean --bore"),
+        ({"mass": ""}, "--mass ''"),
+        ({"mass": "1e999"}, "--mass"),
+        ({"overlap": "1 mm"}, "no oil flows"),
+    ],
+)
+def test_a_bad_answer_is_refused_in_one_line(change, says):
+    with pytest.raises(InputError) as caught:
+        written_rig("link", {**LINK, **change})
+    assert says in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_what_is_missing_is_listed_with_its_options():
+    with pytest.raises(InputError, match=r"not answered: --bore .*--mass"):
+        written_rig("link", {"moves": "link"})
+
+
+def test_an_answer_may_be_a_share():
+    assert read_answers({"overlap": "5 %"})["overlap"] == pytest.approx(0.05)
+    rig = written_rig("link", {**LINK, "overlap": "5 %", "spool_travel": "2 mm"})[1]
+    assert np.isclose(rig.value("valve.overlap_pa"), 0.1e-3)
+
+
+def test_the_command_writes_once_and_says_so(tmp_path, capsys):
+    path = tmp_path / "mine.yaml"
+    arguments = [part for key, text in LINK.items() for part in (f"--{key.replace('_', '-')}", text)]
+    assert run(["rig", "new", str(path), *arguments]) == 0
+    assert load_rig(path).name == "mine"
+    assert run(["rig", "new", str(path), *arguments]) == 2
+    assert "is there already" in capsys.readouterr().err
+    assert run(["rig", "check", str(path)]) == 0
+    assert "nothing looks wrong" in capsys.readouterr().out
+
+
+def test_every_question_is_listed(tmp_path, capsys):
+    assert run(["rig", "new", "x.yaml", "--questions"]) == 0
+    listed = capsys.readouterr().out
+    assert all(question.option in listed for question in questions().values())
+
+
+@pytest.mark.parametrize("name", built_in_rigs())
+def test_the_schema_takes_every_built_in_rig(name):
+    jsonschema.Draft202012Validator(rig_schema()).validate(read_yaml(built_in_rigs()[name], "rig file"))
+
+
+def test_the_schema_tells_a_wrong_key(capsys):
+    assert run(["rig", "schema"]) == 0
+    validator = jsonschema.Draft202012Validator(json.loads(capsys.readouterr().out))
+    assert not validator.is_valid({"schema": 1, "supply": {"presure": {}}})
+    assert not validator.is_valid({"supply": {"variant": "pump", "flow_time_constant": {"same_as": "x"}}})
+
+
+STRANGE = (
+    "0", "-1", "1e308", "1e-308", "nan", "inf", "", "0 0", "1,2", "1;2 m", "5 %", "-5 %", "1e5 %", "mm", "40 mm mm",
+    "40 m^9^9", "40 degC", "1e30", "0x10", "link", "pump", "yes", "\x00", "'", "a" * 3000, "[1]", "0 0 0 0", "3.2 rad",
+)  # fmt: skip
+
+
+def test_strange_answers_give_a_rig_or_one_printable_line():
+    generator, done = np.random.default_rng(5), {True: 0, False: 0}
+    for _ in range(1000):
+        given = dict(LINK if generator.random() < 0.6 else SLIDE)
+        for key in generator.choice(list(questions()), size=generator.integers(1, 3)):
+            given[str(key)] = STRANGE[generator.integers(len(STRANGE))]
+        try:
+            text = rig_text("strange", Sheet(read_answers(given)), 5e-4)
+            rig_from_tree(parse_yaml(text, "strange"), Path("strange.yaml"))
+            done[True] += 1
+        except InputError as error:
+            assert str(error).isprintable()
+            done[False] += 1
+    assert min(done.values()) > 20
