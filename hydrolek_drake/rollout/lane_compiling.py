@@ -6,6 +6,7 @@ which gives the same numbers to the last bit (`tests/rollout/test_lanes.py`).
 """
 
 import contextlib
+import hashlib
 import os
 import subprocess
 import sys
@@ -67,7 +68,9 @@ def compiled(kind: Kind) -> None:
 
 def _mark(kind: Kind) -> Path:
     processor = numba.config.CPU_NAME or get_host_cpu_name()  # a home folder may be that of several computers
-    return Path(numba.config.CACHE_DIR or ".") / f"lanes_{kind.name}_{processor}"
+    # numba keeps what it compiles by the place of the source, of which there may be several copies
+    place = hashlib.sha256(str(Path(__file__).resolve()).encode()).hexdigest()[:8]
+    return Path(numba.config.CACHE_DIR or ".") / f"lanes_{kind.name}_{processor}_{place}"
 
 
 def _begin(
