@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-FindingKind = Literal["gap", "nan", "clock", "saturated", "constant", "duplicate"]
+FindingKind = Literal["gap", "nan", "clock", "saturated", "constant", "duplicate", "offset", "resampled"]
 
 
 @dataclass(frozen=True)

@@ -42,3 +42,22 @@ def linear(time: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
     between = values[left] * (1.0 - weight) + values[right] * weight
     measured = (at >= time[0]) & (at <= time[-1]) & ~np.append(gap_follows(time), False)[left]
     return np.where(on_sample, values[left], np.where(measured, between, np.nan))
+
+
+def averaged(time: np.ndarray, values: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Mean of the samples between each two neighbouring times; NaN where there is none with a value.
+
+    Args:
+        time: Strictly increasing sample times [s]. # (n,)
+        values: Samples. # (n,)
+        edges: Strictly increasing times [s]; a sample at an edge belongs to what follows it. # (m + 1,)
+
+    Returns:
+        Means. # (m,)
+    """
+    good = np.isfinite(values)
+    first = np.searchsorted(time[good], edges, side="left")
+    sums = np.concatenate([[0.0], np.cumsum(values[good])])
+    count = np.diff(first)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(count > 0, np.diff(sums[first]) / count, np.nan)

@@ -14,10 +14,13 @@ class Column:
     Attributes:
         names: Names that the column answers to, the fullest first: `("arm.angle_deg", "angle_deg")`.
         values: Numbers, or text cells that may or may not be numbers (object or string array). # (n,)
+        group: What it was recorded with, by one clock: a topic, a group of channels, a struct; "" where the file has
+            one clock for all. `a.b` lies in `a`, whose clock is its own if it has none.
     """
 
     names: tuple[str, ...]
     values: np.ndarray
+    group: str = ""
 
     @property
     def name(self) -> str:
@@ -36,6 +39,7 @@ class Table:
         decimal_comma: Text cells may use a comma as the decimal mark.
         findings: What the reader itself noticed.
         cut_off: The file ends before it is finished, as when its recorder was killed.
+        hint: What would let more of the file be read, for the message that something is not there.
     """
 
     columns: tuple[Column, ...]
@@ -44,6 +48,7 @@ class Table:
     decimal_comma: bool = False
     findings: tuple[Finding, ...] = ()
     cut_off: bool = False
+    hint: str = ""
 
     def row(self, index: int) -> str:
         """How to call the sample with this index in a message: "line 17"."""

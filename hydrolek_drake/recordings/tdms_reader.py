@@ -20,11 +20,12 @@ _LEAD_IN = struct.Struct("<4siiQQ")
 def read_tdms(path: Path) -> Table:
     """Read every channel; it answers to `group.channel` and to `channel`.
 
-    Time is a time channel or, where there is none, follows from the waveform properties `wf_start_offset` and
-    `wf_increment` of the channels.
+    Time is a time channel, of the whole file or of each group; where there is none, it follows from the
+    waveform properties `wf_start_time`, `wf_start_offset` and `wf_increment` of the channels, which may
+    differ.
 
     Raises:
-        InputError: There is no time channel, and the waveform properties of the channels differ.
+        InputError: There is no time channel, and a waveform's increment is not above zero.
     """
     from nptdms import TdmsFile
 
@@ -35,12 +36,12 @@ def read_tdms(path: Path) -> Table:
             _column(
                 (f"{channel.group_name}.{channel.name}", channel.name),
                 channel[: len(channel) - surplus.get(channel.path, 0)],
+                channel.group_name,
             )
             for channel in channels
         )
         if not any(_is_time(column) for column in columns):
-            waveforms = [channel for channel in channels if "wf_increment" in channel.properties]
-            columns += _waveform_time(path, waveforms, surplus)
+            columns = _with_waveform_time(path, channels, columns)
     return Table(columns, cut_off=_breaks_off(path))
 
 
@@ -83,11 +84,11 @@ def _quiet() -> Iterator[None]:
         log_manager.set_level(level)
 
 
-def _column(names: tuple[str, ...], values: np.ndarray) -> Column:
+def _column(names: tuple[str, ...], values: np.ndarray, group: str) -> Column:
     values = np.asarray(values)
     if values.dtype.kind == "M":
-        return Column((*names, f"{names[-1]}_s"), seconds_of(values))
-    return Column(names, values)
+        return Column((*names, f"{names[-1]}_s"), seconds_of(values), group)
+    return Column(names, values, group)
 
 
 def _is_time(column: Column) -> bool:
@@ -101,31 +102,48 @@ def _is_time(column: Column) -> bool:
     return False
 
 
-def _waveform_time(path: Path, channels: list[Any], surplus: Mapping[str, int]) -> tuple[Column, ...]:
-    """The time column that the waveform properties of the channels agree on."""
-    if not channels:
-        return ()
-    first = channels[0]
-    for channel in channels[1:]:
-        if _waveform(channel) != _waveform(first):
+def _with_waveform_time(path: Path, channels: list[Any], columns: tuple[Column, ...]) -> tuple[Column, ...]:
+    """The columns, those of one waveform as a group with its time; it begins where the first waveform does."""
+    sampled = [channel for channel in channels if "wf_increment" in channel.properties]
+    starts = [start for channel in sampled if (start := _start(channel)) is not None]
+    origin = min(starts) if len(starts) == len(sampled) and starts else None
+    times: dict[tuple[float, float, int], Column] = {}
+    of_waveform = []
+    for channel, column in zip(channels, columns, strict=True):
+        if "wf_increment" not in channel.properties:
+            of_waveform.append(column)
+            continue
+        increment, offset = (_number(path, channel, name) for name in ("wf_increment", "wf_start_offset"))
+        if origin is not None:
+            offset += float(seconds_of(np.array([_start(channel) - origin]))[0])
+        if not (np.isfinite(increment) and increment > 0 and np.isfinite(offset)):
             raise InputError(
-                f"{path}: channels {first.name!r} and {channel.name!r} have different waveform times "
-                f"{_waveform(first)} and {_waveform(channel)} (increment, offset, start, samples); "
-                "add a time channel or export them at one rate"
+                f"{path}: channel {channel.name!r} has wf_increment {increment}; it must be above zero"
             )
-    increment, offset, _, samples = _waveform(first)
-    if not (np.isfinite(increment) and increment > 0 and np.isfinite(offset)):
+        waveform = (increment, offset, len(column.values))
+        if waveform not in times:
+            time = offset + increment * np.arange(len(column.values))
+            times[waveform] = Column((f"{column.name}.{TIME}_s", f"{TIME}_s"), time, column.name)
+        of_waveform.append(Column(column.names, column.values, times[waveform].group))
+    return (*of_waveform, *times.values())
+
+
+def _start(channel: Any) -> Any:
+    """When a waveform was begun, if the file says so."""
+    start = channel.properties.get("wf_start_time")
+    if start is None:
+        return None
+    try:
+        return np.datetime64(start, "ns")
+    except ValueError:
+        return None
+
+
+def _number(path: Path, channel: Any, name: str) -> float:
+    value = channel.properties.get(name, 0.0)
+    try:
+        return float(value)
+    except (TypeError, ValueError):
         raise InputError(
-            f"{path}: channel {first.name!r} has wf_increment {increment}; it must be above zero"
-        )
-    return (Column((f"{TIME}_s",), offset + increment * np.arange(samples - surplus.get(first.path, 0))),)
-
-
-def _waveform(channel: Any) -> tuple[float, float, str, int]:
-    properties = channel.properties
-    return (
-        float(properties["wf_increment"]),
-        float(properties.get("wf_start_offset", 0.0)),
-        str(properties.get("wf_start_time", "")),
-        len(channel),
-    )
+            f"{path}: channel {channel.name!r} has {name} {value!r}; it must be a number"
+        ) from None

@@ -2,11 +2,15 @@
 
 import functools
 import io
+import sqlite3
 import tempfile
+import warnings
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
+import bags
 import numpy as np
 
 from fuzzing.byte_damage import damaged
@@ -15,22 +19,13 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings import read_recording, write_recording
 
 _ROWS = 40
-_MAPPING = {"t": "time_s", "q": "j.angle_deg", "u": "j.command_V", "x": "ignore"}
-_JOINT_STATE = """std_msgs/Header header
-string[] name
-float64[] position
-float64[] velocity
-float64[] effort
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-"""
-
+_MAPPING = {
+    "t": "time_s",
+    "q": "j.angle_deg",
+    "u": "j.command_V",
+    "x": "ignore",
+    "/valve.pressures[1]": "j.pressure_b_bar",
+}
 _NAMES = (
     "time_s", "time_ms", "time", "t", "q", "u", "j.command_V", "j.angle_deg", "j.angle_rad", "j.angle",
     "j.pressure_a_MPa", "supply.pressure_bar", "j.effort_Nm", "j.force_1", "j.command_percent",
@@ -273,7 +268,12 @@ def _mat_files() -> list[bytes]:
         "empty": np.zeros((0, 0)),
         "table": np.ones((3, 4)),
     }
-    return [_mat_bytes({"log": log}), _mat_bytes(odd), _mat_bytes({"log": log}, compressed=True)]
+    return [
+        _mat_bytes({"log": log}),
+        _mat_bytes(odd),
+        _mat_bytes({"log": log}, compressed=True),
+        _timetable("v7"),
+    ]
 
 
 def _mat(rng: np.random.Generator) -> Input:
@@ -311,7 +311,7 @@ def _hdf5_files() -> list[bytes]:
         file["time_s"].attrs["MATLAB_class"] = np.bytes_("double")
     stream.seek(0)
     stream.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(116) + bytes(8) + b"\x00\x02IM")
-    return [stream.getvalue(), _hdf5_user_block(plain)]
+    return [stream.getvalue(), _hdf5_user_block(plain), _timetable("v7.3")]
 
 
 def _hdf5_user_block(columns: dict[str, Any]) -> bytes:
@@ -341,81 +341,146 @@ def _mat73(rng: np.random.Generator) -> Input:
     return Input("run.mat", damaged(files[rng.integers(len(files))], files, rng))
 
 
-def _mcap_bytes(messages: list[tuple[Any, ...]], definition: str = _JOINT_STATE, **options: Any) -> bytes:
-    from mcap.writer import CompressionType
-    from mcap.writer import Writer as McapWriter
-    from mcap_ros2.writer import Writer
+def _bag_files(messages: list[tuple[Any, ...]], **options: Any) -> dict[str, bytes]:
+    """Files of a bag by their names."""
+    with tempfile.TemporaryDirectory() as place:
+        folder = bags.write_bag(Path(place) / "bag", messages, **options)
+        return {file.name: file.read_bytes() for file in folder.iterdir()}
 
-    stream = io.BytesIO()
-    writer = Writer(stream)
-    if options:
-        stream.truncate(0)  # the first writer has begun the file already
-        stream.seek(0)
-        writer._writer = McapWriter(stream, compression=CompressionType.NONE, **options)
-        writer._writer.start(profile="ros2", library="here")
-    schema = writer.register_msgdef("sensor_msgs/msg/JointState", definition)
-    for topic, stamp, logged, names, position, velocity, effort in messages:
-        sec, nanosec = divmod(stamp, 10**9)
-        header = {"stamp": {"sec": sec, "nanosec": nanosec}, "frame_id": ""}
-        message = {
-            "header": header,
-            "name": names,
-            "position": position,
-            "velocity": velocity,
-            "effort": effort,
-        }
-        writer.write_message(topic=topic, schema=schema, log_time=logged, message=message)
-    writer.finish()
-    return stream.getvalue()
+
+def _one_file(files: dict[str, bytes]) -> bytes:
+    return next(data for name, data in files.items() if name != "metadata.yaml")
 
 
 def _good_messages() -> list[tuple[Any, ...]]:
-    states = [
-        ("/joint_states", i * 10**7, i * 10**7, ["j", "k"], [0.01 * i, 1.0], [0.0, 1.0], [])
-        for i in range(_ROWS)
-    ]
-    return states + [("/j/commands", i * 10**7, i * 10**7, ["j"], [0.5], [], []) for i in range(0, _ROWS, 4)]
-
-
-@functools.cache
-def _mcap_files() -> list[bytes]:
-    bare = {"enable_crcs": False, "enable_data_crcs": False}
-    return [
-        _mcap_bytes(_good_messages(), **bare, use_chunking=False),
-        _mcap_bytes(_good_messages(), **bare, chunk_size=400),
-        _mcap_bytes(_good_messages()),
-    ]
-
-
-def _mcap(rng: np.random.Generator) -> Input:
-    files = _mcap_files()
-    if rng.random() < 0.2:
-        messages = [_strange_message(i, rng) for i in range(int(rng.integers(0, 20)))]
-        return Input("run.mcap", _mcap_bytes(messages))
-    return Input("run.mcap", damaged(files[rng.integers(len(files))], files, rng))
+    messages = []
+    for i in range(_ROWS):
+        at = i * 10**7 + 1
+        state = bags.joint_state(at, ["j", "k"], [0.01 * i, 1.0], [0.0, 1.0])
+        messages.append(("/joint_states", bags.JOINT_STATE, at, state))
+        messages.append(("/valve", bags.VALVE, at, bags.valve(at, 0.1 * i, [1.0, i], i)))
+        if i % 4 == 0:
+            messages.append(("/j/command_V", bags.FLOAT64, at, bags.number(0.5)))
+    return messages
 
 
 def _strange_message(number: int, rng: np.random.Generator) -> tuple[Any, ...]:
     def values() -> list[float]:
         return [float(rng.choice([0.0, 1.0, np.nan, np.inf, 1e300])) for _ in range(rng.integers(0, 3))]
 
-    stamp = int(rng.choice([number * 10**7, 0, 2**31 * 10**9 - 1, 5]))
-    return (
-        str(rng.choice(["/a", "/b/command", "", "é", "/" + "x" * 200])),
-        stamp,
-        int(rng.choice([number * 10**7, 0, 2**63 - 1])),
-        [str(rng.choice(["j", "k", "", "a.b", "\n", "x" * 300])) for _ in range(rng.integers(0, 3))],
-        values(),
-        values(),
-        values(),
-    )
+    at = int(rng.choice([number * 10**7, 0, 2**31 * 10**9 - 1, 5]))
+    logged = int(rng.choice([number * 10**7, 0, 2**62]))
+    names = [str(rng.choice(["j", "k", "", "a.b", "\n", "x" * 300])) for _ in range(rng.integers(0, 3))]
+    kind, fields = (
+        (bags.JOINT_STATE, bags.joint_state(at, names, values(), values())),
+        (bags.FLOAT64S, bags.numbers(values())),
+        (bags.FLUID_PRESSURE, bags.pressure(at, float(rng.choice([0.0, np.nan, 1e300])))),
+    )[rng.integers(3)]
+    topic = str(rng.choice(["/a", "/b/command", "/j/pressure_a", "é", "/" + "x" * 200]))
+    return f"{topic}{kind[-5:]}", kind, logged, fields
 
 
-def _bag(rng: np.random.Generator) -> Input:
-    made = _mcap(rng)
-    return Input(
-        "bag/" + str(rng.choice(["bag_0.mcap", "bag_0.mcap", "x.mcap", "metadata.yaml", ".mcap"])), made.data
+@functools.cache
+def _mcap_files() -> list[bytes]:
+    packed = ({}, {"compression": "storage"})
+    return [_one_file(_bag_files(_good_messages(), **options)) for options in packed]
+
+
+def _mcap(rng: np.random.Generator) -> Input:
+    files = _mcap_files()
+    if rng.random() < 0.2:
+        messages = [_strange_message(i, rng) for i in range(int(rng.integers(0, 20)))]
+        return Input("run.mcap", _one_file(_bag_files(messages)))
+    return Input("run.mcap", damaged(files[rng.integers(len(files))], files, rng))
+
+
+@functools.cache
+def _db3_files() -> list[bytes]:
+    return [_one_file(_bag_files(_good_messages(), storage="sqlite3"))]
+
+
+def _db3(rng: np.random.Generator) -> Input:
+    files = _db3_files()
+    if rng.random() < 0.2:
+        return Input("run.db3", _hostile_database(files[0], rng))
+    return Input("run.db3", damaged(files[rng.integers(len(files))], files, rng))
+
+
+def _hostile_database(good: bytes, rng: np.random.Generator) -> bytes:
+    """A database whose content is of another kind than its tables say, or whose tables have no end."""
+    changes = (
+        "UPDATE messages SET data = 'text'",
+        "UPDATE messages SET data = randomblob(100000)",
+        "UPDATE messages SET timestamp = 'soon'",
+        "UPDATE topics SET type = 'std_msgs/msg/Nothing'",
+        "UPDATE topics SET name = NULL",
+        "UPDATE message_definitions SET encoded_message_definition = 'float64[999999999] data'",
+        "UPDATE message_definitions SET encoded_message_definition = '" + "(" * 2000 + "'",
+        "DROP TABLE messages; CREATE VIEW messages AS WITH RECURSIVE n(id) AS "
+        "(SELECT 1 UNION ALL SELECT id + 1 FROM n) SELECT id, 1 AS topic_id, id AS timestamp, x'00' AS data FROM n",
     )
+    with tempfile.TemporaryDirectory() as place:
+        path = Path(place) / "run.db3"
+        path.write_bytes(good)
+        with closing(sqlite3.connect(path)) as database:
+            database.execute("PRAGMA writable_schema = ON")
+            database.executescript("PRAGMA ignore_check_constraints = ON;" + str(rng.choice(changes)))
+            database.commit()
+        return path.read_bytes()
+
+
+@functools.cache
+def _bag() -> dict[str, bytes]:
+    return _bag_files(_good_messages(), storage="sqlite3", compression="file")
+
+
+def _beside_metadata(folder: Path) -> None:
+    """Puts the files of a good bag where damaged metadata will be put."""
+    (folder / "bag").mkdir(exist_ok=True)
+    for name, data in _bag().items():
+        (folder / "bag" / name).write_bytes(data)
+
+
+def _folder(rng: np.random.Generator) -> Input:
+    good = _bag()
+    name = str(rng.choice([*good, "metadata.yaml"]))
+    return Input(f"bag/{name}", damaged(good[name], [good["metadata.yaml"]], rng))
+
+
+@functools.cache
+def _mdf_files() -> list[bytes]:
+    from asammdf import MDF, Signal
+
+    columns = _columns(np.random.default_rng(1))
+    time = columns.pop("time_s")
+    files = []
+    for version, options in (("4.10", {}), ("4.10", {"compression": 2}), ("3.30", {})):
+        with tempfile.TemporaryDirectory() as place, MDF(version=version) as file:
+            for name, values in columns.items():
+                file.append([Signal(values, time, unit="V", name=name)])
+            saved = file.save(Path(place) / "run.mf4", overwrite=True, **options)
+            files.append(Path(saved).read_bytes())
+    return files
+
+
+def _mdf(rng: np.random.Generator) -> Input:
+    files = _mdf_files()
+    return Input("run.mf4", damaged(files[rng.integers(len(files))], files, rng))
+
+
+def _timetable(version: str) -> bytes:
+    """A file of MATLAB with a timetable."""
+    import matio
+    import pandas
+
+    columns = _columns(np.random.default_rng(1))
+    time = pandas.Index(pandas.to_timedelta(columns["time_s"], unit="s").round("ms"), name="Time")
+    table = pandas.DataFrame({"q": columns["j.angle_deg"], "u": columns["j.command_V"]}, index=time)
+    with tempfile.TemporaryDirectory() as place, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        path = Path(place) / "run.mat"
+        matio.save_to_mat(str(path), {"log": table}, version=version)
+        return path.read_bytes()
 
 
 def _read(path: Path) -> str:
@@ -434,6 +499,10 @@ def _seeds(name: str, files: Callable[[], list[bytes]]) -> Callable[[], list[Inp
     return lambda: [Input(name, data) for data in files()]
 
 
+def _bag_seeds() -> list[Input]:
+    return [Input("bag/metadata.yaml", _bag()["metadata.yaml"])]
+
+
 TARGETS = (
     Target("csv", _csv, _read, _csv_seeds),
     Target("parquet", _parquet, _read, _seeds("run.parquet", _parquet_files)),
@@ -441,5 +510,7 @@ TARGETS = (
     Target("mat", _mat, _read, _seeds("run.mat", _mat_files)),
     Target("mat73", _mat73, _read, _seeds("run.mat", _hdf5_files)),
     Target("mcap", _mcap, _read, _seeds("run.mcap", _mcap_files)),
-    Target("bag", _bag, _read, _seeds("bag/bag_0.mcap", _mcap_files)),
+    Target("db3", _db3, _read, _seeds("run.db3", _db3_files)),
+    Target("bag", _folder, _read, _bag_seeds, _beside_metadata),
+    Target("mdf", _mdf, _read, _seeds("run.mf4", _mdf_files)),
 )

@@ -5,7 +5,9 @@ import importlib
 from fuzzing.target import Target
 
 _MODULES = {
-    **dict.fromkeys(("csv", "parquet", "tdms", "mat", "mat73", "mcap", "bag"), "recording_targets"),
+    **dict.fromkeys(
+        ("csv", "parquet", "tdms", "mat", "mat73", "mcap", "db3", "bag", "mdf"), "recording_targets"
+    ),
     **dict.fromkeys(("rig", "scenario", "design"), "yaml_targets"),
     **dict.fromkeys(("site", "base", "place"), "standing_targets"),
     **dict.fromkeys(("link", "answer", "console"), "protocol_targets"),

@@ -1,22 +1,10 @@
 """Signals to write and read back, and writers for the formats that the package only reads."""
 
+import shutil
+
+import bags
 import numpy as np
 import pytest
-
-JOINT_STATE = """std_msgs/Header header
-string[] name
-float64[] position
-float64[] velocity
-float64[] effort
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-"""
 
 
 @pytest.fixture
@@ -72,28 +60,25 @@ def write_lines(tmp_path):
 
 
 @pytest.fixture
-def write_joint_states():
-    """Writes (topic, stamp [ns] or None, log time [ns], names, position, velocity, effort) as MCAP."""
+def write_bag():
+    """Writes (topic, message type, log time [ns], fields of the message) as a ROS 2 bag and returns its folder."""
+    return bags.write_bag
 
-    def write(path, messages, datatype="sensor_msgs/msg/JointState"):
-        from mcap_ros2.writer import Writer
 
-        with path.open("wb") as stream, Writer(stream) as writer:
-            schema = writer.register_msgdef(datatype, JOINT_STATE)
-            for topic, stamp, logged, names, position, velocity, effort in messages:
-                sec, nanosec = divmod(stamp or 0, 10**9)
-                writer.write_message(
-                    topic=topic,
-                    schema=schema,
-                    log_time=logged,
-                    message={
-                        "header": {"stamp": {"sec": sec, "nanosec": nanosec}, "frame_id": ""},
-                        "name": names,
-                        "position": position,
-                        "velocity": velocity,
-                        "effort": effort,
-                    },
-                )
+@pytest.fixture
+def write_joint_states(tmp_path):
+    """Writes (topic, stamp [ns] or None, log time [ns], names, position, velocity, effort) as one file of MCAP."""
+
+    def write(path, messages):
+        folder = tmp_path / "joint_states"
+        shutil.rmtree(folder, ignore_errors=True)
+        states = [
+            (topic, bags.JOINT_STATE, logged, bags.joint_state(stamp, *fields))
+            for topic, stamp, logged, *fields in messages
+        ]
+        bags.write_bag(folder, states)
+        shutil.move(folder / "joint_states.mcap", path)
+        shutil.rmtree(folder)
         return path
 
     return write

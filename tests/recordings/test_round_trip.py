@@ -123,18 +123,41 @@ def test_tdms_time_stamps(tmp_path):
     )  # seconds since 1970 in double
 
 
-def test_tdms_waveforms_that_differ_are_refused(tmp_path):
+def test_tdms_waveforms_of_their_own_rates_and_beginnings(tmp_path):
+    """The command is set at 10 Hz, half a second before the angle's first sample at 50 Hz."""
+    begun = np.datetime64("2024-05-01T12:00:00", "us")
     path = write_tdms(
         tmp_path / "run.tdms",
         [
-            ("g", "j.command_V", np.arange(9.0), {"wf_increment": 0.1}),
-            ("g", "j.angle_deg", np.arange(9.0), {"wf_increment": 0.2}),
+            ("g", "j.command_V", np.arange(20.0), {"wf_increment": 0.1, "wf_start_time": begun}),
+            (
+                "h",
+                "j.angle_rad",
+                np.arange(50.0),
+                {"wf_increment": 0.02, "wf_start_time": begun + np.timedelta64(500, "ms")},
+            ),
         ],
     )
-    with pytest.raises(
-        InputError, match=r"run.tdms: channels 'j.command_V' and 'j.angle_deg' have different"
-    ):
-        read_recording(path)
+    recording = read_recording(path)
+    np.testing.assert_allclose(recording.time, 0.5 + 0.02 * np.arange(50), atol=1e-12)
+    np.testing.assert_array_equal(recording.signal("j.angle"), np.arange(50.0))
+    np.testing.assert_array_equal(recording.signal("j.command")[1:6], [5, 5, 5, 5, 6])
+
+
+def test_tdms_groups_with_times_of_their_own(tmp_path):
+    fast, slow = 0.01 * np.arange(100), 0.04 * np.arange(25)
+    path = write_tdms(
+        tmp_path / "run.tdms",
+        [
+            ("drive", "time_s", slow),
+            ("drive", "j.command_V", np.arange(25.0)),
+            ("daq", "time_s", fast),
+            ("daq", "j.angle_rad", fast),
+        ],
+    )
+    recording = read_recording(path)
+    np.testing.assert_array_equal(recording.time, fast)
+    np.testing.assert_array_equal(recording.signal("j.command")[5::4], np.arange(1.0, 25.0))
 
 
 MAT_NAMES = {
@@ -189,67 +212,6 @@ def write_mat_73(path, variables, group=""):
 def test_mat_73(columns, check_same, tmp_path, group):
     write_mat_73(tmp_path / "run.mat", mat_variables(columns, (1, -1)), group)
     check_same(read_recording(tmp_path / "run.mat", MAT_NAMES))
-
-
-def test_mcap(columns, tmp_path, write_joint_states):
-    stamps = (columns["time_s"] * 1e9).astype(int).tolist()
-    angle = np.deg2rad(columns["right_j2.angle_deg"]).tolist()
-    command = columns["right_j2.command_V"].tolist()
-    late = 3 * 10**9  # log times are of no interest where there are stamps
-    messages = []
-    for t, q, v in zip(stamps, angle, command, strict=True):
-        messages.append(("/arm/commands", t, t + late, ["right_j2"], [v], [], []))
-        messages.append(
-            ("/joint_states", t, t + late, ["right_j2", "right_j3"], [q, 0.5 * q], [2 * q, q], [9 * q, 0])
-        )
-    path = write_joint_states(tmp_path / "run.mcap", messages)
-    for recording in (
-        read_recording(path),
-        read_recording(tmp_path),
-    ):  # the file, and the bag folder around it
-        np.testing.assert_allclose(recording.time, columns["time_s"], atol=1e-9)  # stamps are in ns
-        np.testing.assert_array_equal(recording.signal("right_j2.command"), command)
-        np.testing.assert_array_equal(recording.signal("right_j2.angle"), angle)
-        np.testing.assert_array_equal(recording.signal("right_j3.angle"), 0.5 * np.array(angle))
-        np.testing.assert_array_equal(recording.signal("right_j2.rate"), 2 * np.array(angle))
-        np.testing.assert_array_equal(recording.signal("right_j2.effort"), 9 * np.array(angle))
-        assert recording.units["right_j2.effort"] == "N m"
-
-
-def test_mcap_topics_of_different_rate(tmp_path, write_joint_states):
-    """Sensors decide the times; a command is held, and unknown before it was first sent."""
-    ms = 10**6
-    messages = [("/joint_states", t * ms, t * ms, ["j"], [t / 10], [], []) for t in range(1000, 1100, 10)]
-    messages += [("/slow_states", t * ms, t * ms, ["k"], [t / 10], [], []) for t in range(1000, 1100, 20)]
-    messages += [("/command", t * ms, t * ms, ["j"], [t / 1000], [], []) for t in (1015, 1055)]
-    recording = read_recording(write_joint_states(tmp_path / "run.mcap", messages))
-    np.testing.assert_allclose(recording.time, np.arange(1.0, 1.095, 0.01), rtol=1e-12)
-    nan = np.nan
-    np.testing.assert_array_equal(recording.signal("j.command"), [nan, nan] + 4 * [1.015] + 4 * [1.055])
-    np.testing.assert_allclose(recording.signal("k.angle"), [*np.arange(100.0, 108.5, 1), nan], rtol=1e-12)
-
-
-def test_mcap_without_stamps_uses_log_time_for_all(tmp_path, write_joint_states):
-    messages = []
-    for i in range(20):
-        logged = 5 * 10**9 + i * 10**7
-        messages.append(("/joint_states", i * 10**7, logged, ["j"], [float(i)], [], []))
-        messages.append(("/commands", None, logged, ["j"], [float(-i)], [], []))
-    recording = read_recording(write_joint_states(tmp_path / "run.mcap", messages))
-    np.testing.assert_allclose(recording.time, 5 + 0.01 * np.arange(20), rtol=1e-12)
-    np.testing.assert_array_equal(recording.signal("j.command"), -np.arange(20.0))
-
-
-def test_mcap_joint_on_two_topics_is_chosen_by_the_mapping(tmp_path, write_joint_states):
-    messages = []
-    for i in range(20):
-        messages.append(("/a", i * 10**7, i, ["j"], [float(i)], [], []))
-        messages.append(("/b", i * 10**7, i, ["j"], [float(2 * i)], [], []))
-    path = write_joint_states(tmp_path / "run.mcap", messages)
-    with pytest.raises(InputError, match=r"'/a/j.angle_rad', '/b/j.angle_rad'"):
-        read_recording(path)
-    recording = read_recording(path, {"/b/j.angle_rad": "j.angle_rad"})
-    np.testing.assert_array_equal(recording.signal("j.angle"), 2 * np.arange(20.0))
 
 
 def test_mapping_comes_first_and_absent_names_do_not_matter(columns, write_lines):
