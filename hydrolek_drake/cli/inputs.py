@@ -51,7 +51,7 @@ def rig_and_recordings(
     from hydrolek_drake.rigs import load_rig
 
     loaded = load_rig(rig, parse_settings(settings))
-    read = [[read_recording(path, loaded.columns) for path in group or []] for group in groups]
+    read = [[read_recording(path, loaded.columns, dead_time=loaded.dead_time) for path in group or []] for group in groups]
     from hydrolek_drake.checking.clock import refuse_other_clock
 
     for group in read:
@@ -60,17 +60,29 @@ def rig_and_recordings(
     return loaded, read
 
 
-def tell_what_looks_wrong(rig: "Rig", recordings: "Sequence[Recording]", console: "Console") -> None:
+def tell_of_clocks(recording: "Recording", console: "Console") -> None:
+    """Say how signals with clocks of their own were put on one."""
+    for finding in recording.findings:
+        if finding.kind in ("offset", "resampled"):
+            console.print(f"{recording.source}: {finding.message}", markup=False, soft_wrap=True)
+
+
+def tell_what_looks_wrong(
+    rig: "Rig", recordings: "Sequence[Recording]", console: "Console", *, clocks: bool = True
+) -> None:
     """Say before anything long what looks wrong about recordings of a machine, as `hydrolek rig check` does.
 
     Args:
         rig: the machine.
         recordings: of it.
         console: where to say it.
+        clocks: also say what was done to signals with clocks of their own.
     """
     from hydrolek_drake.checking.recording_checks import check_recording
 
     for recording in recordings:
+        if clocks:
+            tell_of_clocks(recording, console)
         for complaint in check_recording(rig, recording):
             if complaint.wrong:
                 console.print(

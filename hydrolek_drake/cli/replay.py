@@ -41,7 +41,7 @@ def replay(
     from hydrolek_drake.replay.table import signal_table
 
     with progress.status("checking (the first time, the physics is compiled: some 10 s)"):
-        tell_what_looks_wrong(loaded, read, output)
+        tell_what_looks_wrong(loaded, read, output, clocks=False)  # the report does
     for path, recording in zip(recordings, read, strict=True):
         with progress.status(f"replaying {path} (the first time, the physics is compiled: some 10 s)"):
             replayed = run_replay(loaded, recording, between)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from hydrolek_drake.cli.inputs import tell_of_clocks
 from hydrolek_drake.cli.settings import SetOption, parse_settings
 from hydrolek_drake.errors import InputError
 
@@ -79,7 +80,9 @@ def check(
     loaded = load_rig(name, parse_settings(set_))
     wrong = _say(loaded, None)
     for path in recordings or []:
-        wrong += _say(loaded, read_recording(path, loaded.columns))
+        recording = read_recording(path, loaded.columns, dead_time=loaded.dead_time)
+        tell_of_clocks(recording, console())
+        wrong += _say(loaded, recording)
     if not wrong:
         console().print("nothing looks wrong")
     return WRONG if wrong else 0

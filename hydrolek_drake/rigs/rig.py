@@ -68,6 +68,11 @@ class Rig:
             return geometry.arm_load(joint, tuple(sorted(self.posture_without(joint).items())))[name]
         return entry.value
 
+    @property
+    def dead_time(self) -> float:
+        """The longest dead time of a joint's command [s]."""
+        return max(self.value(f"joints.{joint}.command.delay") for joint in self.joints)
+
     def posture_without(self, joint: str) -> dict[str, float]:
         """Where all other joints stand: held ones, and moving ones at their initial position [rad or m]."""
         moving = {

@@ -176,7 +176,7 @@ def _random(raw: Mapping[str, Any], rig: Rig, rest: np.ndarray, operator: bool, 
 
 def _playback(path: Path, rig: Rig, where: str) -> Playback:
     try:
-        recording = read_recording(path, rig.columns)
+        recording = read_recording(path, rig.columns, dead_time=rig.dead_time)
         keys = [f"{joint}.command" for joint in rig.joints]
         require(recording, keys, complete=keys, units=dict.fromkeys(keys, "V"))
     except InputError as error:

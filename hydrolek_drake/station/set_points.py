@@ -160,7 +160,7 @@ def _set_points(
     path = folder / str(required(raw, "recording", where))
     try:
         if path not in read:
-            read[path] = read_recording(path, rig.columns)
+            read[path] = read_recording(path, rig.columns, dead_time=rig.dead_time)
         recording = read[path]
         keys = [f"{joint}.{name}" for name in _QUANTITIES]
         key = str(raw.get("signal", next((each for each in keys if each in recording.signals), keys[0])))

@@ -413,7 +413,7 @@ def _hostile_database(good: bytes, rng: np.random.Generator) -> bytes:
         "UPDATE messages SET data = randomblob(100000)",
         "UPDATE messages SET timestamp = 'soon'",
         "UPDATE topics SET type = 'std_msgs/msg/Nothing'",
-        "UPDATE topics SET name = NULL",
+        "UPDATE topics SET name = x'ff'",
         "UPDATE message_definitions SET encoded_message_definition = 'float64[999999999] data'",
         "UPDATE message_definitions SET encoded_message_definition = '" + "(" * 2000 + "'",
         "DROP TABLE messages; CREATE VIEW messages AS WITH RECURSIVE n(id) AS "
