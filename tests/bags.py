@@ -13,7 +13,7 @@ FLOAT64S = "std_msgs/msg/Float64MultiArray"
 TEXT = "std_msgs/msg/String"
 VALVE = "crane_msgs/msg/Valve"
 VALVE_DEFINITION = (
-    "std_msgs/Header header\nfloat64 spool_mm\nfloat32[2] pressures\nValveCoil coil\nstring note\n"
+    "std_msgs/Header header\nfloat64 opening_mm\nfloat32[2] pressures\nValveCoil coil\nstring note\n"
 )
 COIL, COIL_DEFINITION = "crane_msgs/msg/ValveCoil", "uint16 current_mA\n"
 
@@ -63,11 +63,11 @@ def numbers(values):
     }
 
 
-def valve(stamped, spool_mm, pressures, current_mA):
+def valve(stamped, opening_mm, pressures, current_mA):
     """Fields of a message that no other program knows."""
     return lambda store: {
         "header": stamp(store, stamped),
-        "spool_mm": spool_mm,
+        "opening_mm": opening_mm,
         "pressures": np.array(pressures, dtype=np.float32),
         "coil": store.types[COIL](current_mA=current_mA),
         "note": "x",

@@ -10,6 +10,7 @@ from hydrolek_drake.checking.steps import differs
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import SUPPLY_KEY, driven_joints, measured_position, position_key
+from hydrolek_drake.replay.recorded_inputs import recorded_inputs, with_commands
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.rollout.rest import rest_state_at_reading
@@ -66,6 +67,7 @@ def check_recording(rig: Rig, recording: Recording) -> list[Complaint]:
         InputError: as of `refuse_other_clock`.
     """
     refuse_other_clock(rig, recording)
+    recording = with_commands(rig, recording)
     found: list[Complaint] = []
     for joint in driven_joints(rig, recording):
         found += _joint(rig, joint, recording)
@@ -107,7 +109,7 @@ def _joint(rig: Rig, joint: str, recording: Recording) -> list[Complaint]:
     key = position_key(rig, joint)
     volts = np.asarray(recording.signal(f"{joint}.command"), dtype=float)
     position = np.asarray(measured_position(rig, joint, recording), dtype=float)
-    found = _command(rig, joint, volts)
+    found = _command(rig, joint, volts) if rig.needs_command(joint) else []
     if not np.isfinite(position).any() or not np.isfinite(volts).all():
         return found
     noise = noise_level(position)
@@ -185,7 +187,8 @@ def _against_the_model(
     start = float(np.median(first))
     state = rest_state_at_reading(record, start) if _within(rig, joint, start) else None
     step = rig.value("integration.longest_step")
-    outcome = roll_out(record, times, volts, times, state=state, longest_step=step)
+    recorded = recorded_inputs(rig, joint, recording)
+    outcome = roll_out(record, times, volts, times, state=state, longest_step=step, probes=recorded)
     if outcome.diverged:
         return [Complaint(key, f"the model {outcome.diverged} under this command", "", wrong=False)]
     model = outcome.signals
@@ -215,7 +218,7 @@ def _against_the_model(
             ]
     found += _exchanged(rig, joint, recording, model)
     found += _falls(rig, recording, model)
-    off = differs(rig, joint, times, volts, step, noise)
+    off = differs(rig.by_itself(), joint, times, volts, step, noise)
     if off is not None and off > 1.0:
         found.append(
             Complaint(
@@ -265,7 +268,7 @@ def _late(rig: Rig, joint: str, times: np.ndarray, seen: np.ndarray, own: np.nda
 
 def _exchanged(rig: Rig, joint: str, recording: Recording, model: Signals) -> list[Complaint]:
     keys = [f"{joint}.pressure_a", f"{joint}.pressure_b"]
-    if any(key not in recording.signals for key in keys):
+    if any(key not in recording.signals or key in rig.driven_by for key in keys):
         return []
     a, b = (np.asarray(recording.signal(key), dtype=float) for key in keys)
     own_a, own_b = (np.asarray(getattr(model, name)) for name in ("pressure_a", "pressure_b"))
@@ -285,7 +288,7 @@ def _exchanged(rig: Rig, joint: str, recording: Recording, model: Signals) -> li
 
 def _falls(rig: Rig, recording: Recording, model: Signals) -> list[Complaint]:
     """Whether the supply falls where the rig's pump would hold it."""
-    if rig.variants["supply"] != "pump" or SUPPLY_KEY not in recording.signals:
+    if rig.variants["supply"] != "pump" or SUPPLY_KEY not in recording.signals or SUPPLY_KEY in rig.driven_by:
         return []
     setting = rig.value("supply.pressure")
     lowest = float(np.nanmin(recording.signal(SUPPLY_KEY)))
@@ -355,7 +358,7 @@ def _told(
                 wrong=False,
             )
         )
-    if float(np.nanmax(np.abs(centred))) < SHARE_OF_COMMAND * limit:
+    if rig.needs_command(joint) and float(np.nanmax(np.abs(centred))) < SHARE_OF_COMMAND * limit:
         found.append(
             Complaint(
                 f"{joint}.command",

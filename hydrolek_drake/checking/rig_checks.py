@@ -68,6 +68,7 @@ def _that_mends(value: float, limits: tuple[float, float]) -> float:
 
 def check_rig(rig: Rig) -> list[Complaint]:
     """All that is implausible about a rig; nothing if it looks right."""
+    rig = rig.by_itself()
     found = implausible(rig)
     if found:  # what follows would only repeat it
         return found

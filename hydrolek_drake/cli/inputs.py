@@ -51,7 +51,10 @@ def rig_and_recordings(
     from hydrolek_drake.rigs import load_rig
 
     loaded = load_rig(rig, parse_settings(settings))
-    read = [[read_recording(path, loaded.columns, dead_time=loaded.dead_time) for path in group or []] for group in groups]
+    read = [
+        [read_recording(path, loaded.columns, dead_time=loaded.dead_time) for path in group or []]
+        for group in groups
+    ]
     from hydrolek_drake.checking.clock import refuse_other_clock
 
     for group in read:

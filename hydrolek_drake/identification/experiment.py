@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.identification.channel import Channel, faithful
-from hydrolek_drake.identification.neighbours import rows_at
+from hydrolek_drake.identification.neighbours import rows_at, with_recorded
 from hydrolek_drake.identification.start import without_offset
 from hydrolek_drake.identification.thinning import Blocks, block_size
 from hydrolek_drake.rollout.kernel import PULLED
@@ -39,6 +39,7 @@ class Experiment:
             alone.
         others_error: by how much each channel of a rollout is wrong since `others` is not quite what they do; None if
             that is not known. # (channels, n)
+        recorded: what is recorded in place of a part of the model, as probes of the rollout; None for nothing.
     """
 
     name: str
@@ -57,6 +58,7 @@ class Experiment:
     others_error: np.ndarray | None = None
     start_error: float = 0.0
     start_response: np.ndarray | None = None
+    recorded: tuple[float, np.ndarray] | None = None
 
     @property
     def command_at_samples(self) -> np.ndarray:
@@ -102,7 +104,7 @@ class Experiment:
             longest_step or self.longest_step,
             self.spool_steps,
             state=None if self.start is None else rest_state_at_reading(record, self.start),
-            probes=self._with_others(probes),
+            probes=with_recorded(self._with_others(probes), self.recorded),
             pull=None if pull_time is None else (pull_time, self._to_follow()),
             law=law,
         )

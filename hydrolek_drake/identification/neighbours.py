@@ -154,6 +154,22 @@ def _alone(joint: Any, times: np.ndarray, position: np.ndarray, acceleration: np
     return needed
 
 
+def with_recorded(
+    inputs: tuple[float, np.ndarray] | None, recorded: tuple[float, np.ndarray] | None
+) -> tuple[float, np.ndarray] | None:
+    """Inputs from outside with what was recorded in place of a part of the model, at the finer spacing of the two.
+
+    Inputs of the replaced part act on nothing, and give way.
+    """
+    if inputs is None or recorded is None:
+        return inputs or recorded
+    spacing = min(inputs[0], recorded[0])
+    last = max(own * (len(rows) - 1) for own, rows in (inputs, recorded))
+    count = round(last / spacing) + 1
+    rows, driving = rows_at(inputs, spacing, count), rows_at(recorded, spacing, count)
+    return spacing, np.where(np.any(recorded[1] != 0.0, axis=0), driving, rows)
+
+
 def rows_at(probes: tuple[float, np.ndarray], spacing: float, count: int) -> np.ndarray:
     """Rows of probes at another spacing, on straight lines between their samples. # (count, probes)."""
     own_spacing, rows = probes

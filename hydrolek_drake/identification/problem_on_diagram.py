@@ -35,7 +35,7 @@ class ProblemOnDiagram(Problem):
         rig = self.parameters.with_rig_values(unit)
         parts = []
         for group in self._groups:
-            driven = [Driven(e.joint, e.command_times, e.command, e.start) for e in group]
+            driven = [Driven(e.joint, e.command_times, e.command, e.start, e.recorded) for e in group]
             done = moved_by_diagram(rig, driven, group[0].time, {})
             parts += [e.residuals(done[e.joint].signals) for e in group]
         return self.bounded(parts)

@@ -12,6 +12,7 @@ from hydrolek_drake.identification.start import resting_position
 from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import driven_joints, measured_position, position_key
+from hydrolek_drake.replay.recorded_inputs import recorded_inputs, with_commands
 from hydrolek_drake.rigs import Rig
 
 CONSTANT = 1e-12
@@ -36,6 +37,7 @@ def experiments_of(
     Raises:
         InputError: no command, no position, a command that never changes, or a signal without noise level.
     """
+    recording = with_commands(rig, recording)
     driven = driven_joints(rig, recording)
     if not driven:
         require(recording, [f"{rig.joints[0]}.command"])
@@ -56,7 +58,7 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
     key = f"{joint}.command"
     require(recording, [], complete=[key], units={key: "V"})
     command = np.asarray(recording.signal(key), dtype=float)
-    if np.ptp(command) <= CONSTANT * max(float(np.abs(command).max()), 1.0):
+    if rig.needs_command(joint) and np.ptp(command) <= CONSTANT * max(float(np.abs(command).max()), 1.0):
         raise UninformativeError(
             f"{recording.source}: {key} is constant at {command[0]:g} V, so nothing can be identified; "
             "record the joint while its command changes"
@@ -73,11 +75,12 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
     if rig.variant(joint, "cylinder") != "electric_motor":
         for quantity in ("pressure_a", "pressure_b"):
             name = f"{joint}.{quantity}"
-            if quantity in wanted and name in recording.signals:
+            if quantity in wanted and name in recording.signals and name not in rig.driven_by:
                 measured = np.asarray(recording.signal(name), dtype=float)
                 noise = _noise(measured, rig, joint, "pressure_noise")
                 channels.append(Channel(name, "Pa", quantity, measured, noise))
-        if "supply_pressure" in wanted and "supply.pressure" in recording.signals and len(rig.joints) == 1:
+        followed = "supply.pressure" in recording.signals and "supply.pressure" not in rig.driven_by
+        if "supply_pressure" in wanted and followed and len(rig.joints) == 1:
             measured = np.asarray(recording.signal("supply.pressure"), dtype=float)
             noise = _noise(measured, rig, joint, "pressure_noise")
             channels.append(Channel("supply.pressure", "Pa", "supply_pressure", measured, noise))
@@ -97,6 +100,7 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
         longest_step=rig.value("integration.longest_step"),
         spool_steps=int(rig.value("integration.spool_steps")),
         used=np.ones(recording.time.size, dtype=bool),
+        recorded=recorded_inputs(rig, joint, recording),
     )
 
 

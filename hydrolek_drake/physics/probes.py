@@ -1,7 +1,7 @@
 """Inputs to a joint from outside the model, all zero otherwise.
 
-Unknown ones, one a stage, with which a diagnosis asks where physics is missing and which a law gives (`law`); and
-what other joints do.
+Unknown ones, one a stage, with which a diagnosis asks where physics is missing and which a law gives (`law`);
+what other joints do; and what was recorded, where that takes the place of a part of the model (`driven`).
 """
 
 from typing import NamedTuple

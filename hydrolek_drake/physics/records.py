@@ -1,4 +1,4 @@
-"""The parameter record of one joint: one field per stage, one per effect, and one per term of a law.
+"""The parameter record of one joint: one field per stage, one per effect, one per term of a law, and what drives it.
 
 All numbers are float64, so a record is also a flat vector (`flat`), which is how parameters are fitted and
 how they are stored in a Drake context.
@@ -20,6 +20,7 @@ from hydrolek_drake.physics import (
     supply,
     valve,
 )
+from hydrolek_drake.physics.driven import DRIVEN, is_driven
 from hydrolek_drake.physics.law import LAW_RECORD
 from hydrolek_drake.physics.parameters import Stage
 from hydrolek_drake.physics.usual import MARK, RARE, RARE_NUMBERS
@@ -40,7 +41,7 @@ EFFECT_RECORD = np.dtype(
 )
 JOINT = np.dtype(
     [(stage.name, stage.dtype()) for stage in STAGES.values()]
-    + [("effects", EFFECT_RECORD), ("law", LAW_RECORD)]
+    + [("effects", EFFECT_RECORD), ("law", LAW_RECORD), ("driven", DRIVEN)]
 )
 
 _NAMES = JOINT.names or ()
@@ -59,7 +60,7 @@ def as_usual(joints: np.ndarray) -> np.ndarray:
     for stage, variants in RARE.items():
         if np.isin(joints[stage]["variant"], [STAGES[stage].code(variant) for variant in variants]).any():
             return joints
-    if any((joints[stage][name] > 0.0).any() for stage, name in RARE_NUMBERS):
+    if is_driven(joints) or any((joints[stage][name] > 0.0).any() for stage, name in RARE_NUMBERS):
         return joints
     return joints.view(_USUAL)
 
@@ -70,8 +71,8 @@ def flat(joints: np.ndarray) -> np.ndarray:
 
 
 def position_of(section: str, name: str) -> int:
-    """Where a parameter stands in a flat record; `section` is a stage or an effect's key."""
-    if section in STAGES:
+    """Where a parameter stands in a flat record; `section` is a stage, "driven", or an effect's key."""
+    if section in STAGES or section == "driven":
         outer = JOINT.fields[section][1]  # type: ignore[index]
         inner = JOINT[section].fields[name][1]  # type: ignore[index]
         return int(outer + inner) // 8

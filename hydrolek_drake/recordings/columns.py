@@ -21,6 +21,7 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
     "velocity": ("m/s",),
     "pot": ("V", "1"),
     "current": ("A",),
+    "spool": ("m",),
     "pressure": ("Pa",),
     "pressure_a": ("Pa",),
     "pressure_b": ("Pa",),

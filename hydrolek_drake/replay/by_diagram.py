@@ -11,6 +11,7 @@ from hydrolek_drake.rollout.rollout import Signals
 from hydrolek_drake.station.simulation import Run, command_source, initial_context, run
 from hydrolek_drake.station.station import make_station
 from hydrolek_drake.station.step_sizes import sizes_for
+from hydrolek_drake.systems.recorded import Recorded
 
 
 def moved_by_diagram(
@@ -38,7 +39,10 @@ def moved_by_diagram(
     for joint, reading in starts.items():
         place = rig.joints.index(joint)
         positions[place] = rest_state_at_reading(records[place : place + 1], reading)[4]
-    station = make_station(rig, sizes=sizes_for(rig), command=command_source(command_times - begin, volts))
+    by_joint = {one.joint: one.recorded for one in driven}
+    recorded = Recorded([by_joint.get(joint) for joint in rig.joints]) if rig.driven_by else None
+    command = command_source(command_times - begin, volts)
+    station = make_station(rig, sizes=sizes_for(rig), command=command, recorded=recorded)
     seconds = times - begin
     try:
         done = run(station, float(seconds[-1]), context=initial_context(station, positions))

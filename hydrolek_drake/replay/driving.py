@@ -20,12 +20,14 @@ class Driven:
         times: of the command [s], increasing. # (m,)
         volts: each held until the next. # (m,)
         start: reading where it rests at first [rad or m]; None for where the rig says.
+        recorded: what is recorded in place of a part of it, as `probes` of `rollout.roll_out`; None for nothing.
     """
 
     joint: str
     times: np.ndarray
     volts: np.ndarray
     start: float | None
+    recorded: tuple[float, np.ndarray] | None = None
 
 
 @dataclass(frozen=True)
@@ -72,6 +74,7 @@ def _alone(rig: Rig, one: Driven, times: np.ndarray) -> Moved:
         state=None if one.start is None else rest_state_at_reading(record, one.start),
         longest_step=rig.value("integration.longest_step"),
         spool_steps=int(rig.value("integration.spool_steps")),
+        probes=one.recorded,
     )
     return Moved(done.signals, done.diverged)
 

@@ -71,22 +71,25 @@ def measured_position(rig: Rig, joint: str, recording: Recording) -> np.ndarray:
 
 
 def pairs_of_joint(rig: Rig, joint: str, recording: Recording, signals: Signals) -> list[Pair]:
-    """Position, and chamber pressures where they were recorded and the joint has chambers."""
+    """Position, and chamber pressures where they were recorded, do not drive the model, and the joint has chambers."""
     key = position_key(rig, joint)
     unit = "m" if key.endswith(".position") else "rad"
     pairs = [Pair(key, unit, joint, measured_position(rig, joint, recording), signals.reading)]
     if rig.variant(joint, "cylinder") != "electric_motor":
         for quantity in ("pressure_a", "pressure_b"):
             key = f"{joint}.{quantity}"
-            if key in recording.signals:
+            if key in recording.signals and key not in rig.driven_by:
                 pairs.append(Pair(key, "Pa", joint, recording.signal(key), getattr(signals, quantity)))
     return pairs
 
 
 def supply_pair(rig: Rig, recording: Recording, by_joint: dict[str, Signals]) -> Pair | None:
-    """The supply pressure, if it was recorded and a joint draws from it; the joints that do have one in common."""
+    """The supply pressure, if it was recorded, does not drive the model, and a joint draws from it.
+
+    The joints that do have one in common.
+    """
     drawing = [joint for joint in by_joint if rig.variant(joint, "cylinder") != "electric_motor"]
-    if SUPPLY_KEY not in recording.signals or not drawing:
+    if SUPPLY_KEY not in recording.signals or SUPPLY_KEY in rig.driven_by or not drawing:
         return None
     model = by_joint[drawing[0]].supply_pressure
     return Pair(

@@ -19,6 +19,7 @@ from hydrolek_drake.replay.readings import (
     position_key,
     supply_pair,
 )
+from hydrolek_drake.replay.recorded_inputs import recorded_inputs, with_commands
 from hydrolek_drake.rigs import Rig
 
 START_SAMPLES = 5
@@ -79,6 +80,7 @@ def replay(
         raise InputError(f"--between {between[0]:g} {between[1]:g}: the start must lie before the end")
     window = recording if between is None else recording.between(*between)
     cut = bool(window.time[0] > recording.time[0])
+    recording, window = with_commands(rig, recording), with_commands(rig, window)
     driven = driven_joints(rig, recording)
     if not driven:
         require(recording, [f"{rig.joints[0]}.command"])
@@ -93,7 +95,8 @@ def replay(
         measured = measured_position(rig, joint, window)
         start, said = _start(rig, joint, window.time, measured, cut)
         notes += said
-        under.append(Driven(joint, *_command_until(recording, key, window.time[0], window.time[-1]), start))
+        until = _command_until(recording, key, window.time[0], window.time[-1])
+        under.append(Driven(joint, *until, start, recorded_inputs(rig, joint, window)))
         commands[joint] = window.signal(key)
     outcomes = by(rig, under, window.time, _elsewhere(rig, window, driven))
     pairs: list[Pair] = []

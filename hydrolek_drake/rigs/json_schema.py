@@ -60,6 +60,11 @@ def rig_schema() -> dict[str, Any]:
                 "properties": {
                     "columns": {"type": "object", "additionalProperties": _TEXT},
                     "initial_position": {"enum": ["rig", "recording"]},
+                    "driven_by": {
+                        "type": "array",
+                        "items": _TEXT,
+                        "description": "recorded signals that drive the model in place of a part of it",
+                    },
                 },
             },
             "integration": _parameters((LONGEST_STEP, SPOOL_STEPS)),

@@ -10,6 +10,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.parameters import Stage
 from hydrolek_drake.physics.records import JOINT_STAGES, SHARED_STAGES
 from hydrolek_drake.rigs import geometry
+from hydrolek_drake.rigs.driven_by import read_driven_by
 from hydrolek_drake.rigs.entries import Entry, parse_entry
 from hydrolek_drake.rigs.keys import refuse_unknown
 from hydrolek_drake.rigs.rig import LONGEST_STEP, SPOOL_STEPS, Rig
@@ -53,7 +54,7 @@ def rig_from_tree(tree: dict[str, Any], path: Path) -> Rig:
         where = f"integration.{parameter.name}"
         entries[where] = parse_entry(integration[parameter.name], parameter, f"{path}: {where}")
     recording = tree.get("recording") or {}
-    refuse_unknown(recording, ("columns", "initial_position"), f"{path}: recording")
+    refuse_unknown(recording, ("columns", "initial_position", "driven_by"), f"{path}: recording")
     columns = recording.get("columns") or {}
     if not isinstance(columns, Mapping):
         raise InputError(f"{path}: recording.columns must be a mapping, such as {{qm: axis.position_m}}")
@@ -72,6 +73,7 @@ def rig_from_tree(tree: dict[str, Any], path: Path) -> Rig:
         initial_position=initial,
         tree=tree,
         laws=laws,
+        driven_by=read_driven_by(recording.get("driven_by"), tuple(tree["joints"]), variants, path),
     )
     geometry.check(rig)
     return rig

@@ -16,6 +16,7 @@ from hydrolek_drake.physics import supply
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.records import JOINT, JOINT_STAGES, SHARED_STAGES
 from hydrolek_drake.rigs import geometry
+from hydrolek_drake.rigs.driven_by import counts, signals_of
 from hydrolek_drake.rigs.entries import Entry, parse_quantity
 from hydrolek_drake.rigs.short_law import LawTerm, law_record
 from hydrolek_drake.rigs.writing import written_tree
@@ -42,6 +43,7 @@ class Rig:
         initial_position: "rig", or "recording": where a replay starts.
         tree: the file's content with all it is based on.
         laws: joint -> terms of a law for physics in no list; joints without one are left out.
+        driven_by: recorded signals that drive the model in place of a part of it, such as `supply.pressure`.
     """
 
     name: str
@@ -55,6 +57,7 @@ class Rig:
     initial_position: str
     tree: dict[str, Any]
     laws: dict[str, tuple[LawTerm, ...]] = field(default_factory=dict)
+    driven_by: tuple[str, ...] = ()
 
     def value(self, path: str) -> float:
         """Value of a parameter in SI; `path` as in `full_path`."""
@@ -133,11 +136,11 @@ class Rig:
         )
 
     def free_parameters(self) -> dict[str, Entry]:
-        """Parameters that have a range and do not follow another one."""
+        """Parameters that have a range, do not follow another one, and are of no part that a recording replaces."""
         return {
             path: entry
             for path, entry in self.entries.items()
-            if entry.range is not None and entry.same_as is None
+            if entry.range is not None and entry.same_as is None and counts(path, self.driven_by, self.joints)
         }
 
     def records(self) -> np.ndarray:
@@ -157,7 +160,17 @@ class Rig:
                         f"joints.{owner}.effects.{effect.id}.{p.name}"
                     )
             records[i]["law"] = law_record(self.laws.get(joint, ()))
+            for part in signals_of(self.driven_by, joint):
+                records[i]["driven"][part] = 1.0
         return records
+
+    def by_itself(self) -> "Rig":
+        """The rig with no recorded signal in place of a part of it."""
+        return replace(self, driven_by=())
+
+    def needs_command(self, joint: str) -> bool:
+        """Whether a joint moves by its command: it is driven neither by its spool nor by its chambers' pressures."""
+        return not {"spool_position", "chamber_pressures"} & set(signals_of(self.driven_by, joint))
 
     def as_tree(self) -> dict[str, Any]:
         """The rig as a tree that can be written as a file and loads to the same rig."""

@@ -5,8 +5,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import amplifier, command, solenoid, supply, valve
+from hydrolek_drake.physics import amplifier, command, solenoid, valve
 from hydrolek_drake.physics.amplifier import Currents
+from hydrolek_drake.physics.driven import chamber_pressures, pressure_at_valves
 from hydrolek_drake.physics.law import up_to_the_spool
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.rollout.rates import State, felt_at
@@ -61,8 +62,9 @@ def driven_on(
     behind, drive = command.ramped(d.behind, voltage, h, now.ramp, joint)
     currents, driving = amplifier.following(d.currents, drive, time + 0.5 * h, h, now.coil_time, joint)
     gain += 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
+    p_a, p_b = chamber_pressures(s.p_a, s.p_b, probe, joint)
     closing_a, closing_b = valve.flow_forces(
-        supply.supply_pressure(s.supply, joint) + now.supply, s.p_a, s.p_b, now.flow_force, joint
+        pressure_at_valves(s.supply, now, joint), p_a, p_b, now.flow_force, joint
     )
     x, xd = solenoid.advanced(
         d.x, d.xd, gain * driving.a, gain * driving.b, h, spool_steps, joint, closing_a, closing_b

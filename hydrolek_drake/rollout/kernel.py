@@ -16,8 +16,19 @@ from hydrolek_drake.physics import command, hooks, load, sensor, supply
 from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.probes import Probe, probe_at
 from hydrolek_drake.physics.solenoid import GAMMA, steps_needed
+from hydrolek_drake.physics.usual import rare
 from hydrolek_drake.rollout.drive import Drive, acts_early, driven_on
-from hydrolek_drake.rollout.rates import Slopes, State, Turned, carried_on, felt_at, kept, rates, turned
+from hydrolek_drake.rollout.rates import (
+    Slopes,
+    State,
+    Turned,
+    as_recorded,
+    carried_on,
+    felt_at,
+    kept,
+    rates,
+    turned,
+)
 
 SIGNALS = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool", "supply_pressure", "force")
 
@@ -150,12 +161,15 @@ def written(
         joint: parameter record.
         out: receives the signals. # (8,)
     """
-    now = felt_at(probe, law, time, s, d.x, joint)
+    x = d.x
+    if rare(joint):
+        s, x = as_recorded(s, x, probe, joint)
+    now = felt_at(probe, law, time, s, x, joint)
     voltage = command.drive_voltage(volts + now.command, joint)
     drive = d.behind if joint.command.ramp + now.ramp > 0.0 else voltage
-    _, _, p_supply, force, drawn = rates(s, d.x, drive, time, inertia, probe, law, near, joint)
+    _, _, p_supply, force, drawn = rates(s, x, drive, time, inertia, probe, law, near, joint)
     out[0] = sensor.reading(play, time, joint) + now.sensor
-    out[1], out[2], out[3], out[4], out[5] = s.q, s.w, s.p_a, s.p_b, d.x
+    out[1], out[2], out[3], out[4], out[5] = s.q, s.w, s.p_a, s.p_b, x
     out[6], out[7] = p_supply, force
     return drawn
 

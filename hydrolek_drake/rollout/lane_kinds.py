@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 
 from hydrolek_drake.effects.catalogue import EFFECTS
+from hydrolek_drake.physics.driven import DRIVEN
 from hydrolek_drake.physics.law import MOST_TERMS
 from hydrolek_drake.physics.records import STAGES, flat, position_of
 from hydrolek_drake.physics.solenoid import steps_needed
@@ -56,8 +57,12 @@ _Places = tuple[tuple[int, float], ...]
 
 @cache
 def _places() -> tuple[tuple[int, ...], tuple[tuple[_Places, _Places], ...], tuple[int, ...]]:
-    """Places in a flat record: of variants; of each group: sizes, and all numbers, with neutral values; others."""
+    """Places in a flat record: what is always known; of each group sizes, and all numbers, with neutral values; others.
+
+    Always known are variants, and what a recording drives.
+    """
     variants = tuple(position_of(stage, "variant") for stage in STAGES)
+    variants += tuple(position_of("driven", name) for name in DRIVEN.names or ())
     groups = []
     for hooks in GROUPS:
         effects = [effect for effect in EFFECTS.values() if any(hook in effect.hooks for hook in hooks)]

@@ -23,6 +23,7 @@ from hydrolek_drake.rollout.rollout import (
     DIVIDED_BY_ZERO,
     Outcome,
     Signals,
+    check_driven,
     check_times,
     missing_number,
     why_diverged,
@@ -143,6 +144,7 @@ def one_table(kind: Kind, runs: Sequence[Run], laws: Sequence[np.ndarray | None]
     commands = [_changes(run.command_times, run.command_values) for run in lanes]
     for run in runs:
         check_times(run.command_times, run.command_values, run.times)
+        check_driven(run.joint, run.probes is not None)
     rows = np.array([len(run.times) for run in lanes])
     pulls = any(run.pull is not None for run in runs)
     measured = np.full((LANES, int(rows.max()) if pulls else 0, len(kernel.PULLED)), np.nan)

@@ -10,8 +10,15 @@ import numpy as np
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import base, cylinder, fluid, hooks, linkage, load, supply, valve
 from hydrolek_drake.physics.angle import Angle, AngleKept, angle, angle_near
+from hydrolek_drake.physics.driven import (
+    chamber_pressures,
+    pressure_at_valves,
+    pressures_are_driven,
+    spool_position,
+)
 from hydrolek_drake.physics.law import Seen, felt
 from hydrolek_drake.physics.probes import Probe
+from hydrolek_drake.physics.usual import rare
 
 
 class State(NamedTuple):
@@ -82,10 +89,20 @@ def _rod_side(s: State, joint: Any) -> tuple[float, float]:
 
 
 @njit
+def as_recorded(s: State, x: float, outside: Probe, joint: Any) -> tuple[State, float]:
+    """State and spool position with what was recorded in place of what the model has."""
+    p_a, p_b = chamber_pressures(s.p_a, s.p_b, outside, joint)
+    state = State(p_a, p_b, s.q, s.w, s.supply, s.tilt, s.tilt_rate, s.lead_q, s.lead_w, s.relief)
+    return state, spool_position(x, outside, joint)
+
+
+@njit
 def felt_at(probe: Probe, law: np.ndarray | None, time: float, s: State, x: float, joint: Any) -> Probe:
     """Probes with what a law adds in a state, for stages outside of `rates`."""
     if law is None:
         return probe
+    if rare(joint):
+        s, x = as_recorded(s, x, probe, joint)
     q, w = _rod_side(s, joint)
     stroke = lever = 0.0
     if joint.cylinder.variant != cylinder.ELECTRIC_MOTOR:
@@ -121,6 +138,8 @@ def rates(
     rocking = hooks.base_stiffness(joint) > 0.0
     playing = hooks.linkage_gap(joint) > 0.0
     oil = joint.cylinder.variant != cylinder.ELECTRIC_MOTOR
+    if rare(joint):
+        s, x = as_recorded(s, x, outside, joint)
     side_q, side_w = _rod_side(s, joint)
     included = angle_near(linkage.included_angle(side_q, joint), near.included)
     stroke, lever = (
@@ -137,7 +156,7 @@ def rates(
     if not oil:
         force = cylinder.motor_force(voltage, joint)
     else:
-        p_supply = supply.supply_pressure(s.supply, joint) + probe.supply
+        p_supply = pressure_at_valves(s.supply, probe, joint)
         opened = valve.widened(valve.openings(x, joint), probe.valve)
         flow_a, flow_b, drawn, settle_a, settle_b = valve.chamber_flows(
             opened, p_supply, s.p_a, s.p_b, time, joint, probe.back_a, probe.back_b
@@ -149,6 +168,8 @@ def rates(
         rate_b, stiff_b = fluid.softened(probe.capacity_b, rate_b, stiff_b)
         slope_a = -stiff_a * settle_a
         slope_b = -stiff_b * settle_b
+        if rare(joint) and pressures_are_driven(joint):
+            rate_a = rate_b = slope_a = slope_b = 0.0
         friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
         force = cylinder.pressure_force(s.p_a, s.p_b, joint) - friction
         supply_rate, slope_supply = supply.rate_of_change(s.supply, drawn + probe.flow, joint)

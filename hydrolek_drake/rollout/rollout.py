@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrolek_drake.compiled import read_only
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.physics.driven import is_driven
 from hydrolek_drake.physics.law import law_of
 from hydrolek_drake.physics.probes import NO_PROBE
 from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, as_usual, flat, position_of
@@ -70,16 +71,19 @@ def roll_out(
         longest_step: upper bound of the integration step [s].
         spool_steps: steps of the spool within one step of the rest.
         probes: inputs from outside the model, `probes.PROBES`: spacing of their samples [s], and the samples,
-            shape (k, 15), the first at the first of `times`; None for none.
+            shape (k, 15), the first at the first of `times`; None for none. What is recorded and drives the joint
+            comes by them too (`driven.INPUTS`).
         pull: reading and pressures are pulled to what was measured, as in an observer: time constant [s], and
             `kernel.PULLED` at `times`, NaN where there is no value, shape (n, 3); None for a free rollout.
         law: how inputs from outside follow from the state, rows of `law.LAW`, shape (k,), besides the law that the
             joint's record holds; None for none.
 
     Raises:
-        InputError: times that do not rise, or not as many command values as command times.
+        InputError: times that do not rise, not as many command values as command times, or a joint that a recording
+            drives without one.
     """
     check_times(command_times, command_values, times)
+    check_driven(joint, probes is not None)
     out = np.full((len(times), len(kernel.SIGNALS)), np.nan)
     times = read_only(times)
     start = np.full(STATE_SIZE, np.nan) if state is None else state.copy()
@@ -123,6 +127,19 @@ def with_own(law: np.ndarray | None, joint: np.ndarray) -> np.ndarray | None:
     if law is None or own is None:
         return own if law is None else law
     return np.concatenate([own, law])
+
+
+def check_driven(joints: np.ndarray, recorded: bool) -> None:
+    """Refuse to roll out a joint that a recording drives where there is none.
+
+    Raises:
+        InputError: it is driven, and nothing recorded is given.
+    """
+    if not recorded and is_driven(joints):
+        raise InputError(
+            "the rig is driven by recorded signals, which there are none of here; take 'driven_by' out of its "
+            "'recording' section"
+        )
 
 
 def check_times(command_times: np.ndarray, command_values: np.ndarray, times: np.ndarray) -> None:

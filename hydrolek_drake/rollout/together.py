@@ -8,7 +8,9 @@ import numpy as np
 
 from hydrolek_drake.compiled import read_only
 from hydrolek_drake.compiling import njit
+from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import hooks
+from hydrolek_drake.physics.driven import is_driven
 from hydrolek_drake.physics.law import LAW, law_of
 from hydrolek_drake.physics.records import as_usual
 from hydrolek_drake.physics.serial_arm import LINK_SIZE, moments_along, scratch
@@ -188,6 +190,11 @@ class JointsTogether:
     ) -> "RunTogether":
         """The rollout that `roll_out` makes, to be made beside others (`together_lanes`); arguments as there."""
         own = np.ascontiguousarray(records[self._places])
+        if is_driven(own):
+            raise InputError(
+                "joints that move together cannot be driven by recorded signals; keep one of them in the rig: "
+                f"'keep: [{self.joints[0]}]'"
+            )
         found = [law_of(own[i : i + 1]) for i in range(len(own))]
         changes = np.concatenate([[True], np.any(np.diff(command_values, axis=0) != 0.0, axis=1)])
         missing = (missing_number(own[i : i + 1]) for i in range(len(own)))

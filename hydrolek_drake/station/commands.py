@@ -9,10 +9,12 @@ import numpy as np
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings import read_recording, require
+from hydrolek_drake.replay.recorded_inputs import recorded_inputs, with_commands
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.keys import refuse_unknown
 from hydrolek_drake.station.fields import joints_of, number, quantity, required, signal, steps
 from hydrolek_drake.station.set_points import KIND, Controlled, parse_controlled
+from hydrolek_drake.systems.recorded import Recorded
 
 KINDS = ("constant", "steps", "random", "recording", KIND)
 _MOST_LEVELS = 100_000  # finer than any converter
@@ -97,10 +99,12 @@ class Playback:
     Attributes:
         times: [s], from 0, shape (m,).
         values: [V], shape (m, joints).
+        recorded: what is recorded in place of a part of the model, where the rig is driven by it.
     """
 
     times: np.ndarray
     values: np.ndarray
+    recorded: Recorded | None = None
 
     def table(self, duration: float, period: float, seed: int | None) -> tuple[np.ndarray, np.ndarray]:
         """See `Command`."""
@@ -176,14 +180,15 @@ def _random(raw: Mapping[str, Any], rig: Rig, rest: np.ndarray, operator: bool, 
 
 def _playback(path: Path, rig: Rig, where: str) -> Playback:
     try:
-        recording = read_recording(path, rig.columns, dead_time=rig.dead_time)
+        recording = with_commands(rig, read_recording(path, rig.columns, dead_time=rig.dead_time))
         keys = [f"{joint}.command" for joint in rig.joints]
         require(recording, keys, complete=keys, units=dict.fromkeys(keys, "V"))
+        inputs = [recorded_inputs(rig, joint, recording) for joint in rig.joints]
     except InputError as error:
         raise InputError(f"{where}.path: {error}") from None
-    return Playback(
-        recording.time - recording.time[0], np.column_stack([recording.signal(key) for key in keys])
-    )
+    values = np.column_stack([recording.signal(key) for key in keys])
+    recorded = Recorded(inputs) if rig.driven_by else None
+    return Playback(recording.time - recording.time[0], values, recorded)
 
 
 def _value(raw: Any, operator: bool, where: str) -> float:

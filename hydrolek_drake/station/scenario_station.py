@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hydrolek_drake.station.commands import Playback
 from hydrolek_drake.station.scenario import Scenario
 from hydrolek_drake.station.simulation import command_source
 from hydrolek_drake.station.station import Station, make_station
@@ -48,6 +49,12 @@ def scenario_station(
         rig, loop, operator = scenario.controlled.command(rig, scenario.duration, scenario.noise)
         command = loop.system
     station = make_station(
-        rig, sizes=scenario.sizes, command=command, operator=operator, noise=noise, visualize=visualize
+        rig,
+        sizes=scenario.sizes,
+        command=command,
+        operator=operator,
+        noise=noise,
+        recorded=scenario.command.recorded if isinstance(scenario.command, Playback) else None,
+        visualize=visualize,
     )
     return ScenarioStation(station, loop)

@@ -14,6 +14,7 @@ from hydrolek_drake.physics import cylinder
 from hydrolek_drake.physics.law import any_gives, law_of
 from hydrolek_drake.physics.probes import RAMP
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rollout.rollout import check_driven
 from hydrolek_drake.station.mechanics import Add, Mechanics, wire_mechanics
 from hydrolek_drake.station.plant import Payload, RigPlant, add_plant
 from hydrolek_drake.station.step_sizes import StepSizes, sizes_for
@@ -24,6 +25,7 @@ from hydrolek_drake.systems.four_way_valve import FourWayValve
 from hydrolek_drake.systems.operator_computer import FieldPoint, OperatorComputer
 from hydrolek_drake.systems.potentiometer import Potentiometer
 from hydrolek_drake.systems.proportional_amplifier import ProportionalAmplifier
+from hydrolek_drake.systems.recorded import Recorded
 from hydrolek_drake.systems.short_law import Outside, ShortLaw
 from hydrolek_drake.systems.solenoid_spool import SolenoidSpool
 from hydrolek_drake.systems.supply import Supply
@@ -62,6 +64,7 @@ def make_station(
     command: System | None = None,
     operator: bool = False,
     noise: np.random.Generator | None = None,
+    recorded: Recorded | None = None,
     visualize: Callable[[DiagramBuilder, RigPlant, Rig, np.ndarray], None] | None = None,
 ) -> Station:
     """Build the diagram of a rig.
@@ -74,13 +77,16 @@ def make_station(
             `command` (or `signal_commanded`) open.
         operator: whether commands are signals in percent that pass the operator computer and the field point.
         noise: source of sensor noise; None for ideal sensors.
+        recorded: what was recorded, where the rig is driven by it.
         visualize: called with builder, plant, scene graph, rig and records before the diagram is built.
 
     Raises:
-        InputError: electric and hydraulic joints in one rig, or no calibration where `operator` asks for it.
+        InputError: electric and hydraulic joints in one rig, no calibration where `operator` asks for it, or a rig that
+            is driven by recorded signals without them.
     """
     sizes = sizes or replace(sizes_for(rig), log_period=StepSizes.log_period)
     joints = rig.records()
+    check_driven(joints, recorded is not None)
     builder = DiagramBuilder()
     body = add_plant(builder, rig, joints, sizes.plant_step)
     systems: dict[str, System] = {}
@@ -101,7 +107,7 @@ def make_station(
     elif electric.any():
         raise InputError(f"rig {rig.name}: electric and hydraulic joints cannot share one rig")
     else:
-        _wire_hydraulics(builder, add, rig, joints, sizes, delay, parts)
+        _wire_hydraulics(builder, add, rig, joints, sizes, delay, parts, recorded)
     sensor = add(Potentiometer(joints, sizes.step, noise))
     builder.Connect(parts.sensed, sensor.motion)
     if command is not None and command.num_input_ports() > 0:
@@ -160,14 +166,15 @@ def _wire_hydraulics(
     sizes: StepSizes,
     delay: TransportDelay,
     parts: Mechanics,
+    recorded: Recorded | None,
 ) -> None:
     ahead = sizes.step if sizes.integrator == "symplectic_euler" and sizes.plant_step == 0.0 else 0.0
     amplifier = add(ProportionalAmplifier(joints, sizes.step))
-    spool = add(SolenoidSpool(joints, sizes.step, round(rig.value("integration.spool_steps"))))
+    spool = add(SolenoidSpool(joints, sizes.step, round(rig.value("integration.spool_steps")), recorded))
     valve, supply, actuator = (
         add(FourWayValve(joints)),
-        add(Supply(joints, sizes.step)),
-        add(Actuator(joints, ahead)),
+        add(Supply(joints, sizes.step, recorded)),
+        add(Actuator(joints, ahead, recorded)),
     )
     builder.Connect(_behind_the_ramp(builder, add, joints, sizes, delay.arriving), amplifier.voltage)
     builder.Connect(amplifier.current, spool.current)

@@ -9,8 +9,10 @@ from numba import njit
 from pydrake.systems.framework import BasicVector, Context, ContinuousState, LeafSystem
 
 from hydrolek_drake.physics.cylinder import friction_force, pressure_force, pressure_rates
+from hydrolek_drake.physics.driven import INPUTS
 from hydrolek_drake.physics.fluid import softened
 from hydrolek_drake.physics.probes import CAPACITY_A, CAPACITY_B, CYLINDER
+from hydrolek_drake.systems.recorded import Recorded
 from hydrolek_drake.systems.short_law import Outside
 
 
@@ -48,7 +50,7 @@ def _forces(
         joint = joints[i]
         friction, _ = friction_force(motion[i], motion[n + i], time, joint)
         p_a, p_b = pressure[i], pressure[n + i]
-        if ahead > 0.0:
+        if ahead > 0.0 and joint.driven.chamber_pressures <= 0.0:
             rate_a, rate_b, stiff_a, stiff_b = pressure_rates(
                 p_a, p_b, flow[i], flow[n + i], motion[i], motion[n + i], joint
             )
@@ -68,7 +70,7 @@ class Actuator(LeafSystem):
         out `rod_force` (n): positive pushes out [N]; moments [N m] for vane and motor.
     """
 
-    def __init__(self, joints: np.ndarray, ahead: float):
+    def __init__(self, joints: np.ndarray, ahead: float, recorded: Recorded | None = None):
         """Build for the joints' records.
 
         Args:
@@ -76,6 +78,7 @@ class Actuator(LeafSystem):
             ahead: the force belongs to the pressures this much later [s]. One step for an explicit Euler
                 integrator, which this turns into the symplectic one: stable for oil springs where the plain
                 one is not. Zero for any other integrator.
+            recorded: what was recorded, where it drives joints; pressures take the place of these.
         """
         super().__init__()
         self.set_name("actuator")
@@ -83,11 +86,18 @@ class Actuator(LeafSystem):
         n = len(joints)
         self._joints = joints
         self._no_flow = np.zeros(3 * n)
+        self._driven = joints["driven"]["chamber_pressures"] > 0.0
+        self._recorded = recorded if self._driven.any() else None
         self.flow = self.DeclareVectorInputPort("oil_flow", 3 * n)
         self.motion = self.DeclareVectorInputPort("rod_motion", 2 * n)
         self.outside = Outside(self, n)
         self._state = self.DeclareContinuousState(BasicVector(2 * n))
-        self.pressure = self.DeclareStateOutputPort("pressure", self._state)
+        if self._recorded:
+            self.pressure = self.DeclareVectorOutputPort(
+                "pressure", 2 * n, self._calc_pressure, {self.xc_ticket(), self.time_ticket()}
+            )
+        else:
+            self.pressure = self.DeclareStateOutputPort("pressure", self._state)
         self.force = self.DeclareVectorOutputPort(
             "rod_force",
             n,
@@ -104,7 +114,7 @@ class Actuator(LeafSystem):
     def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:
         """Continuity of the oil in both chambers."""
         rates = np.empty(2 * len(self._joints))
-        pressure = context.get_continuous_state_vector().CopyToVector()
+        pressure = self._pressures(context, 0.0)
         _rates(
             self._joints,
             pressure,
@@ -113,10 +123,25 @@ class Actuator(LeafSystem):
             self.outside.eval(context),
             rates,
         )
+        if self._recorded:
+            rates[np.tile(self._driven, 2)] = 0.0
         derivatives.SetFromVector(rates)
 
-    def _calc_force(self, context: Context, output: BasicVector) -> None:
+    def _pressures(self, context: Context, ahead: float) -> np.ndarray:
+        """Pressures of the chambers, those that are recorded so much later [s]. # (2n,)."""
         pressure = context.get_continuous_state_vector().CopyToVector()
+        if self._recorded:
+            rows = self._recorded.at(context.get_time() + ahead)
+            both = np.concatenate([rows[:, place] for place in INPUTS["chamber_pressures"]])
+            driven = np.tile(self._driven, 2)
+            pressure[driven] = both[driven]
+        return pressure
+
+    def _calc_pressure(self, context: Context, output: BasicVector) -> None:
+        output.SetFromVector(self._pressures(context, 0.0))
+
+    def _calc_force(self, context: Context, output: BasicVector) -> None:
+        pressure = self._pressures(context, self._ahead)
         flow = self.flow.Eval(context) if self._ahead > 0.0 else self._no_flow
         motion = self.motion.Eval(context)
         force = output.get_mutable_value()

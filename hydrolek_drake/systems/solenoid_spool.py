@@ -4,10 +4,12 @@ import numpy as np
 from numba import njit
 from pydrake.systems.framework import Context, DiscreteValues, LeafSystem
 
+from hydrolek_drake.physics.driven import INPUTS
 from hydrolek_drake.physics.law import any_gives
 from hydrolek_drake.physics.probes import FLOW_FORCE, PROBES
 from hydrolek_drake.physics.solenoid import advance
 from hydrolek_drake.physics.valve import flow_forces
+from hydrolek_drake.systems.recorded import Recorded
 from hydrolek_drake.systems.short_law import Outside
 from hydrolek_drake.systems.transport_delay import whole_steps_and_rest
 
@@ -70,8 +72,15 @@ class SolenoidSpool(LeafSystem):
         out `spool_position` (n): positive opens P to A [m].
     """
 
-    def __init__(self, joints: np.ndarray, step: float, substeps: int):
-        """Build for the joints' records, the diagram's step [s] and the spool's steps within it."""
+    def __init__(self, joints: np.ndarray, step: float, substeps: int, recorded: Recorded | None = None):
+        """Build.
+
+        Args:
+            joints: their records.
+            step: of the diagram [s].
+            substeps: steps of the spool within it.
+            recorded: what was recorded, where it drives joints; a spool's position takes the place of this one's.
+        """
         super().__init__()
         self.set_name("solenoid_spool")
         n = len(joints)
@@ -86,6 +95,8 @@ class SolenoidSpool(LeafSystem):
         self.feels_oil = bool(np.any(joints["valve"]["flow_force"] > 0.0)) or any_gives(joints, FLOW_FORCE)
         self._unfelt = np.zeros(2 * n), 0.0, np.zeros((n, len(PROBES)))
         # one group of positions, velocities and currents: each that an update asks for costs as much as its work
+        self._driven = joints["driven"]["spool_position"] > 0.0
+        self._recorded = recorded if self._driven.any() else None
         self._state = self.DeclareDiscreteState(np.concatenate([np.zeros(2 * n), np.full(2 * n, np.nan)]))
         self._mean = self.DeclareDiscreteState(np.zeros(n))
         self.DeclarePeriodicDiscreteUpdateEvent(step, 0.0, self._update)
@@ -103,6 +114,9 @@ class SolenoidSpool(LeafSystem):
             values.get_mutable_value(self._mean),
             *self._oil(context),
         )
+        if self._recorded:
+            middle = self._recorded.at(context.get_time() + 0.5 * self._step)[:, INPUTS["spool_position"][0]]
+            values.get_mutable_value(self._mean)[self._driven] = middle[self._driven]
 
     def _oil(self, context: Context) -> tuple[np.ndarray, float, np.ndarray]:
         """Pressures of the chambers and of the supply, and what laws add; each that is asked for costs time."""

@@ -6,6 +6,7 @@ from pydrake.systems.framework import BasicVector, Context, ContinuousState, Dis
 
 from hydrolek_drake.physics.probes import SUPPLY
 from hydrolek_drake.physics.supply import PUMP, at_rest, rate_of_change, relieved_with_play, supply_pressure
+from hydrolek_drake.systems.recorded import Recorded
 from hydrolek_drake.systems.short_law import Outside
 
 
@@ -58,18 +59,21 @@ class Supply(LeafSystem):
         out `supply_pressure` (1) [Pa].
     """
 
-    def __init__(self, joints: np.ndarray, step: float):
+    def __init__(self, joints: np.ndarray, step: float, recorded: Recorded | None = None):
         """Build.
 
         Args:
             joints: their records; the supply's own parameters are those of the first joint.
             step: of the diagram [s].
+            recorded: what was recorded, where it drives joints; a supply pressure takes the place of this one's.
         """
         super().__init__()
         self.set_name("supply")
         self._joints = joints
         self._step = step
         self._n = len(joints)
+        driven = bool(joints["driven"]["supply_pressure"][0] > 0.0)
+        self._recorded = recorded if driven else None
         self.flow = self.DeclareVectorInputPort("oil_flow", 3 * self._n)
         self.available = self.DeclareVectorInputPort("pressure_available", 1)
         self.outside = Outside(self, self._n)
@@ -89,7 +93,8 @@ class Supply(LeafSystem):
                 self.xd_ticket() if self._pump else self.xc_ticket(),
                 self.available.ticket(),
                 self.outside.port.ticket(),
-            },
+            }
+            | ({self.time_ticket()} if self._recorded else set()),
         )
 
     def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:
@@ -113,4 +118,9 @@ class Supply(LeafSystem):
             remembered = context.get_continuous_state_vector().GetAtIndex(0)
         share = self.available.Eval(context)[0] if self.available.HasValue(context) else 1.0
         added = float(self.outside.eval(context)[:, SUPPLY].sum())
-        output.SetAtIndex(0, _pressure(self._joints, remembered, share) + added)
+        if self._recorded:
+            tank = float(self._joints["supply"]["tank_pressure"][0])
+            own = tank + share * (float(self._recorded.at(context.get_time())[0, SUPPLY]) - tank)
+        else:
+            own = _pressure(self._joints, remembered, share)
+        output.SetAtIndex(0, own + added)

@@ -1,6 +1,7 @@
 """Recordings in each format: good files of several kinds, and damage to their content and to their bytes."""
 
 import functools
+import importlib.util
 import io
 import sqlite3
 import tempfile
@@ -272,7 +273,7 @@ def _mat_files() -> list[bytes]:
         _mat_bytes({"log": log}),
         _mat_bytes(odd),
         _mat_bytes({"log": log}, compressed=True),
-        _timetable("v7"),
+        *_timetables("v7"),
     ]
 
 
@@ -311,7 +312,7 @@ def _hdf5_files() -> list[bytes]:
         file["time_s"].attrs["MATLAB_class"] = np.bytes_("double")
     stream.seek(0)
     stream.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(116) + bytes(8) + b"\x00\x02IM")
-    return [stream.getvalue(), _hdf5_user_block(plain), _timetable("v7.3")]
+    return [stream.getvalue(), _hdf5_user_block(plain), *_timetables("v7.3")]
 
 
 def _hdf5_user_block(columns: dict[str, Any]) -> bytes:
@@ -468,8 +469,10 @@ def _mdf(rng: np.random.Generator) -> Input:
     return Input("run.mf4", damaged(files[rng.integers(len(files))], files, rng))
 
 
-def _timetable(version: str) -> bytes:
-    """A file of MATLAB with a timetable."""
+def _timetables(version: str) -> list[bytes]:
+    """A file of MATLAB with a timetable; none where Python is too old for the package that writes it."""
+    if importlib.util.find_spec("matio") is None:
+        return []
     import matio
     import pandas
 
@@ -480,7 +483,7 @@ def _timetable(version: str) -> bytes:
         warnings.simplefilter("ignore")
         path = Path(place) / "run.mat"
         matio.save_to_mat(str(path), {"log": table}, version=version)
-        return path.read_bytes()
+        return [path.read_bytes()]
 
 
 def _read(path: Path) -> str:

@@ -5,7 +5,6 @@ import subprocess
 import sys
 
 import asammdf
-import matio
 import numpy as np
 import pandas as pd
 import pytest
@@ -13,6 +12,7 @@ import pytest
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings import read_recording
 
+matio = pytest.importorskip("matio", reason="mat-io needs Python 3.11")
 TIME = 0.01 * np.arange(100)
 
 

@@ -10,6 +10,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.objective.norms import segment_edges
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.recordings import Recording, require
+from hydrolek_drake.replay.recorded_inputs import recorded_inputs, with_commands
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.lanes import roll_out_lanes
 from hydrolek_drake.rollout.run import Run
@@ -36,6 +37,7 @@ class Response:
         time: [s]. # (n,)
         command: [V]. # (n,)
         segments: equal parts of the time.
+        recorded: what is recorded in place of a part of the model; None for nothing.
     """
 
     parameters: ParameterSet
@@ -45,6 +47,7 @@ class Response:
     time: np.ndarray
     command: np.ndarray
     segments: int
+    recorded: tuple[float, np.ndarray] | None = None
 
     def __call__(self, unit: np.ndarray) -> np.ndarray:
         """Reading, NaN after a divergence. # (n,)."""
@@ -62,6 +65,7 @@ class Response:
                 self.time,
                 longest_step=rig.value("integration.longest_step"),
                 spool_steps=int(rig.value("integration.spool_steps")),
+                probes=self.recorded,
             )
             for record in records
         ]
@@ -88,6 +92,7 @@ def response_of(
     Raises:
         InputError: no command in the recording, a constant one, or too many segments.
     """
+    recorded = None
     if recording is None:
         time = np.arange(round(DURATION / SAMPLE)) * SAMPLE
         limit = rig.value(f"joints.{joint}.command.limit")
@@ -95,13 +100,14 @@ def response_of(
         levels = rng.uniform(-1.0, 1.0, -(-time.size // held))
         command = np.repeat(limit * levels**3, held)[: time.size]  # more small voltages than large ones
     else:
-        key = f"{joint}.command"
+        key, recording = f"{joint}.command", with_commands(rig, recording)
         require(recording, [], complete=[key], units={key: "V"})
         time, command = (
             np.asarray(recording.time, dtype=float),
             np.asarray(recording.signal(key), dtype=float),
         )
-        if np.ptp(command) == 0.0:
+        recorded = recorded_inputs(rig, joint, recording)
+        if np.ptp(command) == 0.0 and rig.needs_command(joint):
             raise InputError(f"{recording.source}: {key} is constant, so no parameter shows")
     if not 1 <= segments <= time.size:
         raise InputError(f"--segments {segments}: choose 1 to {time.size}")
@@ -114,4 +120,5 @@ def response_of(
         time=time,
         command=np.ascontiguousarray(command),
         segments=segments,
+        recorded=recorded,
     )

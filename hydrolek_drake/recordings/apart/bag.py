@@ -40,6 +40,11 @@ class _Topic(NamedTuple):
     connections: list[Any]
 
 
+def load(asked: Asked) -> None:
+    """Load the package that reads."""
+    import rosbags.highlevel  # noqa: F401
+
+
 def read(path: Path, asked: Asked) -> Iterator[Found]:
     """Fields of all topics of a bag: a folder, or a file of MCAP, sqlite3 or ROS 1.
 

@@ -1,7 +1,7 @@
 """The process in which a reader of this folder runs: `python -m hydrolek_drake.recordings.apart.child`.
 
 Arguments are the reader's module, the path, the seconds that it may take, and what is asked in JSON. A reader
-is a function `read(path, asked)` that yields `Found` and may raise `InputError` with what is wrong, without
+has a function `load(asked)`, and `read(path, asked)`, which yields `Found` and may raise `InputError` without
 the file's name.
 """
 
@@ -30,14 +30,15 @@ measured packs better."""
 def main() -> None:
     """Read the file that the command line names and write its columns to standard output as .npz."""
     reader, path, seconds, text = sys.argv[1:]
-    signal.alarm(int(seconds))  # ends this process, whatever compiled code is at
     out = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what packages print must not come between
     _limit_memory(Path(path))
     options = json.loads(text)
     asked = Asked(frozenset(options.pop("mapped")), options)
+    module = import_module(f"hydrolek_drake.recordings.apart.{reader}")
+    module.load(asked)
+    signal.alarm(int(seconds))  # ends this process, whatever compiled code is at
     try:
-        module = import_module(f"hydrolek_drake.recordings.apart.{reader}")
         found = list(module.read(Path(path), asked))
     except InputError as error:
         print(" ".join(str(error).split()), file=sys.stderr)

@@ -13,6 +13,14 @@ from hydrolek_drake.recordings.clock import seconds_of
 _OBJECTS = "objects"
 
 
+def load(asked: Asked) -> None:
+    """Load the package that reads."""
+    if asked.options[_OBJECTS]:
+        import matio  # noqa: F401
+    else:
+        import scipy.io  # noqa: F401
+
+
 def read(path: Path, asked: Asked) -> Iterator[Found]:
     """Every variable that is a row or a column; fields of structs and columns of tables as `struct.field`.
 

@@ -10,6 +10,11 @@ import numpy as np
 from hydrolek_drake.recordings.apart.found import Asked, Found, names_with_unit
 
 
+def load(asked: Asked) -> None:
+    """Load the package that reads."""
+    import asammdf  # noqa: F401
+
+
 def read(path: Path, asked: Asked) -> Iterator[Found]:
     """Channels of all groups that are asked for, and the names of the others.
 

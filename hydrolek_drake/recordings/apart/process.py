@@ -72,6 +72,7 @@ def columns_apart(
     with tempfile.TemporaryDirectory() as scratch:
         environment = os.environ | {
             "PYTHONPATH": os.pathsep.join(place or os.getcwd() for place in sys.path),
+            "PYTHONSAFEPATH": "1",
             "OPENBLAS_NUM_THREADS": "1",
             "TMPDIR": scratch,  # what is unpacked there goes with it, even where the process is ended
         }
