@@ -11,7 +11,7 @@ from hydrolek_drake.recordings.clock import seconds_of
 from hydrolek_drake.recordings.finding import Finding
 from hydrolek_drake.recordings.table import Column, Table
 
-_BYTES_PER_S = 3e5
+_BYTES_PER_S = 1e5
 """What is read of a bag in a second at least; messages are decoded one by one, of 0.1 to 1 kB each."""
 
 _RATE = 0.01

@@ -5,11 +5,14 @@ has a function `load(asked)`, and `read(path, asked)`, which yields `Found` and 
 the file's name.
 """
 
+import contextlib
 import io
 import json
+import math
 import os
-import signal
+import resource
 import sys
+import time
 from importlib import import_module
 from pathlib import Path
 
@@ -32,12 +35,14 @@ def main() -> None:
     reader, path, seconds, text = sys.argv[1:]
     out = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what packages print must not come between
-    _limit_memory(Path(path))
+    _limit_size(Path(path))
     options = json.loads(text)
     asked = Asked(frozenset(options.pop("mapped")), options)
     module = import_module(f"hydrolek_drake.recordings.apart.{reader}")
     module.load(asked)
-    signal.alarm(int(seconds))  # ends this process, whatever compiled code is at
+    _limit(
+        resource.RLIMIT_CPU, math.ceil(time.process_time()) + int(seconds)
+    )  # ends whatever compiled code is at
     try:
         found = list(module.read(Path(path), asked))
     except InputError as error:
@@ -53,14 +58,16 @@ def main() -> None:
     out.close()
 
 
-def _limit_memory(path: Path) -> None:
-    import resource
-
+def _limit_size(path: Path) -> None:
     files = [path] if path.is_file() else [each for each in path.iterdir() if each.is_file()]
     size = sum(each.stat().st_size for each in files)
     for kind, allowed in ((resource.RLIMIT_AS, MEMORY), (resource.RLIMIT_FSIZE, UNPACKED)):
-        _, hard = resource.getrlimit(kind)
-        most = allowed + PER_BYTE * size
+        _limit(kind, allowed + PER_BYTE * size)
+
+
+def _limit(kind: int, most: int) -> None:
+    _, hard = resource.getrlimit(kind)
+    with contextlib.suppress(ValueError, OSError):  # not every system has every limit
         resource.setrlimit(kind, (most if hard < 0 else min(most, hard), hard))
 
 
