@@ -10,8 +10,8 @@ from hydrolek_drake.checking.steps import differs
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import SUPPLY_KEY, driven_joints, measured_position, position_key
-from hydrolek_drake.replay.recorded_inputs import recorded_inputs, with_commands
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rigs.recorded_inputs import recorded_inputs, with_commands
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.rollout.rest import rest_state_at_reading
 from hydrolek_drake.rollout.rollout import Signals

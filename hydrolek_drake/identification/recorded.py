@@ -12,8 +12,8 @@ from hydrolek_drake.identification.start import resting_position
 from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import driven_joints, measured_position, position_key
-from hydrolek_drake.replay.recorded_inputs import recorded_inputs, with_commands
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rigs.recorded_inputs import recorded_inputs, with_commands
 
 CONSTANT = 1e-12
 """A command that varies by less than this fraction of its size says nothing about the machine."""

@@ -19,8 +19,8 @@ from hydrolek_drake.replay.readings import (
     position_key,
     supply_pair,
 )
-from hydrolek_drake.replay.recorded_inputs import recorded_inputs, with_commands
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rigs.recorded_inputs import recorded_inputs, with_commands
 
 START_SAMPLES = 5
 """Samples of the recorded position whose median is the start; odd, so that the median is a sample."""
