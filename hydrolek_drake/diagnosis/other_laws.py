@@ -27,7 +27,6 @@ from hydrolek_drake.diagnosis.law_scan import STEADY
 from hydrolek_drake.diagnosis.law_search import promising
 from hydrolek_drake.diagnosis.law_told_anew import told_anew
 from hydrolek_drake.diagnosis.laws import BUILT, TERMS
-from hydrolek_drake.diagnosis.lost_commands import lost_commands
 from hydrolek_drake.diagnosis.unlisted import Asked, best_of
 from hydrolek_drake.diagnosis.weighing import weighted_by
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
@@ -146,10 +145,7 @@ def _lost(
     """Commands that got lost, if that explains the data: windows could make up for a little of much."""
     if left.fit.over_noise <= NEAR:
         return None
-    asked = Asked.of(bench, left, held_out, scales)
-    needed = MOST_LOST * (left.fit.objective - left.fit.counted)
-    lost = lost_commands(bench, left, held_out, asked.span, asked.step, needed, EXPLAINED)
-    return lost if lost is not None and predicting(lost) else None
+    return None
 
 
 def _better_than_promised(bench: Workbench, asked: Asked, laws: Sequence[Law], above: float) -> list[Law]:

@@ -9,6 +9,7 @@ from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, AT_NOISE, FAR, HOPELESS
 from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.settling import settled_together
 from hydrolek_drake.diagnosis.structures.as_rig import rig_of
+from hydrolek_drake.diagnosis.structures.lost_windows import arrivals
 from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.channel import faithful
@@ -41,7 +42,8 @@ def weighted_by(
     if hypothesis.fit.over_noise < FAR and any(e.others is not None for e in experiments):
         experiments = felt_together(rig_of(bench.rig, hypothesis), experiments)
     better = []
-    for experiment in experiments:
+    arrived = arrivals(hypothesis.effects, hypothesis.values, experiments)
+    for recorded, experiment in zip(experiments, arrived, strict=True):
         coarse = experiment.simulate(records, bench.fine).signals
         fine = experiment.simulate(records, 0.5 * bench.fine).signals
         alone = None
@@ -64,7 +66,7 @@ def weighted_by(
                 )
             )
         response = experiment.responding(records, 0.5 * bench.fine, fine)
-        better.append(replace(experiment, channels=tuple(channels), start_response=response))
+        better.append(replace(recorded, channels=tuple(channels), start_response=response))
     return better
 
 

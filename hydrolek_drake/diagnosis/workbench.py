@@ -11,6 +11,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.effort import GLANCE_S
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm, WithTerms
+from hydrolek_drake.diagnosis.structures.lost_windows import LostProblem, LostWindows, WithWindows
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit, fit_from
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
@@ -141,12 +142,14 @@ class Workbench:
         key = frozenset(own)  # with their ranges, which may be widened
         if key not in self._sets:
             terms = [c for c in effects if isinstance(c, LawTerm)]
-            of_rig = [p for c in effects if not isinstance(c, LawTerm) for p in c.free]
-            self._sets[key] = (
+            lost = [c for c in effects if isinstance(c, LostWindows)]
+            of_rig = [p for c in effects if not isinstance(c, LawTerm | LostWindows) for p in c.free]
+            found = (
                 WithTerms(self.rig, [*self.nominal, *of_rig], terms)
                 if terms
-                else ParameterSet(self.rig, [*self.nominal, *own])
+                else ParameterSet(self.rig, [*self.nominal, *of_rig])
             )
+            self._sets[key] = WithWindows(found, lost) if lost else found
         return self._sets[key]
 
     def problem(
@@ -162,6 +165,8 @@ class Workbench:
         parameters = self.parameters(effects)
         prior = np.full(len(parameters), np.inf)
         prior[: len(self.nominal)] = SPREAD
+        if kind is Problem and isinstance(parameters, WithWindows):
+            kind = LostProblem
         return kind(
             parameters,
             experiments or self.training,

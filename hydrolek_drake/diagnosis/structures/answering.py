@@ -2,24 +2,24 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
-from hydrolek_drake.diagnosis.attempt import PREDICTED, Known
+from hydrolek_drake.diagnosis.attempt import Known
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.diagnosis.conclusion import EXPLAINED, POSSIBLE, Conclusion, conclude
-from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, COARSE, MORE_AHEAD
+from hydrolek_drake.diagnosis.conclusion import POSSIBLE, Conclusion, conclude
+from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, MORE_AHEAD
 from hydrolek_drake.diagnosis.evidence import judge_as_fitted
 from hydrolek_drake.diagnosis.inquiry import BY_BOTH, INTERRUPTED, Answer
 from hydrolek_drake.diagnosis.judged import Judged
-from hydrolek_drake.diagnosis.law_choice import alone
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
-from hydrolek_drake.diagnosis.laws import Span
-from hydrolek_drake.diagnosis.locating.terms_for import Offer, estimates_for, terms_for
+from hydrolek_drake.diagnosis.locating.terms_for import estimates_for, terms_for
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
-from hydrolek_drake.diagnosis.lost_commands import lost_commands
+from hydrolek_drake.diagnosis.lost_commands import lost_of
 from hydrolek_drake.diagnosis.splitting import mixed
 from hydrolek_drake.diagnosis.structures.cost import Tried
 from hydrolek_drake.diagnosis.structures.found_law import law_of, likeliest_side, terms_of
 from hydrolek_drake.diagnosis.structures.judging import judge_structures
+from hydrolek_drake.diagnosis.structures.lost_search import lost_in
 from hydrolek_drake.diagnosis.structures.searching import search_structures
 from hydrolek_drake.diagnosis.structures.settings import Settings
 from hydrolek_drake.diagnosis.weighing import weighted_by
@@ -92,7 +92,7 @@ class Inquiry:
                 self.say,
                 self.settings,
                 self.cores,
-                _Unlisted(self.scales, held_out, self.cores) if self.scales else None,
+                _Unlisted(self.scales, self.cores) if self.scales else None,
             )
         except KeyboardInterrupt:
             if not found.hypotheses:
@@ -116,9 +116,10 @@ class Inquiry:
         """The conclusion, and the law of the best structure, if it has one."""
         best = likeliest_side(known.judged)
         terms = terms_of(best.hypothesis)
-        lost = known.found.law
-        if lost is not None and lost.fit.over_noise < best.hypothesis.fit.over_noise:
-            return alone(known.conclusion, known.judged, lost), lost
+        if lost_in(best.hypothesis) is not None:
+            lost = lost_of(known.bench, best, known.held_out, self.settings, self.cores)
+            told = replace(known.conclusion, verdict="unlisted_physics", best=_beside(known, best), groups=())
+            return told, lost
         if not terms:
             return known.conclusion, None
         stages = {terms[0].input.stage}
@@ -129,7 +130,7 @@ class Inquiry:
             if theirs and possible and theirs[0].input.stage not in stages:
                 stages.add(theirs[0].input.stage)
                 rivals.append(theirs[0].input.stage)
-        law = law_of(known.bench, best, known.held_out, rivals, self.cores)
+        law = law_of(known.bench, best, known.held_out, rivals, self.settings, self.cores)
         named = _beside(known, best)
         groups = (tuple(f"unlisted.{s}" for s in (terms[0].input.stage, *rivals)),) if rivals else ()
         return replace(known.conclusion, verdict="unlisted_physics", best=named, groups=groups), law
@@ -140,15 +141,10 @@ class _Unlisted:
     """Physics in no list; see `searching.Unlisted`."""
 
     scales: Mapping[str, Scales]
-    held_out: Sequence[Experiment]
     cores: int
 
-    def offer(self, bench: Workbench, parent: Hypothesis) -> Offer:
+    def offer(self, bench: Workbench, parent: Hypothesis) -> Sequence[Any]:
         return terms_for(bench, parent, self.scales, self.cores)
-
-    def lost(self, bench: Workbench, parent: Hypothesis, span: Span) -> FoundLaw | None:
-        step = bench.coarsest(parent, parent.fit.over_noise, COARSE)
-        return lost_commands(bench, parent, self.held_out, span, step, 0.0, EXPLAINED)
 
 
 def _beside(known: Known, best: Judged) -> Judged:
@@ -164,7 +160,7 @@ def _astray(known: Known) -> bool:
     """Whether the best structure explains the training data and goes astray on the held-out ones."""
     best = known.judged[0]
     at_noise = best.hypothesis.fit.over_noise <= MORE_AHEAD
-    return at_noise and best.over_noise > PREDICTED
+    return at_noise and best.over_noise > MORE_AHEAD
 
 
 def _begun_from(found: Tried) -> Tried:
