@@ -82,25 +82,6 @@ class Candidate:
         """Whether its size, among fitted values, is beyond what the model's own equations simplify."""
         return self.beneath == 0.0 or abs(values[self.size_path] - self.effect.neutral_size) > self.beneath
 
-    def taken_over(self, other: "Candidate", values: dict[str, float]) -> dict[str, float]:
-        """Full path -> value of this effect's parameters that another one, fitted, also has; within the ranges."""
-        known = {free.path.rpartition(".")[2]: values[free.path] for free in other.free}
-        own = {free: known.get(free.path.rpartition(".")[2]) for free in self.free}
-        return {
-            free.path: min(max(value, free.lower), free.upper)
-            for free, value in own.items()
-            if value is not None
-        }
-
-    def shifted(self, values: dict[str, float]) -> dict[str, float]:
-        """Full path -> value of the joint's own parameters that do what this effect does, see `Effect.shifts`."""
-        return {
-            f"joints.{self.joint}.{path}": values[f"joints.{self.joint}.{path}"]
-            + sign * values[f"{self.path}.{name}"]
-            for path, (name, sign) in self.effect.shifts.items()
-            if f"joints.{self.joint}.{path}" in values
-        }
-
     def is_special_case_of(self, other: "Candidate") -> bool:
         """Whether another effect at the same joint contains this one."""
         return isinstance(other, Candidate) and self.joint == other.joint and self.id in other.effect.contains

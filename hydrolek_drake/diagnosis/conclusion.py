@@ -22,10 +22,6 @@ EXPLAINED_AHEAD = 1.5
 """The same on held-out data, where the fitted parameters' own uncertainty adds to the noise."""
 
 
-MATERIAL = 0.5
-"""Known effects are named beside physics in no list if they take this share of the squared error at least."""
-
-
 @dataclass(frozen=True)
 class Conclusion:
     """What the data say.
@@ -43,30 +39,18 @@ class Conclusion:
     groups: tuple[tuple[str, ...], ...]
 
 
-def conclude(judged: Sequence[Judged], *, accounted: bool = False) -> Conclusion:
-    """The verdict that judged hypotheses allow, the most probable first.
-
-    Args:
-        judged: hypotheses.
-        accounted: whether a model also explains held-out data that its parameters' uncertainty accounts for. Where a
-            joint stuck by a hair's breadth, values that the training data do not tell from the fitted ones decide.
-    """
+def conclude(judged: Sequence[Judged]) -> Conclusion:
+    """The verdict that judged hypotheses allow, the most probable first."""
     best = judged[0]
     paths = {path for j in judged for path in j.hypothesis.ids}
     probability = {path: probability_of(path, judged) for path in paths}
-    explained = _explains(best, accounted=accounted)
     groups = _groups(best, judged)
-    if not explained:
+    if best.hypothesis.fit.over_noise > EXPLAINED or best.over_noise > EXPLAINED_AHEAD:
         return Conclusion("unlisted_physics", best, probability, groups if best.hypothesis.effects else ())
     if not best.hypothesis.effects:
         return Conclusion("none" if best.probability >= SURE else "ambiguous", best, probability, groups)
     verdict = "missing_physics" if best.probability >= SURE or not groups else "ambiguous"
     return Conclusion(verdict, best, probability, groups)
-
-
-def _explains(judged: Judged, *, accounted: bool) -> bool:
-    ahead = judged.over_noise <= EXPLAINED_AHEAD or (accounted and judged.unaccounted <= EXPLAINED)
-    return judged.hypothesis.fit.over_noise <= EXPLAINED and ahead
 
 
 def _groups(best: Judged, judged: Sequence[Judged]) -> tuple[tuple[str, ...], ...]:

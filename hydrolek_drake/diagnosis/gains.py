@@ -1,6 +1,5 @@
-"""What a further effect must bring before it is believed, and what a model costs."""
+"""What a further effect must bring before it is believed."""
 
-from hydrolek_drake.diagnosis.workbench import Hypothesis
 from hydrolek_drake.identification.least_squares import Fit
 
 GAIN_NEEDED = 12.0
@@ -8,6 +7,9 @@ GAIN_NEEDED = 12.0
 
 PROMISING = 0.5
 """An effect is tried if it promises this share of what it must bring: the sizes at which it was tried may be wrong."""
+
+VISIBLE = 16.0
+"""Gain at which an effect would have been seen: four standard deviations of its size."""
 
 FIDELITY = 0.004
 """Fall of the squared residuals, as a share of the values, below which an effect is not told from what every
@@ -20,9 +22,3 @@ def gain_needed(fit: Fit) -> float:
     It is more than chance would bring, and more than what is known but roughly may leave.
     """
     return max(GAIN_NEEDED, FIDELITY * fit.counted, fit.unsure)
-
-
-def cost_of(hypothesis: Hypothesis) -> float:
-    """Squared residuals plus what chance alone would gain by so many parameters, chosen among many."""
-    gain = gain_needed(hypothesis.fit)
-    return hypothesis.fit.objective + gain * len(hypothesis.effects) + 2.0 * hypothesis.extra

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.effort import NOISE_KNOWN
-from hydrolek_drake.diagnosis.gains import FIDELITY, cost_of
+from hydrolek_drake.diagnosis.gains import FIDELITY
+from hydrolek_drake.diagnosis.structures.cost import cost
 from hydrolek_drake.diagnosis.workbench import Hypothesis
 
 EFFECT_COST = 4.5
@@ -33,7 +34,6 @@ class Judged:
         probability: among all that were judged.
         chi_squared: r' (I + J S J')^-1 r; None for r' r.
         spread: log det (I + J S J').
-        cost: of the training data; None for `gains.cost_of`.
     """
 
     hypothesis: Hypothesis
@@ -42,7 +42,6 @@ class Judged:
     probability: float = math.nan
     chi_squared: float | None = None
     spread: float = 0.0
-    cost: float | None = None
 
     @property
     def over_noise(self) -> float:
@@ -66,8 +65,7 @@ class Judged:
         """Log-likelihood of held-out and training data, less the cost of its effects and parameters in each."""
         effect = max(EFFECT_COST, 0.5 * FIDELITY * self.held_out_counted)
         added = effect * len(self.hypothesis.effects) + PARAMETER_COST * self.hypothesis.extra
-        trained = cost_of(self.hypothesis) if self.cost is None else self.cost
-        return -self.half_chi_squared - 0.5 * self.spread - added - 0.5 * trained
+        return -self.half_chi_squared - 0.5 * self.spread - added - 0.5 * cost(self.hypothesis)
 
     @property
     def half_chi_squared(self) -> float:
@@ -88,21 +86,11 @@ def with_probabilities(judged: Sequence[Judged]) -> list[Judged]:
 
 
 def dispersion(best: Judged) -> float:
-    """How much flatter than for pure noise the likelihood is: tau, from the best model's excess."""
+    """How much flatter than for pure noise the likelihood is: what the best model leaves beyond it, a parameter."""
     fit = best.hypothesis.fit
     counted = best.held_out_counted + fit.counted
-    return flatter(2.0 * best.half_chi_squared + fit.chi_squared, counted, len(fit.unit))
-
-
-def flatter(left: float, counted: int, parameters: int) -> float:
-    """How much flatter than for pure noise a likelihood is, from what is left beyond the noise for each parameter.
-
-    Args:
-        left: squared residuals in units of the noise.
-        counted: how many of them count.
-        parameters: that were fitted.
-    """
-    return max(1.0, (left - (1.0 + NOISE_KNOWN) ** 2 * counted) / parameters)
+    left = 2.0 * best.half_chi_squared + fit.chi_squared
+    return max(1.0, (left - (1.0 + NOISE_KNOWN) ** 2 * counted) / len(fit.unit))
 
 
 def probability_of(effect_path: str, judged: Sequence[Judged]) -> float:

@@ -92,9 +92,6 @@ TERMS = (
     Term(("command", "amplifier", *_FLOWS), other="|x|"),
 )
 
-BUILT = (Term(("command", "amplifier", "valve", "fluid")),)
-"""How a machine is built does not change: the constant, at the stages that have inputs which say so."""
-
 
 @dataclass(frozen=True)
 class Reach:

@@ -4,11 +4,11 @@ A position integrates what goes wrong, so its error is large long after the caus
 therefore where the difference between the model with and without the effect grows.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.law_at_a_joint import left_at
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -135,6 +135,24 @@ def locate(
         for place, share in zip(found, shares_, strict=True)
     ]
     return tuple(sorted(located, key=lambda place: -place.share))
+
+
+def left_at(joint: str, residuals: np.ndarray, experiments: Sequence[Experiment]) -> tuple[float, int]:
+    """Squared residuals of a joint's own signals, and how many values count there.
+
+    Args:
+        joint: its name.
+        residuals: of all experiments, in units of the noise. # (values,)
+        experiments: in their order.
+    """
+    place, squares, counted = 0, 0.0, 0
+    for experiment in experiments:
+        size = len(experiment.channels) * experiment.time.size
+        if experiment.joint == joint:
+            own = residuals[place : place + size]
+            squares, counted = squares + float(own @ own), counted + experiment.counted
+        place += size
+    return squares, counted
 
 
 def _difference(experiment: Experiment, rig: Rig, without: Rig) -> tuple[Experiment, Signals, np.ndarray]:

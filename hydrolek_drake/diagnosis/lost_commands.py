@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.fitting.projection import Across
 from hydrolek_drake.diagnosis.intervals import intervals_of
 from hydrolek_drake.diagnosis.law_inputs import Input
 from hydrolek_drake.diagnosis.law_problem import FoundLaw, Law
@@ -26,7 +27,6 @@ from hydrolek_drake.diagnosis.lost_windows import (
     recording_of,
     too_much,
 )
-from hydrolek_drake.diagnosis.score import Across
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import ParameterSet
@@ -99,10 +99,9 @@ def lost_commands(
     held_out: Sequence[Experiment],
     span: Span,
     step: float,
-    needed: float,
     most: float = math.inf,
 ) -> LostCommands | None:
-    """Windows in which commands were lost, fitted, or None if they do not promise to explain what a model leaves.
+    """Windows in which commands were lost, fitted, or None if they do not explain what a model leaves.
 
     Args:
         bench: training data of one joint.
@@ -110,7 +109,6 @@ def lost_commands(
         held_out: data in which windows are found and nothing else is fitted.
         span: what laws are told in.
         step: of the integration while windows are looked for [s].
-        needed: fall of the squared residuals that the windows must promise together.
         most: over the noise, that they may leave of the training data; else none are looked for in the held-out data.
     """
     parameters = bench.parameters(left.effects)
@@ -124,16 +122,14 @@ def lost_commands(
         left.fit,
     )
     at = Across(fit)
-    for number in range(ROUNDS):
+    for _ in range(ROUNDS):
         records = parameters.records(unit)
         found = found_in(bench, bench.training, windows, records, step, neutral, at, fit.off_prior)
-        if number == 0 and found.promised < needed:
-            return None
-        if not any(len(lost) for lost in found.windows.values()):
+        if not any(len(lost) for lost in found.values()):
             break
-        windows = {name: in_order(lost, found.windows[name]) for name, lost in windows.items()}
+        windows = {name: in_order(lost, found[name]) for name, lost in windows.items()}
         problem = LostProblem(parameters, bench.training, finer, windows, neutral)
-        fit, windows = fitted_windows(bench, problem, unit, found.windows)
+        fit, windows = fitted_windows(bench, problem, unit, found)
         if any(too_much(windows[recording_of(e)], e) for e in bench.training):
             return None
         unit = fit.unit[: len(parameters)]
@@ -161,7 +157,7 @@ def lost_commands(
     )
     lasted = np.concatenate([np.diff(lost, axis=1).ravel() for lost in windows.values()])
     return LostCommands(
-        law=Law(LOST, (Term(("command",)),), 0.0, left.fit.objective - fit.objective, (1.0,)),
+        law=Law(LOST, (Term(("command",)),), 0.0),
         values=np.array([float(np.median(lasted))]),
         parameters=parameters.values(unit),
         fit=fit,
@@ -203,11 +199,11 @@ def _in_held_out(
     for _ in range(ROUNDS):
         records = parameters.records(unit)
         found = found_in(bench, [experiment], windows, records, step, neutral, None, np.zeros(0))
-        if not len(found.windows[own]):
+        if not len(found[own]):
             break
-        together = in_order(windows[own], found.windows[own])
+        together = in_order(windows[own], found[own])
         problem = LostProblem(parameters, [experiment], step, {own: together}, neutral)
-        _, fitted = fitted_windows(bench, problem, unit, found.windows, alone=True)
+        _, fitted = fitted_windows(bench, problem, unit, found, alone=True)
         if too_much(fitted[own], experiment):
             break
         windows = fitted

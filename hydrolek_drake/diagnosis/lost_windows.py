@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from hydrolek_drake.diagnosis.score import Across
+from hydrolek_drake.diagnosis.fitting.projection import Across
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
 
@@ -62,15 +62,7 @@ def recording_of(experiment: Experiment) -> str:
 
 
 @dataclass(frozen=True)
-class Found:
-    """Windows of each recording that explain most, and by how much the squared residuals would fall."""
-
-    windows: dict[str, Windows]
-    promised: float
-
-
-@dataclass(frozen=True)
-class Tried:
+class Window:
     """A window that is tried.
 
     Attributes:
@@ -93,8 +85,8 @@ def found_in(
     neutral: float,
     across: Across | None,
     off: np.ndarray,
-) -> Found:
-    """Windows that explain most of what is left beside those that are known, and by how much residuals would fall."""
+) -> dict[str, Windows]:
+    """Recording -> windows that explain most of what is left beside those that are known."""
 
     def left_of(experiment: Experiment, windows: Windows) -> np.ndarray:
         arrived = experiment.without_command(windows, neutral)
@@ -104,12 +96,12 @@ def found_in(
     ends = np.cumsum([0, *(part.size for part in here)])
     size = ends[-1] + off.size
     tried = [
-        Tried(i, begin, WINDOW_S)
+        Window(i, begin, WINDOW_S)
         for i, e in enumerate(experiments)
         for begin in _driven(e, beside[recording_of(e)], neutral)
     ]
 
-    def column(window: Tried) -> np.ndarray:
+    def column(window: Window) -> np.ndarray:
         bench.alive()
         i, experiment = window.experiment, experiments[window.experiment]
         lost = np.array([[window.begin, window.begin + window.length]])
@@ -122,13 +114,13 @@ def found_in(
     rest = rest if across is None else across(rest)
     windows = {recording_of(e): NONE for e in experiments}
     if not tried:
-        return Found(windows, 0.0)
+        return windows
     columns = np.stack(bench.side_by_side(column, tried), axis=1)
     shorter = within(tried, _gains(columns, rest))
     if shorter:
         tried += shorter
         columns = np.concatenate([columns, np.stack(bench.side_by_side(column, shorter), axis=1)], axis=1)
-    chosen, amplitudes, promised = picked(columns, rest)
+    chosen, amplitudes = picked(columns, rest)
     for i, experiment in enumerate(experiments):
         own = [
             (tried[k].begin, tried[k].length, float(a))
@@ -136,10 +128,10 @@ def found_in(
             if tried[k].experiment == i
         ]
         windows[recording_of(experiment)] = merged(sorted(own))
-    return Found(windows, promised)
+    return windows
 
 
-def within(tried: Sequence[Tried], gains: np.ndarray) -> list[Tried]:
+def within(tried: Sequence[Window], gains: np.ndarray) -> list[Window]:
     """Shorter windows within those that promise most, and within those on either side of them.
 
     Args:
@@ -156,8 +148,8 @@ def within(tried: Sequence[Tried], gains: np.ndarray) -> list[Tried]:
     ]
 
 
-def picked(columns: np.ndarray, rest: np.ndarray) -> tuple[list[int], np.ndarray, float]:
-    """Columns that explain most, one after the other, their multiples, and the fall of the squared residuals.
+def picked(columns: np.ndarray, rest: np.ndarray) -> tuple[list[int], np.ndarray]:
+    """Columns that explain most, one after the other, and their multiples.
 
     Args:
         columns: change of the residuals by each window. # (values, k)
@@ -174,7 +166,7 @@ def picked(columns: np.ndarray, rest: np.ndarray) -> tuple[list[int], np.ndarray
         chosen.append(best)
         multiples = lsq_linear(columns[:, chosen], -rest, (0.0, WHOLE)).x
         left = rest + columns[:, chosen] @ multiples
-    return chosen, multiples, float(rest @ rest - left @ left)
+    return chosen, multiples
 
 
 def _gains(columns: np.ndarray, left: np.ndarray) -> np.ndarray:

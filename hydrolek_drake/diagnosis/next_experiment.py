@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.conclusion import Conclusion
-from hydrolek_drake.diagnosis.score import Across
+from hydrolek_drake.diagnosis.fitting.projection import Across
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.channel import Channel
 from hydrolek_drake.identification.experiment import Experiment

@@ -217,7 +217,7 @@ def _candidates(diagnosis: Diagnosis) -> str:
             )
         )
     told = (
-        "<p class='other'>'Given up': so far behind after a few steps that it was not fitted to the end.</p>"
+        "<p class='other'>'Given up': so far behind when the data were weighed anew that it was not fitted again.</p>"
         if diagnosis.also_tried
         else ""
     )

@@ -6,23 +6,16 @@ to that model only makes up for the rest. The same goes for what else an effect 
 friction fades, at either end.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
-import numpy as np
-
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.diagnosis.score import AT_BOUND, Across, gain_of
+from hydrolek_drake.diagnosis.fitting.projection import AT_BOUND
 from hydrolek_drake.diagnosis.workbench import Hypothesis
 from hydrolek_drake.identification.parameter_set import Free
 
 WIDER = 4.0
 """A range that proves too narrow is widened so many times."""
-
-
-def at_the_end(hypothesis: Hypothesis) -> list[Candidate]:
-    """Effects of a fitted model of which a parameter lies at the end of a range that could be wider."""
-    return [c for c in hypothesis.effects if widened(c, hypothesis.values) != c]
 
 
 def ended(hypothesis: Hypothesis, candidate: Candidate) -> list[Free]:
@@ -49,37 +42,6 @@ def widened(candidate: Candidate, values: Mapping[str, float]) -> Candidate:
     """
     free = tuple(_further(candidate, f, values[f.path]) for f in candidate.free)
     return replace(candidate, free=free)
-
-
-def gain_beyond(hypothesis: Hypothesis, candidate: Candidate) -> float:
-    """Fall of the squared residuals that parameters at an end of an effect's range promise beyond it.
-
-    The gain of `score`, with the parameter's column of the Jacobian, outwards, as the change; none if the best step
-    leads inside.
-
-    Args:
-        hypothesis: a fitted model.
-        candidate: one of its effects.
-
-    Returns:
-        The largest of its parameters' gains, in units of the noise squared.
-    """
-    fit = hypothesis.fit
-    across = Across(fit)
-    rest = across(np.concatenate([fit.residuals, fit.off_prior]))
-    gain = 0.0
-    for free, wider in zip(candidate.free, widened(candidate, hypothesis.values).free, strict=True):
-        if wider == free:
-            continue
-        place = list(hypothesis.values).index(free.path)
-        outwards = np.sign(fit.unit[place] - 0.5) * fit.with_prior[:, place]
-        gain = max(gain, gain_of(across(outwards), rest))
-    return gain
-
-
-def replaced(candidates: Sequence[Candidate], new: Candidate) -> tuple[Candidate, ...]:
-    """Candidates with another one in the place of that of the same effect and joint."""
-    return tuple(new if c.size_path == new.size_path else c for c in candidates)
 
 
 def _further(candidate: Candidate, free: Free, value: float) -> Free:

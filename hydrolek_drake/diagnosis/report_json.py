@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
-from hydrolek_drake.diagnosis.law_at_a_joint import left_at
 from hydrolek_drake.diagnosis.law_intervals import amplitude_intervals, frequency_interval
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
+from hydrolek_drake.diagnosis.locate import left_at
 from hydrolek_drake.diagnosis.panels import after
 from hydrolek_drake.diagnosis.reliability import kind_of, reliability
 from hydrolek_drake.diagnosis.told_numbers import quantity

@@ -1,7 +1,7 @@
 """The smallest size of each effect that a recording would have shown.
 
 A size is seen if what it changes, less what the model's own parameters undo of it, has the squared size that one more
-effect must bring (`growing.gain_needed`). The change is not in proportion to the size: much of what a large effect does
+effect must bring (`gains.gain_needed`). The change is not in proportion to the size: much of what a large effect does
 beyond the reach of the parameters is of second order. So the size is sought by rollouts and not by a rule of three.
 """
 
@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.diagnosis.gains import gain_needed
-from hydrolek_drake.diagnosis.score import VISIBLE, Across, Score
+from hydrolek_drake.diagnosis.fitting.projection import Across
+from hydrolek_drake.diagnosis.gains import VISIBLE, gain_needed
+from hydrolek_drake.diagnosis.structures.promise import Promise
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects import EFFECTS
 
@@ -41,33 +42,36 @@ class Visible:
     size: float
 
 
-def visible_sizes(bench: Workbench, hypothesis: Hypothesis, scores: Sequence[Score]) -> tuple[Visible, ...]:
+def visible_sizes(
+    bench: Workbench, hypothesis: Hypothesis, promises: Sequence[Promise]
+) -> tuple[Visible, ...]:
     """Smallest size of each effect that the training data would have shown beside a model, by id.
 
     Args:
         bench: fits.
         hypothesis: the model, fitted.
-        scores: effects held against it; a first estimate of their sizes. Those that the model has are left out.
+        promises: of effects beside it; a first estimate of their sizes. Those that the model has are left out.
     """
     across = Across(hypothesis.fit)
     own = hypothesis.ids
-    wanted = [s for s in scores if s.candidate.size_path not in own and 0.0 < s.visible_from < math.inf]
-    sizes = bench.side_by_side(lambda s: _visible_size(bench, hypothesis, s, across), wanted)
+    wanted = [p for p in promises if p.candidate.size_path not in own and 0.0 < p.visible_from < math.inf]
+    sizes = bench.side_by_side(lambda p: _visible_size(bench, hypothesis, p, across), wanted)
     found = [
-        Visible(s.candidate, max(size, s.candidate.beneath))
-        for s, size in zip(wanted, sizes, strict=True)
+        Visible(p.candidate, max(size, p.candidate.beneath))
+        for p, size in zip(wanted, sizes, strict=True)
         if math.isfinite(size)
     ]
     return tuple(sorted(found, key=lambda v: v.candidate.id))
 
 
-def _visible_size(bench: Workbench, hypothesis: Hypothesis, score: Score, across: Across) -> float:
+def _visible_size(bench: Workbench, hypothesis: Hypothesis, promise: Promise, across: Across) -> float:
     """That of one effect; NaN if none in its range is seen."""
-    candidate = score.candidate
+    candidate = promise.candidate
     path = candidate.size_path
     problem = bench.problem((*hypothesis.effects, candidate), bench.fine)
-    sign = math.copysign(1.0, score.start[path])
-    alone = {**hypothesis.values, **score.start, **_without_special_cases(candidate)}
+    start = promise.starts[0]
+    sign = math.copysign(1.0, start[path])
+    alone = {**hypothesis.values, **start, **_without_special_cases(candidate)}
     power = -1.0 if candidate.effect.weakens else 1.0  # a spring that is seen is at most so stiff
 
     def residuals(size: float) -> np.ndarray:
@@ -75,10 +79,10 @@ def _visible_size(bench: Workbench, hypothesis: Hypothesis, score: Score, across
         return problem.residuals(problem.parameters.unit({**alone, path: inside}))
 
     # a play without a gap is still a contact that gives way: what counts is what the size does
-    nothing = residuals(score.visible_from * NOTHING**power)
+    nothing = residuals(promise.visible_from * NOTHING**power)
     needed = max(VISIBLE, gain_needed(hypothesis.fit))
     unmoved = np.zeros_like(hypothesis.fit.off_prior)
-    size, seen = score.visible_from, math.nan
+    size, seen = promise.visible_from, math.nan
     for _ in range(ROUNDS):
         change = across(np.concatenate([residuals(size) - nothing, unmoved]))
         shown = float(change @ change) / needed

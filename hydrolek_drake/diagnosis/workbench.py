@@ -9,14 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate
-from hydrolek_drake.diagnosis.effort import GLANCE_S
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm, WithTerms
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import Fit, fit_from
+from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
-from hydrolek_drake.identification.problem import DIFFERENCE, Problem
-from hydrolek_drake.identification.valleys import along_valleys
-from hydrolek_drake.physics import supply
+from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.rigs import Rig
 
 SPREAD = 1.0 / math.sqrt(12.0)
@@ -86,25 +83,20 @@ class Workbench:
         Args:
             rig: the machine with nominal values and all searched effects off.
             nominal: its free parameters.
-            training: the recordings that are fitted; `training` is weighed anew in time, and `recorded` stays.
+            training: the recordings that are fitted; weighed anew in time.
             pool: threads for fits side by side, and for the columns of a fit's Jacobian where some are idle.
         """
         self.rig = rig
         self.nominal = tuple(nominal)
-        self.recorded = self.training = tuple(training)
+        self.training = tuple(training)
         self.pool = pool
         self._stopped = threading.Event()
         self.evaluations = 0
-        self.first_s = GLANCE_S
         self._sets: dict[frozenset[Free], ParameterSet] = {}
 
     def with_training(self, training: Sequence[Experiment]) -> "Workbench":
         """Another one for other recordings of the same machine."""
         return Workbench(self.rig, self.nominal, training, self.pool)
-
-    def beginning(self) -> list[Experiment]:
-        """The part of the recordings that first fits see, see `beginning`."""
-        return [experiment.until(self.first_s) for experiment in self.training]
 
     def interrupted(self) -> bool:
         """Whether the user has interrupted."""
@@ -129,12 +121,6 @@ class Workbench:
         """Whether joints move at the same time."""
         return any(experiment.others is not None for experiment in self.training)
 
-    @property
-    def alike(self) -> int:
-        """How many signals count alike, see `balance`; 1 where each counts by its noise."""
-        channels = {c.key: c.widened for experiment in self.training for c in experiment.channels}
-        return len(channels) if any(widened > 1.0 for widened in channels.values()) else 1
-
     def parameters(self, effects: Sequence[Candidate]) -> ParameterSet:
         """The searched parameters of the nominal model with these effects."""
         own = [p for candidate in effects for p in candidate.free]
@@ -155,7 +141,6 @@ class Workbench:
         step: float,
         experiments: Sequence[Experiment] | None = None,
         pull_time: float | None = None,
-        difference: float = DIFFERENCE,
         kind: type[Problem] = Problem,
     ) -> Problem:
         """Residuals of this model, on the training data unless others are given."""
@@ -169,90 +154,13 @@ class Workbench:
             pool=self.pool,
             prior=prior,
             pull_time=pull_time,
-            difference=difference,
         )
-
-    def fit(
-        self,
-        effects: Sequence[Candidate],
-        values: dict[str, float],
-        step: float,
-        most_steps: int,
-        tolerance: float = 1e-5,
-        experiments: Sequence[Experiment] | None = None,
-        pull_time: float | None = None,
-        alone: bool = False,
-        difference: float = DIFFERENCE,
-    ) -> Hypothesis:
-        """Fit the nominal model with these effects; when something happens stays as it starts, see `moments`.
-
-        Args:
-            effects: what is added.
-            values: full path -> start; parameters that are not named start at the rig's own value.
-            step: integration step [s].
-            most_steps: of the trust-region method.
-            tolerance: relative change of the squared residuals at which it ends.
-            experiments: to be fitted; None for all training data.
-            pull_time: of the rollouts, as in `Problem`; None for free ones.
-            alone: leave joints on which none of the effects acts as they start.
-            difference: of the Jacobian, as in `Problem`.
-        """
-        self.alive()
-        effects = tuple(effects)
-        problem = self.problem(effects, step, experiments, pull_time, difference)
-        parameters = problem.parameters
-        moving = self.movable(effects, parameters)
-        if alone and effects:
-            moving &= self._acted_on(effects, parameters)
-        fit = fit_from(
-            problem,
-            parameters.unit(values),
-            most_steps=most_steps,
-            tolerance=tolerance,
-            stop=self.interrupted,
-            moving=moving,
-        )
-        self.evaluations += fit.evaluations
-        return Hypothesis(effects, parameters.values(fit.unit), fit, step)
 
     @staticmethod
     def movable(effects: Sequence[Candidate], parameters: ParameterSet) -> np.ndarray:
         """Parameters that least squares can move: all but moments, see `moments`. # (n,)."""
         held = {free.path for free in moments_of(effects)}
         return np.array([path not in held for path in parameters.paths])
-
-    def joints_of(self, effects: Sequence[Candidate]) -> set[str]:
-        """Joints on which effects act: the supply's act on every joint, whichever carries their parameters."""
-        if any(candidate.effect.stage == supply.STAGE.name for candidate in effects):
-            return set(self.rig.joints)
-        return {candidate.joint for candidate in effects}
-
-    def _acted_on(self, effects: Sequence[Candidate], parameters: ParameterSet) -> np.ndarray:
-        """Parameters of the joints on which effects act, and those that all joints share. # (n,)."""
-        joints = self.joints_of(effects)
-        return np.array(
-            [not path.startswith("joints.") or path.split(".")[1] in joints for path in parameters.paths]
-        )
-
-    def refit(
-        self,
-        hypothesis: Hypothesis,
-        step: float,
-        most_steps: int,
-        tolerance: float = 1e-5,
-        alone: bool = False,
-    ) -> Hypothesis:
-        """Go on from where a fit ended, usually with a finer step."""
-        return self.fit(hypothesis.effects, hypothesis.values, step, most_steps, tolerance, alone=alone)
-
-    def along_valleys(self, hypothesis: Hypothesis, tolerance: float = 1e-4) -> Hypothesis:
-        """Go on from lower places along what the data tell least, if there are any (`valleys.along_valleys`)."""
-        self.alive()
-        problem = self.problem(hypothesis.effects, hypothesis.step)
-        moving = self.movable(hypothesis.effects, problem.parameters)
-        fit = along_valleys(problem, hypothesis.fit, tolerance, self.interrupted, moving)
-        self.evaluations += problem.evaluations
-        return replace(hypothesis, values=problem.parameters.values(fit.unit), fit=fit)
 
     def without_jumps(self, hypothesis: Hypothesis) -> Hypothesis:
         """The same fit with slopes that are worth an interval (`Problem.jacobian_without_jumps`)."""

@@ -62,19 +62,6 @@ def test_what_no_effect_explains_is_unlisted(effect) -> None:
     )
 
 
-def test_a_joint_stuck_by_a_hairs_breadth_is_no_unlisted_physics_where_the_parameters_account_for_it(
-    effect,
-) -> None:
-    """Only in parts of both data: whole held-out data that fail are first looked into."""
-    drift = effect["sensor.drift"]
-    stuck = replace(_judged((drift,), 1.0, ahead=1.6), chi_squared=1.01**2 * COUNTED)
-    judged = with_probabilities([_judged((), 9.0), stuck])
-    assert conclude(judged).verdict == "unlisted_physics"
-    assert conclude(judged, accounted=True).verdict == "missing_physics"
-    unaccounted = with_probabilities([_judged((), 9.0), replace(stuck, chi_squared=1.5**2 * COUNTED)])
-    assert conclude(unaccounted, accounted=True).verdict == "unlisted_physics"
-
-
 def test_what_does_not_predict_better_is_not_named(effect) -> None:
     """However much better it fits the training data: improvement counts on held-out data."""
     leak, gap = effect["cylinder.cross_port_leakage"], effect["linkage.backlash"]

@@ -132,7 +132,7 @@ def test_a_deeper_hollow_beside_is_where_it_ends() -> None:
     ],
 )
 def test_numbers_of_a_fit_that_ended_early_are_told_within_their_intervals(
-    bench, recorded, effect, size
+    bench, recorded, fitted, effect, size
 ) -> None:
     machine = bench.with_values({f"effects.{effect}.{name}": value for name, value in size.items()})
     training, ahead = (recorded(machine, bench, seed=seed, largest_V=5.0) for seed in (3, 4))
@@ -141,7 +141,7 @@ def test_numbers_of_a_fit_that_ended_early_are_told_within_their_intervals(
     start = {f"{concealed.path}.{name}": 1.03 * value for name, value in size.items()}
     with ThreadPoolExecutor(2) as pool:
         workbench = Workbench(bench, free_parameters(bench), training, pool)
-        early = workbench.fit((concealed,), start, 0.5 * workbench.fine, 3)
+        early = fitted(workbench, (concealed,), start, rounds=3, coarse=0.5)
         counted = sum(experiment.counted for experiment in ahead)
         told, known, held_out = with_last_numbers(workbench, Judged(early, np.zeros(1), counted), ahead)
         by_slopes = intervals_of(workbench.parameters((concealed,)), told.hypothesis.fit)

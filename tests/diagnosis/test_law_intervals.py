@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.intervals import NORMAL
-from hydrolek_drake.diagnosis.law_fit import fitted
+from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.law_inputs import inputs_of
 from hydrolek_drake.diagnosis.law_intervals import amplitude_intervals, frequency_interval
-from hydrolek_drake.diagnosis.law_problem import Law
-from hydrolek_drake.diagnosis.laws import BUILT, span_of
+from hydrolek_drake.diagnosis.laws import Term, span_of
 from hydrolek_drake.diagnosis.lost_commands import LostCommands
+from hydrolek_drake.diagnosis.structures.found_law import law_of
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.words import known_to
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
@@ -24,27 +24,29 @@ HOSE = 8e-13
 RIPPLE_PA, RIPPLE_HZ = 1.5e6, 2.3
 SEEDS = 8
 STEP_S = 5e-4
+CONSTANT_TERM = Term(("fluid",))
 NEVER = 1e-3
 """A test that is right fails so often at most, at either end."""
 
 
 @pytest.fixture(scope="module")
-def found(bench, recorded):
-    """(probe, terms, planted values, frequency, seed, held-out data) -> the law fitted from there."""
+def found(bench, recorded, fitted):
+    """(probe, form, planted values, frequency, seed) -> the law fitted from there, beside the nominal model."""
     supply = bench.value("supply.pressure")
 
-    def find(probe, terms, planted, unknown_Hz=0.0, seed=1):
+    def find(probe, form, planted, unknown_Hz=0.0, seed=1):
         kept = {"largest_V": 7.0, "pressure_noise_Pa": 2e4, "unknown_Hz": unknown_Hz}
         training = recorded(bench, bench, seed=seed, unknown=(probe, planted[0]), **kept)
         workbench = Workbench(bench, free_parameters(bench), training, pool)
         inputs = inputs_of(natural_scales(bench, "joint", training), supply, 10.0, "rad")
         [given] = [each for each in inputs if each.probe == probe]
         span = span_of([training[0].simulate(bench.records()).signals], bench.records()[0], 12.0, "rad")
-        law = Law(given, terms, unknown_Hz, 1.0, ())
+        term = LawTerm(given, form, "joint", span, unknown_Hz)
+        values = dict(zip((free.path for free in term.free), planted, strict=True))
         # the planted machine is the rig, so that nothing has to be searched
-        nominal = workbench.fit((), {}, workbench.fine, 1)
-        begin = ({}, np.array(planted))
-        return fitted(workbench, nominal, law, training, span, begin, workbench.fine)
+        there = fitted(workbench, (term,), values, rounds=8)
+        left = workbench.residuals(there, training, workbench.fine)
+        return law_of(workbench, Judged(there, left, there.fit.counted), training, (), 2)
 
     with ThreadPoolExecutor(2) as pool:
         yield find
@@ -53,7 +55,7 @@ def found(bench, recorded):
 def test_repeated_recordings_give_a_size_as_uncertain_as_its_interval_says(found) -> None:
     off = []
     for seed in range(1, SEEDS + 1):
-        law = found("capacity_a", BUILT, (HOSE,), seed=seed)
+        law = found("capacity_a", CONSTANT_TERM, (HOSE,), seed=seed)
         [size] = amplitude_intervals(law)
         assert size.value == law.amplitudes[0]
         assert size.high - size.value == pytest.approx(size.value - size.low)
@@ -63,7 +65,7 @@ def test_repeated_recordings_give_a_size_as_uncertain_as_its_interval_says(found
 
 
 def test_a_periodic_law_has_intervals_of_amplitude_and_frequency(found) -> None:
-    law = found("supply", (), (RIPPLE_PA, 0.0, RIPPLE_HZ), unknown_Hz=RIPPLE_HZ)
+    law = found("supply", None, (RIPPLE_PA, 0.0, RIPPLE_HZ), unknown_Hz=RIPPLE_HZ)
     [amplitude], frequency = amplitude_intervals(law), frequency_interval(law)
     for known, planted in ((amplitude, RIPPLE_PA), (frequency, RIPPLE_HZ)):
         half = known.high - known.value
@@ -73,9 +75,9 @@ def test_a_periodic_law_has_intervals_of_amplitude_and_frequency(found) -> None:
     assert "MPa" in told and "Hz" in told and told.count(" to ") == 2
 
 
-def test_the_machine_is_told_as_it_was_fitted_with_the_law(bench, found, recorded) -> None:
+def test_the_machine_is_told_as_it_was_fitted_with_the_law(bench, found, recorded, fitted) -> None:
     """The nominal model alone bends its bulk modulus to make up for a hose."""
-    law = found("capacity_a", BUILT, (HOSE,))
+    law = found("capacity_a", CONSTANT_TERM, (HOSE,))
     path = bench.full_path("fluid.bulk_modulus")
     with_law = law.intervals[path]
     assert with_law.value == law.parameters[path]
@@ -83,12 +85,12 @@ def test_the_machine_is_told_as_it_was_fitted_with_the_law(bench, found, recorde
     assert abs(with_law.value - bench.value(path)) < 2.0 * half
     training = recorded(bench, bench, largest_V=7.0, pressure_noise_Pa=2e4, unknown=("capacity_a", HOSE))
     with ThreadPoolExecutor(2) as pool:
-        alone = fit_baseline(Workbench(bench, free_parameters(bench), training, pool))
+        alone = fitted(Workbench(bench, free_parameters(bench), training, pool))
     assert abs(alone.values[path] - bench.value(path)) > 10.0 * half
 
 
 def test_what_a_law_leaves_ahead_is_told_by_the_noise_that_counts_in_the_end(bench, found, recorded) -> None:
-    law = found("capacity_a", BUILT, (HOSE,))
+    law = found("capacity_a", CONSTANT_TERM, (HOSE,))
     held_out = recorded(bench, bench, largest_V=7.0, pressure_noise_Pa=2e4, unknown=("capacity_a", HOSE))
     records = bench.with_values(law.parameters).records()
     as_fitted = law.held_against(held_out, records, STEP_S)
@@ -102,6 +104,6 @@ def test_what_a_law_leaves_ahead_is_told_by_the_noise_that_counts_in_the_end(ben
 
 
 def test_commands_that_got_lost_have_no_interval(found) -> None:
-    law = found("capacity_a", BUILT, (HOSE,))
+    law = found("capacity_a", CONSTANT_TERM, (HOSE,))
     lost = LostCommands(**{**law.__dict__})
     assert amplitude_intervals(lost) == [] and known_to(lost) == ""

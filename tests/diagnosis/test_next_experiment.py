@@ -8,7 +8,6 @@ import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.conclusion import Conclusion
-from hydrolek_drake.diagnosis.effort import GLANCE
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.next_experiment import propose
 from hydrolek_drake.diagnosis.weighing import weighted_by
@@ -23,7 +22,7 @@ RIVALS = ("valve.null_leakage", "cylinder.cross_port_leakage")
 
 
 @pytest.fixture(scope="module")
-def alike():
+def alike(fitted):
     """A joint whose start is a mean of readings, its angle alone recorded, and two models of it that are alike."""
     rig = load_rig("hydrolek_right_j2")
     generator = np.random.default_rng(1)
@@ -39,10 +38,10 @@ def alike():
     candidates = candidates_of(rig, "right_j2", natural_scales(rig, "right_j2", training))
     with ThreadPoolExecutor(2) as pool:
         bench = Workbench(rig, free_parameters(rig), training, pool)
-        nominal = bench.fit((), {}, bench.fine, GLANCE)
+        nominal = fitted(bench, rounds=4)
         bench.training = tuple(weighted_by(bench, nominal, training))
         chosen = [next(c for c in candidates if c.id == id_) for id_ in RIVALS]
-        fits = [bench.fit((c,), {**nominal.values, **c.starts[0]}, bench.fine, 1) for c in chosen]
+        fits = [fitted(bench, (c,), {**nominal.values, **c.starts[0]}, 1) for c in chosen]
         yield bench, fits
 
 

@@ -1,23 +1,16 @@
 """A range that proves too narrow is widened, as far as the effect's size can be at all."""
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 
 from hydrolek_drake.diagnosis.candidates import candidates_of
-from hydrolek_drake.diagnosis.effort import LOOK
-from hydrolek_drake.diagnosis.found import Search
-from hydrolek_drake.diagnosis.gains import gain_needed
 from hydrolek_drake.diagnosis.intervals import Interval
-from hydrolek_drake.diagnosis.ranges import WIDER, at_the_end, ended, gain_beyond, widened
-from hydrolek_drake.diagnosis.search import search
+from hydrolek_drake.diagnosis.ranges import WIDER, ended, widened
 from hydrolek_drake.diagnosis.told_numbers import quantity
 from hydrolek_drake.diagnosis.words import effect_sentence
-from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
-from hydrolek_drake.identification.parameter_set import free_parameters
 
 AIR = "effects.fluid.entrained_air.air_fraction"
 
@@ -106,63 +99,3 @@ def test_a_range_is_not_widened_beyond_what_can_be_or_what_the_rig_states(
     scales = natural_scales(bench, "joint", recorded(bench, bench))
     air = next(c for c in candidates_of(stated, "joint", scales) if c.id == "fluid.entrained_air")
     assert widened(air, _ended(air, air_fraction=1.0)) == air
-
-
-def _searched(bench, recorded, candidates, much: float, pressure_noise_Pa: float) -> tuple[Search, int]:
-    """Searched for air and friction where there is air; what was found and how often a range was widened."""
-    training = recorded(
-        bench.with_values({AIR: much}), bench, largest_V=7.0, pressure_noise_Pa=pressure_noise_Pa
-    )
-    told: list[str] = []
-    with ThreadPoolExecutor(2) as pool:
-        workbench = Workbench(bench, free_parameters(bench), training, pool)
-        found = Search()
-        either = [candidates["fluid.entrained_air"], candidates["cylinder.coulomb_friction"]]
-        search(workbench, either, found, told.append)
-    return found, sum("its range was too narrow" in line for line in told)
-
-
-def test_more_of_an_effect_than_a_worn_machine_has_is_found_alone(bench, recorded, candidates) -> None:
-    air = candidates["fluid.entrained_air"]
-    much = 1.6 * air.size.upper
-    found, widenings = _searched(bench, recorded, candidates, much, pressure_noise_Pa=2e4)
-    assert found.best.ids == {air.size_path}
-    assert found.best.fit.over_noise < 1.05
-    assert found.best.values[air.size_path] == pytest.approx(much, rel=0.1)
-    assert widenings == 1
-
-
-def test_at_the_noise_a_range_is_widened_where_more_promises_something(bench, recorded, candidates) -> None:
-    air = candidates["fluid.entrained_air"]
-    much = 1.03 * air.size.upper  # with the noise below, the end of the range leaves 1.2 % above it
-    found, widenings = _searched(bench, recorded, candidates, much, pressure_noise_Pa=3e5)
-    assert found.best.ids == {air.size_path}
-    assert found.best.values[air.size_path] == pytest.approx(much, rel=0.01)
-    assert widenings == 1
-
-
-def test_at_the_noise_a_range_is_left_alone_where_more_promises_nothing(bench, recorded, candidates) -> None:
-    air = candidates["fluid.entrained_air"]
-    much = (
-        1.01 * air.size.upper
-    )  # told from the end of the range by no more than what one more effect must bring
-    found, widenings = _searched(bench, recorded, candidates, much, pressure_noise_Pa=3e5)
-    assert found.best.ids == {air.size_path}
-    assert at_the_end(found.best) == [air]
-    assert 0.0 < gain_beyond(found.best, air) < gain_needed(found.best.fit)
-    assert widenings == 0
-
-
-def test_what_is_promised_beyond_a_range_is_what_a_wider_one_gains(bench, recorded, candidates) -> None:
-    air = candidates["fluid.entrained_air"]
-    much = 1.03 * air.size.upper
-    training = recorded(bench.with_values({AIR: much}), bench, largest_V=7.0, pressure_noise_Pa=3e5)
-    with ThreadPoolExecutor(2) as pool:
-        workbench = Workbench(bench, free_parameters(bench), training, pool)
-        narrow = workbench.fit([air], {air.size_path: 0.9 * air.size.upper}, workbench.fine, LOOK)
-        wide = workbench.fit([widened(air, narrow.values)], narrow.values, workbench.fine, LOOK)
-    assert at_the_end(narrow) == [air]
-    assert at_the_end(wide) == []
-    fell = narrow.fit.objective - wide.fit.objective
-    assert gain_beyond(narrow, air) == pytest.approx(fell, rel=0.2)
-    assert gain_beyond(wide, wide.effects[0]) == 0.0

@@ -5,10 +5,11 @@ from dataclasses import replace
 
 import pytest
 
-from hydrolek_drake.diagnosis.baseline import fit_baseline
 from hydrolek_drake.diagnosis.candidates import candidates_of
-from hydrolek_drake.diagnosis.effort import LOOK
-from hydrolek_drake.diagnosis.score import VISIBLE, scores_of
+from hydrolek_drake.diagnosis.gains import VISIBLE
+from hydrolek_drake.diagnosis.structures.enlarging import opened
+from hydrolek_drake.diagnosis.structures.settings import Settings
+from hydrolek_drake.diagnosis.structures.tried import Tried
 from hydrolek_drake.diagnosis.visible import visible_sizes
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
@@ -29,31 +30,31 @@ SIMPLIFIED = 0.8
 
 
 @pytest.fixture(scope="module")
-def healthy(bench, recorded):
+def healthy(bench, recorded, fitted):
     """Squared residuals of the fitted nominal model, and the smallest sizes that would have been seen."""
     experiments = recorded(bench, bench, seed=5)
     with ThreadPoolExecutor(2) as pool:
         work = Workbench(bench, free_parameters(bench), experiments, pool)
-        fitted = fit_baseline(work)
+        nominal = fitted(work)
         candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
         simplified = [replace(c, beneath=SIMPLIFIED) if c.id == "sensor.drift" else c for c in candidates]
-        scores = scores_of(work, fitted, simplified, work.fine)
-        return fitted, {v.candidate.id: v.size for v in visible_sizes(work, fitted, scores)}
+        promises = opened(work, nominal, "effects", simplified, Tried(), Settings(), 2).free
+        return nominal, {v.candidate.id: v.size for v in visible_sizes(work, nominal, promises)}
 
 
 @pytest.mark.parametrize("effect_id", PLANTED)
 def test_a_size_that_would_be_seen_is_not_made_up_for_by_the_nominal_model(
-    bench, recorded, healthy, effect_id
+    bench, recorded, fitted, healthy, effect_id
 ) -> None:
-    fitted, sizes = healthy
+    nominal, sizes = healthy
 
     def gain(share: float) -> float:
         size = share * sizes[effect_id]
         machine = bench.with_values({f"effects.{effect_id}.{PLANTED[effect_id]}": size})
         with ThreadPoolExecutor(2) as pool:
             work = Workbench(bench, free_parameters(bench), recorded(machine, bench, seed=5), pool)
-            again = work.fit((), fitted.values, work.fine, LOOK)
-        return again.fit.objective - fitted.fit.objective
+            again = fitted(work, (), nominal.values)
+        return again.fit.objective - nominal.fit.objective
 
     # the noise adds to the root of a gain, or takes from it, one standard deviation of 1
     assert gain(2.0) ** 0.5 > VISIBLE**0.5 - 2.0

@@ -21,8 +21,8 @@ import numpy as np
 from scipy.sparse import csc_matrix
 
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, with_slopes
+from hydrolek_drake.diagnosis.fitting.projection import Across
 from hydrolek_drake.diagnosis.law_inputs import Input
-from hydrolek_drake.diagnosis.score import Across
 from hydrolek_drake.diagnosis.structures.race import hypothesis_of
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment

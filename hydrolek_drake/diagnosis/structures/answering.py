@@ -3,29 +3,31 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from hydrolek_drake.diagnosis.attempt import PREDICTED, Known
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.conclusion import EXPLAINED, POSSIBLE, Conclusion, conclude
 from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, COARSE, MORE_AHEAD
 from hydrolek_drake.diagnosis.evidence import judge_as_fitted
-from hydrolek_drake.diagnosis.inquiry import BY_BOTH, INTERRUPTED, Answer
 from hydrolek_drake.diagnosis.judged import Judged
-from hydrolek_drake.diagnosis.law_choice import alone
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.laws import Span
 from hydrolek_drake.diagnosis.locating.terms_for import Offer, estimates_for, terms_for
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.lost_commands import lost_commands
 from hydrolek_drake.diagnosis.splitting import mixed
-from hydrolek_drake.diagnosis.structures.cost import Tried
+from hydrolek_drake.diagnosis.structures.answer import BY_BOTH, INTERRUPTED, Answer, Known
 from hydrolek_drake.diagnosis.structures.found_law import law_of, likeliest_side, terms_of
 from hydrolek_drake.diagnosis.structures.judging import judge_structures
 from hydrolek_drake.diagnosis.structures.searching import search_structures
 from hydrolek_drake.diagnosis.structures.settings import Settings
+from hydrolek_drake.diagnosis.structures.tried import Tried
 from hydrolek_drake.diagnosis.weighing import weighted_by
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiment import Experiment
+
+PREDICTED = 1.2
+"""A model that is right predicts held-out data to so many times the noise. Where it does worse, its parameters'
+uncertainty or something else may be the reason, which only more data tell."""
 
 
 @dataclass(frozen=True)
@@ -118,7 +120,8 @@ class Inquiry:
         terms = terms_of(best.hypothesis)
         lost = known.found.law
         if lost is not None and lost.fit.over_noise < best.hypothesis.fit.over_noise:
-            return alone(known.conclusion, known.judged, lost), lost
+            nominal = next(j for j in known.judged if not j.hypothesis.effects)
+            return replace(known.conclusion, verdict="unlisted_physics", best=nominal, groups=()), lost
         if not terms:
             return known.conclusion, None
         stages = {terms[0].input.stage}
@@ -148,7 +151,7 @@ class _Unlisted:
 
     def lost(self, bench: Workbench, parent: Hypothesis, span: Span) -> FoundLaw | None:
         step = bench.coarsest(parent, parent.fit.over_noise, COARSE)
-        return lost_commands(bench, parent, self.held_out, span, step, 0.0, EXPLAINED)
+        return lost_commands(bench, parent, self.held_out, span, step, EXPLAINED)
 
 
 def _beside(known: Known, best: Judged) -> Judged:

@@ -1,9 +1,7 @@
-"""What a structure costs, and what a search has tried, the best by that cost."""
+"""What a structure costs."""
 
 import math
-from dataclasses import dataclass, field
 
-from hydrolek_drake.diagnosis.found import Search
 from hydrolek_drake.diagnosis.gains import gain_needed
 from hydrolek_drake.diagnosis.workbench import Hypothesis
 from hydrolek_drake.identification.least_squares import Fit
@@ -24,26 +22,3 @@ def misfit(fit: Fit) -> float:
     """
     share = fit.objective / max(fit.counted, 1)
     return fit.counted * (1.0 + math.log(share)) if share > 1.0 else fit.objective
-
-
-@dataclass
-class Tried(Search):
-    """What was tried, with costs that hold however far structures are from the noise.
-
-    Attributes:
-        costs: of the best structure after each round.
-        seeds: structures fitted to other data, from where fits begin too.
-    """
-
-    costs: list[float] = field(default_factory=list)
-    seeds: list[Hypothesis] = field(default_factory=list)
-
-    @property
-    def best(self) -> Hypothesis:
-        """The structure that costs least."""
-        return min(self.hypotheses.values(), key=cost)
-
-    def rounds_without_gain(self, patience: int) -> bool:
-        """Whether so many rounds have not changed which structure is best, to within a unit of log-odds."""
-        self.costs.append(cost(self.best))
-        return len(self.costs) > patience and self.costs[-1] > self.costs[-1 - patience] - 2.0

@@ -12,12 +12,12 @@ from hydrolek_drake.diagnosis.effort import ABOVE_NOISE, AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
 from hydrolek_drake.diagnosis.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.ranges import widened
-from hydrolek_drake.diagnosis.structures.cost import Tried
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.structures.promise import Promise, promises_at
 from hydrolek_drake.diagnosis.structures.race import Entrant, Runner, problem_of, race
 from hydrolek_drake.diagnosis.structures.settings import Rung, Settings
 from hydrolek_drake.diagnosis.structures.tracing import trace
+from hydrolek_drake.diagnosis.structures.tried import Tried
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 
 
@@ -70,7 +70,7 @@ def opened(
         parent: the structure, fitted.
         kind: "effects" or "laws".
         additions: effects, or terms of laws.
-        found: receives the scores of effects.
+        found: receives what effects promise.
         settings: of the search.
         cores: that roll out at the same time.
     """
@@ -83,8 +83,7 @@ def opened(
     place = descend([_place(bench, parent, exact, parent.fit.unit)], 0, bench.pool, cores)[0]
     free = promises_at(bench, place, parent.effects, own, coarse, settings, cores)
     if kind == "effects":
-        found.left = [p.score for p in free]
-        found.scores = found.scores or found.left
+        found.left = free
     pulled: list[Promise] = []
     shares = [_share(free[0].gain, parent.fit.objective, parent.fit.counted)]
     if parent.fit.over_noise > ABOVE_NOISE:

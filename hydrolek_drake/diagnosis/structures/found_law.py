@@ -40,7 +40,7 @@ def law_of(
     first = terms[0]
     periodic = first.term is None
     forms = tuple(_as_fitted(t, h) for t in terms if t.term is not None)
-    law = Law(first.input, () if periodic else forms, first.frequency if periodic else 0.0, 0.0, (0.0,))
+    law = Law(first.input, () if periodic else forms, first.frequency if periodic else 0.0)
     paths = list(h.values)
     order = [paths.index(t.size_path) for t in terms]
     if periodic:

@@ -18,10 +18,11 @@ import numpy as np
 from hydrolek_drake.diagnosis.evidence import NEARBY, OUT_OF_REACH, pays, predictive, predicts
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
 from hydrolek_drake.diagnosis.judged import SMALL, Judged, with_probabilities
-from hydrolek_drake.diagnosis.structures.cost import Tried, cost
+from hydrolek_drake.diagnosis.structures.cost import cost
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.structures.race import Entrant, problem_with, race
 from hydrolek_drake.diagnosis.structures.settings import Settings
+from hydrolek_drake.diagnosis.structures.tried import Tried
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 
@@ -83,7 +84,7 @@ def _predicted(
         slopes = np.concatenate([place.slopes for place in some])
         slopes[:, _phases(h)] = 0.0  # which were fitted to each recording
         chi_squared, spread = predictive(residuals, slopes, h.fit)
-        one = Judged(h, residuals, counted, chi_squared=chi_squared, spread=spread, cost=cost(h))
+        one = Judged(h, residuals, counted, chi_squared=chi_squared, spread=spread)
         is_far = one.over_noise > SMALL or float(residuals @ residuals) - chi_squared > NEARBY
         far.append(is_far and not _phases(h).any())
         judged.append(one)

@@ -12,7 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from hydrolek_drake.diagnosis.law_inputs import Input
-from hydrolek_drake.diagnosis.laws import TERMS, Span, Term, law_record
+from hydrolek_drake.diagnosis.laws import Span, Term, law_record
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.physics.law import PLACED, TERM_NAMES
 from hydrolek_drake.rigs import Rig
@@ -223,8 +223,3 @@ class WithTerms(ParameterSet):
     def unit(self, values: Mapping[str, float] | None = None) -> np.ndarray:
         """Place of the given values, or of the rig's own and of terms that do nothing, pulled into the cube."""
         return super().unit({**self._neutral, **(values or {})})
-
-
-def terms_at(inputs: Sequence[Input], joint: str, span: Span) -> list[LawTerm]:
-    """Every term that has a physical meaning at some inputs of a joint."""
-    return [LawTerm(given, term, joint, span) for given in inputs for term in TERMS if term.meant_for(given)]

@@ -14,8 +14,9 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.candidates import Candidate
 from hydrolek_drake.diagnosis.fitting.lockstep import Place
+from hydrolek_drake.diagnosis.fitting.projection import Across, gain_of
 from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
-from hydrolek_drake.diagnosis.score import VISIBLE, Across, Score, gain_of
+from hydrolek_drake.diagnosis.gains import VISIBLE
 from hydrolek_drake.diagnosis.structures.race import hypothesis_of, problem_with
 from hydrolek_drake.diagnosis.structures.settings import Settings
 from hydrolek_drake.diagnosis.workbench import Workbench
@@ -30,13 +31,14 @@ class Promise:
         candidate: the addition.
         gain: fall of the squares that it promises.
         starts: full path -> value of its parameters, the most promising first.
-        score: the same as the rest of the diagnosis takes it.
+        visible_from: size (SI) whose gain would be `VISIBLE`, in proportion to the sizes that were tried; a first
+            estimate, see `visible`.
     """
 
     candidate: Candidate
     gain: float
     starts: tuple[dict[str, float], ...]
-    score: Score
+    visible_from: float
 
 
 def promises_at(
@@ -94,11 +96,11 @@ def promises_at(
             power = float(change @ change)
             multiple = np.sqrt(gain / power) if power > 0.0 else 0.0
             rated.append((gain, float(np.sum((left + change) ** 2)), float(multiple), start, change))
-        promises.append(_promise(candidate, rated, left, settings))
+        promises.append(_promise(candidate, rated, settings))
     return sorted(promises, key=lambda p: -p.gain)
 
 
-def _promise(candidate: Candidate, rated: list, left: np.ndarray, settings: Settings) -> Promise:
+def _promise(candidate: Candidate, rated: list, settings: Settings) -> Promise:
     best = max(rated, key=lambda each: each[0])
     by_what_is_left = sorted(rated, key=lambda each: each[1])
     scaled = {**best[3]}
@@ -110,17 +112,7 @@ def _promise(candidate: Candidate, rated: list, left: np.ndarray, settings: Sett
     for start in (by_what_is_left[0][3], scaled, *(each[3] for each in by_what_is_left[1:])):
         if start not in starts:
             starts.append(start)
-    score = Score(
-        candidate,
-        best[0],
-        starts[0],
-        (),
-        by_what_is_left[0][1],
-        _visible_from(candidate, rated),
-        best[4],
-        left,
-    )
-    return Promise(candidate, best[0], tuple(starts[: settings.starts]), score)
+    return Promise(candidate, best[0], tuple(starts[: settings.starts]), _visible_from(candidate, rated))
 
 
 def _visible_from(candidate: Candidate, rated: list) -> float:

@@ -11,12 +11,13 @@ from hydrolek_drake.diagnosis.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.law_problem import FoundLaw
 from hydrolek_drake.diagnosis.laws import Span
 from hydrolek_drake.diagnosis.locating.terms_for import Offer
-from hydrolek_drake.diagnosis.structures.cost import Tried, cost
+from hydrolek_drake.diagnosis.structures.cost import cost
 from hydrolek_drake.diagnosis.structures.enlarging import Opening, enlarged, opened
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.structures.race import Entrant, race
 from hydrolek_drake.diagnosis.structures.settings import Settings
 from hydrolek_drake.diagnosis.structures.tracing import trace
+from hydrolek_drake.diagnosis.structures.tried import Tried
 from hydrolek_drake.diagnosis.weighing import weighted_by
 from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
 

@@ -15,14 +15,14 @@ LOST_S = [(2.6, 2.9), (6.1, 6.35)]
 
 
 @pytest.fixture
-def share_of(bench, recorded):
+def share_of(bench, recorded, fitted):
     """(how it was recorded) -> share of what is left that lost commands would take."""
 
     def make(**how) -> float:
         training = recorded(bench, bench, **how)
         with ThreadPoolExecutor(2) as pool:
             workbench = Workbench(bench, free_parameters(bench), training, pool)
-            nominal = workbench.fit((), {}, workbench.fine, 1)
+            nominal = fitted(workbench, rounds=0)
             scales = natural_scales(bench, "joint", training)
             inputs = inputs_of(scales, bench.value("supply.pressure"), 10.0, "rad")
             wanted = [i for i in inputs if i.probe == "command"]

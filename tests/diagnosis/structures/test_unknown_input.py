@@ -20,14 +20,14 @@ OBSERVER_S = 0.3
 
 
 @pytest.fixture
-def seen_of(bench, recorded):
+def seen_of(bench, recorded, fitted):
     """(how it was recorded) -> what an observer around the bench's own numbers saw, and its joint's record and span."""
 
     def make(**how):
         training = recorded(bench, bench, pressure_noise_Pa=2e4, **how)
         with ThreadPoolExecutor(2) as pool:
             workbench = Workbench(bench, free_parameters(bench), training, pool)
-            nominal = workbench.fit((), {}, workbench.fine, 1)
+            nominal = fitted(workbench, rounds=0)
             workbench.training = tuple(weighted_by(workbench, nominal, training))
             scales = natural_scales(bench, "joint", training)
             inputs = inputs_of(scales, bench.value("supply.pressure"), 10.0, "rad")

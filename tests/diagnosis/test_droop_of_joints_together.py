@@ -2,16 +2,13 @@
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis import weighing
 from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.judged import Judged
 from hydrolek_drake.diagnosis.last_numbers import with_last_numbers
-from hydrolek_drake.diagnosis.settling import settled_together
 from hydrolek_drake.diagnosis.together import felt_together
 from hydrolek_drake.diagnosis.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
@@ -20,8 +17,6 @@ from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.identification.recorded_together import OneRecording, recordings_of
 from hydrolek_drake.rigs import Rig, load_rig
-
-pytestmark = pytest.mark.long("the rules' inner steps; practice pairs run them from end to end")
 
 MOVING = ("right_j2", "right_j3")
 LONG = {"seconds": 10.0, "largest_V": 4.0}
@@ -43,15 +38,15 @@ def machine(two_joints) -> Rig:
 
 
 @pytest.fixture(scope="module")
-def begun(two_joints, machine, recorded_together) -> Iterator[tuple[Workbench, object]]:
-    """The droop fitted with what measured angles tell of the other joint."""
+def begun(two_joints, machine, recorded_together, fitted) -> Iterator[tuple[Workbench, object]]:
+    """Data of both joints, and the droop fitted by rollouts of both."""
     training = experiments_of(two_joints, recorded_together(machine, 1, **LONG)[0])
     nominal = free_parameters(two_joints, [path for path in TRUTH if path != DROOP])
     with ThreadPoolExecutor(1) as pool:
         bench = Workbench(two_joints, nominal, training, pool)
         scales = natural_scales(two_joints, MOVING[0], training)
         droop = next(c for c in candidates_of(two_joints, MOVING[0], scales) if c.size_path == DROOP)
-        yield bench, bench.fit((droop,), {DROOP: 1e10}, bench.fine, 15)
+        yield bench, fitted(bench, (droop,), {DROOP: 1e10}, 20)
 
 
 def _true_place(bench: Workbench, machine: Rig, effects) -> np.ndarray:
@@ -60,10 +55,8 @@ def _true_place(bench: Workbench, machine: Rig, effects) -> np.ndarray:
 
 
 def test_a_droop_that_the_joints_share_is_fitted_to_its_size(begun, machine, recorded_together) -> None:
-    bench, by_angles = begun
+    bench, found = begun
     recorded = bench.training
-    assert by_angles.fit.over_noise > 1.2  # smoothed angles do not tell how the joints shake each other
-    found = settled_together(bench, by_angles)
     problem = bench.problem(found.effects, bench.fine, kind=ProblemTogether)
     left = problem.residuals(found.fit.unit)
     true = problem.residuals(_true_place(bench, machine, found.effects))
@@ -85,12 +78,12 @@ def test_a_droop_that_the_joints_share_is_fitted_to_its_size(begun, machine, rec
 
 
 def test_a_jacobian_of_one_joint_at_a_time_lacks_what_it_does_to_the_others(begun, machine) -> None:
-    bench, by_angles = begun
-    unit = _true_place(bench, machine, by_angles.effects)
+    bench, found = begun
+    unit = _true_place(bench, machine, found.effects)
     recorded = bench.training
     bench.training = tuple(felt_together(machine, recorded))
-    problem = bench.problem(by_angles.effects, bench.fine, kind=ProblemTogether)
-    alone = bench.problem(by_angles.effects, bench.fine).jacobian(unit)
+    problem = bench.problem(found.effects, bench.fine, kind=ProblemTogether)
+    alone = bench.problem(found.effects, bench.fine).jacobian(unit)
     together = problem.jacobian(unit)
     way = 1e-4 * np.ones(unit.size)
     change = problem.residuals(unit + way) - problem.residuals(unit)
@@ -112,27 +105,3 @@ def test_joints_that_do_not_move_are_held(recorded_together) -> None:
     for joint in MOVING:
         one, other = (d.signals["reading"][:, d.joints.index(joint)] for d in (every, fewer))
         assert one == pytest.approx(other, abs=1e-8)
-
-
-@pytest.mark.parametrize("effects", [("droop",), ("droop", "friction")])
-@pytest.mark.parametrize(("leaves", "wanted"), [((1.01,), 1.01), ((1.08, 1.05), 1.05), ((1.08, 1.38), 1.08)])
-def test_a_fit_settles_as_it_is_or_from_the_rigs_own_values_and_the_better_one_counts(
-    effects, leaves, wanted, monkeypatch
-) -> None:
-    path = "joints.one.effects.supply.pressure_droop.size"
-    bent = SimpleNamespace(effects=effects, values={path: 3e9, "joints.one.valve.overlap_a": 1e-4})
-    bench = SimpleNamespace(training=("weighed",), recorded=("as recorded",), fine=5e-4)
-    begun, left = [], list(leaves)
-
-    def settles(bench, hypothesis):
-        begun.append((hypothesis.values, bench.training))
-        bench.training = (f"told with {left[0]}",)
-        return SimpleNamespace(values=hypothesis.values, fit=SimpleNamespace(over_noise=left.pop(0)))
-
-    monkeypatch.setattr(weighing, "settled", settles)
-    bench.fit = lambda effects, start, step, most_steps: SimpleNamespace(effects=effects, values=start)
-    assert weighing._settled_or_anew(bench, bent).fit.over_noise == wanted
-    assert bench.training == (f"told with {wanted}",)
-    as_it_is, anew = (bent.values, ("weighed",)), ({path: 3e9}, ("as recorded",))
-    order = [anew, as_it_is] if len(effects) == 1 else [as_it_is, anew]
-    assert begun == order[: len(leaves)]
