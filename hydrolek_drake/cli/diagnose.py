@@ -58,10 +58,10 @@ def diagnose(
 
     from concurrent.futures import ThreadPoolExecutor
 
+    from hydrolek_drake.diagnosis.answer import INTERRUPTED
     from hydrolek_drake.diagnosis.diagnosis import diagnose as run_diagnosis
-    from hydrolek_drake.diagnosis.report import write_report
-    from hydrolek_drake.diagnosis.structures.answer import INTERRUPTED
-    from hydrolek_drake.diagnosis.table import summary
+    from hydrolek_drake.diagnosis.report.files import write_report
+    from hydrolek_drake.diagnosis.report.table import summary
     from hydrolek_drake.runs.report import prepare_folder
     from hydrolek_drake.runs.time_limit import ended_after
 

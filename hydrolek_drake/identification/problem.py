@@ -29,8 +29,8 @@ takes to open and a chamber to fill, and far shorter than a move, over which err
 
 PULLS_S = (0.03, PULL_S)
 """Time constants of fits that begin far off, one after the other. Within the first hardly anything piles up: what is
-left of it is nearly the error of the rates themselves, over which the squared residuals have few hollows (an equation
-error; Ljung, System Identification, 1999, chapter 7). The second one sees what is slower."""
+left of it is nearly the error of the rates themselves, over which the squared residuals have few local minima (an
+equation error; Ljung, System Identification, 1999, chapter 7). The second one sees what is slower."""
 
 LONGER = 2.0
 """Slopes that only lead a search are told by rollouts with steps so many times as long, ..."""

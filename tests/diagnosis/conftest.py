@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.candidates import candidates_of
-from hydrolek_drake.diagnosis.structures.answer import Answer
-from hydrolek_drake.diagnosis.structures.answering import Inquiry
-from hydrolek_drake.diagnosis.structures.race import Entrant, race
-from hydrolek_drake.diagnosis.structures.settings import Rung
-from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.answer import Answer
+from hydrolek_drake.diagnosis.fitting.race import Entrant, race
+from hydrolek_drake.diagnosis.inquiry import Inquiry
+from hydrolek_drake.diagnosis.search.settings import Rung
+from hydrolek_drake.diagnosis.structures.candidates import candidates_of
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters

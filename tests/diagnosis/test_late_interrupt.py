@@ -7,7 +7,7 @@ import pytest
 
 from hydrolek_drake.cli.app import run
 from hydrolek_drake.diagnosis import diagnosis
-from hydrolek_drake.diagnosis.structures import answering
+from hydrolek_drake.diagnosis import inquiry as answering
 
 PAIR = Path(__file__).parents[1] / "data" / "bench" / "practice_01"
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.challenge.cases import read_case, record
-from hydrolek_drake.diagnosis.candidates import candidates_of
 from hydrolek_drake.diagnosis.diagnosis import _nominal, diagnose
+from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording, read_recording

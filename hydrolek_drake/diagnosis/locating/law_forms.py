@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.laws import TERMS, Span, law_record
+from hydrolek_drake.diagnosis.laws.additions import LawTerm
+from hydrolek_drake.diagnosis.laws.terms import TERMS, Span, law_record
 from hydrolek_drake.diagnosis.locating.unknown_input import Seen, Unknown
-from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.rollout.one_point import law_along, stroke_and_lever
 from hydrolek_drake.rollout.rollout import Signals
 

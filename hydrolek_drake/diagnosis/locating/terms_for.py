@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
-from hydrolek_drake.diagnosis.law_inputs import Input, inputs_of
-from hydrolek_drake.diagnosis.laws import Span, span_of
+from hydrolek_drake.diagnosis.laws.additions import LawTerm
+from hydrolek_drake.diagnosis.laws.inputs import Input, inputs_of
+from hydrolek_drake.diagnosis.laws.terms import Span, span_of
 from hydrolek_drake.diagnosis.locating.law_forms import STEADY, terms_seen
-from hydrolek_drake.diagnosis.locating.lost import share_lost
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate, unknown_inputs
-from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
-from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.lost_commands.share import share_lost
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.rollout.rollout import Signals
 

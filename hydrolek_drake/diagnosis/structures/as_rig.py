@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-from hydrolek_drake.diagnosis.law_problem import FoundLaw, records_of
-from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
-from hydrolek_drake.diagnosis.workbench import Hypothesis
+from hydrolek_drake.diagnosis.laws.additions import LawTerm
+from hydrolek_drake.diagnosis.laws.law import FoundLaw, records_of
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 from hydrolek_drake.physics.law import MOST_TERMS
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.short_law import terms_of

@@ -1,0 +1,177 @@
+"""From data to a verdict: the search, the evidence, and what is told of the best structure."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from hydrolek_drake.diagnosis.answer import BY_BOTH, INTERRUPTED, Answer, Known
+from hydrolek_drake.diagnosis.data.splitting import mixed
+from hydrolek_drake.diagnosis.data.weighing import weighted_by
+from hydrolek_drake.diagnosis.evidence.conclusion import EXPLAINED, POSSIBLE, Conclusion, conclude
+from hydrolek_drake.diagnosis.evidence.judged import Judged
+from hydrolek_drake.diagnosis.evidence.judging import judge_structures
+from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, COARSE, MORE_AHEAD
+from hydrolek_drake.diagnosis.evidence.predictive import judge_as_fitted
+from hydrolek_drake.diagnosis.laws.found import law_of, likeliest_side, terms_of
+from hydrolek_drake.diagnosis.laws.law import FoundLaw
+from hydrolek_drake.diagnosis.laws.terms import Span
+from hydrolek_drake.diagnosis.locating.terms_for import Offer, estimates_for, terms_for
+from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
+from hydrolek_drake.diagnosis.lost_commands.found import lost_commands
+from hydrolek_drake.diagnosis.search.best_first import search_structures
+from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.effects.scales import Scales
+from hydrolek_drake.identification.experiment import Experiment
+
+PREDICTED = 1.2
+"""A model that is right predicts held-out data to so many times the noise. Where it does worse, its parameters'
+uncertainty or something else may be the reason, which only more data tell."""
+
+
+@dataclass(frozen=True)
+class Inquiry:
+    """What is asked of one set of recordings.
+
+    Attributes:
+        candidates: every effect that may be missing.
+        scales: natural scales of the driven joints at which there may be a law.
+        apart: whether the held-out data are of another kind, not blocks among the rest.
+        say: told what is being done.
+        cores: that roll out at the same time.
+        settings: of the search.
+    """
+
+    candidates: Sequence[Candidate]
+    scales: Mapping[str, Scales]
+    apart: bool
+    say: Callable[[str], None]
+    cores: int
+    settings: Settings = field(default_factory=Settings)
+
+    def answer(self, bench: Workbench, held_out: Sequence[Experiment]) -> Answer:
+        """Search and judge; an interrupt ends it with what is known by then.
+
+        Args:
+            bench: data and problems.
+            held_out: data that nothing is fitted to.
+
+        Raises:
+            KeyboardInterrupt: before the nominal model was fitted.
+        """
+        known, found = self._known(bench, held_out, Tried())
+        remarks: tuple[str, ...] = ()
+        if not known.interrupted and self.apart and _astray(known):
+            # numbers that the training data do not tell, the held-out ones ask for
+            training, kept = mixed(known.bench.training, known.held_out)
+            both = known.bench.with_training(training)
+            known, found = self._known(both, kept, _begun_from(found))
+            remarks = (BY_BOTH,)
+        if known.interrupted:
+            remarks = (*remarks, INTERRUPTED)
+        conclusion, law = self._told(known)
+        estimates: tuple[Estimate, ...] = ()
+        if (
+            not known.interrupted
+            and len(self.scales) == 1
+            and known.found.baseline.fit.over_noise > ABOVE_NOISE
+        ):
+            self.say("estimating what enters at each stage")
+            [(joint, scales)] = self.scales.items()
+            estimates = estimates_for(known.bench, known.found.baseline, joint, scales, self.cores)
+        return Answer(replace(known, conclusion=conclusion), conclusion, law, remarks, estimates)
+
+    def _known(self, bench: Workbench, held_out: Sequence[Experiment], found: Tried) -> tuple[Known, Tried]:
+        """The search and its judgement."""
+        interrupted = False
+
+        try:
+            search_structures(
+                bench,
+                self.candidates,
+                found,
+                self.say,
+                self.settings,
+                self.cores,
+                _Unlisted(self.scales, held_out, self.cores) if self.scales else None,
+            )
+        except KeyboardInterrupt:
+            if not found.hypotheses:
+                raise
+            interrupted = True
+            bench.resume()
+        self.say("holding the structures against data that none of them was fitted to")
+        weighted = tuple(held_out)
+        try:
+            weighted = tuple(weighted_by(bench, found.best, held_out))
+            bench.training = tuple(weighted_by(bench, found.best, bench.training))
+            judged = judge_structures(bench, found, weighted, self.settings, self.cores)
+        except KeyboardInterrupt:
+            interrupted = True
+            bench.resume()
+            judged = judge_as_fitted(bench, list(found.hypotheses.values()), weighted)
+        known = Known(bench, found, weighted, tuple(judged), conclude(judged), interrupted)
+        return known, found
+
+    def _told(self, known: Known) -> tuple[Conclusion, FoundLaw | None]:
+        """The conclusion, and the law of the best structure, if it has one."""
+        best = likeliest_side(known.judged)
+        terms = terms_of(best.hypothesis)
+        lost = known.found.law
+        if lost is not None and lost.fit.over_noise < best.hypothesis.fit.over_noise:
+            nominal = next(j for j in known.judged if not j.hypothesis.effects)
+            return replace(known.conclusion, verdict="unlisted_physics", best=nominal, groups=()), lost
+        if not terms:
+            return known.conclusion, None
+        stages = {terms[0].input.stage}
+        rivals = []
+        for other in known.judged:
+            theirs = terms_of(other.hypothesis)
+            possible = other.probability > POSSIBLE or other is known.judged[0]
+            if theirs and possible and theirs[0].input.stage not in stages:
+                stages.add(theirs[0].input.stage)
+                rivals.append(theirs[0].input.stage)
+        law = law_of(known.bench, best, known.held_out, rivals, self.cores)
+        named = _beside(known, best)
+        groups = (tuple(f"unlisted.{s}" for s in (terms[0].input.stage, *rivals)),) if rivals else ()
+        return replace(known.conclusion, verdict="unlisted_physics", best=named, groups=groups), law
+
+
+@dataclass(frozen=True)
+class _Unlisted:
+    """Physics in no list; see `best_first.Unlisted`."""
+
+    scales: Mapping[str, Scales]
+    held_out: Sequence[Experiment]
+    cores: int
+
+    def offer(self, bench: Workbench, parent: Hypothesis) -> Offer:
+        return terms_for(bench, parent, self.scales, self.cores)
+
+    def lost(self, bench: Workbench, parent: Hypothesis, span: Span) -> FoundLaw | None:
+        step = bench.coarsest(parent, parent.fit.over_noise, COARSE)
+        return lost_commands(bench, parent, self.held_out, span, step, EXPLAINED)
+
+
+def _beside(known: Known, best: Judged) -> Judged:
+    """The structure that has the best one's effects and no law, which the report tells the law beside."""
+    effects = frozenset(c.size_path for c in best.hypothesis.effects if isinstance(c, Candidate))
+    for judged in known.judged:
+        if judged.hypothesis.ids == effects:
+            return judged
+    return next(j for j in known.judged if not j.hypothesis.effects)
+
+
+def _astray(known: Known) -> bool:
+    """Whether the best structure explains the training data and goes astray on the held-out ones."""
+    best = known.judged[0]
+    at_noise = best.hypothesis.fit.over_noise <= MORE_AHEAD
+    return at_noise and best.over_noise > PREDICTED
+
+
+def _begun_from(found: Tried) -> Tried:
+    """A search that goes on from what another one found."""
+    again = Tried()
+    again.seeds = list(found.hypotheses.values())
+    return again
