@@ -1,8 +1,9 @@
 """The smallest size of each effect that a recording would have shown.
 
 A size is seen if what it changes, less what the model's own parameters undo of it, has the squared size that one more
-effect must bring (`search.gains.gain_needed`). The change is not in proportion to the size: much of what a large
-effect does beyond the reach of the parameters is of second order. So the size is sought by rollouts and not by a rule of three.
+effect must bring (`search.gains.gain_needed`). The change is not in proportion to the size: much of what a large effect
+does beyond the reach of the parameters is of second order. So the size is sought by rollouts and not by a rule of
+three.
 """
 
 import math

@@ -3,8 +3,8 @@
 Fits that choose among models end where another step tells none of them from another. A number may be several of its
 standard deviations from the bottom there, and where a joint sticks and slips or takes up a play, the curvature of a
 local minimum says little of how far it reaches, and nothing of a deeper one beside it. So each number of the effects is
-gone along on both sides, all others following, until the likelihood has fallen by what its interval allows; what lies lower
-on the way is where the fit begins anew (profile likelihood: Raue et al., Bioinformatics 25, 2009, 1923).
+gone along on both sides, all others following, until the likelihood has fallen by what its interval allows; what lies
+lower on the way is where the fit begins anew (profile likelihood: Raue et al., Bioinformatics 25, 2009, 1923).
 """
 
 from collections.abc import Sequence

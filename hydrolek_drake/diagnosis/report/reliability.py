@@ -1,10 +1,10 @@
 """How far the posterior probabilities of models can be trusted: how often such names have been right.
 
 The probabilities of `evidence.judging` weigh models that were fitted against each other. That the right one was not
-among them, or got stuck, is not in them, and with ten thousand samples they are nearly always 1 or 0. What is told of an effect is
-therefore its posterior probability times the share of names of the same kind that were right in the concealed
-challenge, where the truth is known (reliability diagram, Murphy and Winkler, Applied Statistics 26, 1977), with
-Jeffreys' half a case on either side.
+among them, or got stuck, is not in them, and with ten thousand samples they are nearly always 1 or 0. What is told of
+an effect is therefore its posterior probability times the share of names of the same kind that were right in the
+concealed challenge, where the truth is known (reliability diagram, Murphy and Winkler, Applied Statistics 26, 1977),
+with Jeffreys' half a case on either side.
 """
 
 from functools import cache
