@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 
 from hydrolek_drake.cli.app import run
-from hydrolek_drake.diagnosis import diagnosis
-from hydrolek_drake.diagnosis import inquiry as answering
+from hydrolek_drake.diagnosis import diagnosis, inquiry
 
 PAIR = Path(__file__).parents[1] / "data" / "bench" / "practice_01"
 
@@ -27,7 +26,7 @@ PAIR = Path(__file__).parents[1] / "data" / "bench" / "practice_01"
             ("detectable_from", "locations"),
             marks=pytest.mark.long("takes a third of a minute more"),
         ),
-        (answering, "judge_structures", ()),
+        (inquiry, "judge_structures", ()),
     ],
 )
 def test_what_is_known_is_kept_and_written(tmp_path, monkeypatch, where, what, lost) -> None:
