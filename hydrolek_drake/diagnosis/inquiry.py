@@ -2,21 +2,22 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from hydrolek_drake.diagnosis.answer import BY_BOTH, INTERRUPTED, Answer, Known
 from hydrolek_drake.diagnosis.data.splitting import mixed
 from hydrolek_drake.diagnosis.data.weighing import weighted_by
-from hydrolek_drake.diagnosis.evidence.conclusion import EXPLAINED, POSSIBLE, Conclusion, conclude
+from hydrolek_drake.diagnosis.evidence.conclusion import POSSIBLE, Conclusion, conclude
 from hydrolek_drake.diagnosis.evidence.judged import Judged
 from hydrolek_drake.diagnosis.evidence.judging import judge_structures
-from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, COARSE, MORE_AHEAD
+from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, MORE_AHEAD
 from hydrolek_drake.diagnosis.evidence.predictive import judge_as_fitted
 from hydrolek_drake.diagnosis.laws.found import law_of, likeliest_side, terms_of
 from hydrolek_drake.diagnosis.laws.law import FoundLaw
-from hydrolek_drake.diagnosis.laws.terms import Span
-from hydrolek_drake.diagnosis.locating.terms_for import Offer, estimates_for, terms_for
+from hydrolek_drake.diagnosis.locating.terms_for import estimates_for, terms_for
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
-from hydrolek_drake.diagnosis.lost_commands.found import lost_commands
+from hydrolek_drake.diagnosis.lost_commands.found import lost_of
+from hydrolek_drake.diagnosis.lost_commands.search import lost_in
 from hydrolek_drake.diagnosis.search.best_first import search_structures
 from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.search.tried import Tried
@@ -24,10 +25,6 @@ from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiment import Experiment
-
-PREDICTED = 1.2
-"""A model that is right predicts held-out data to so many times the noise. Where it does worse, its parameters'
-uncertainty or something else may be the reason, which only more data tell."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +91,7 @@ class Inquiry:
                 self.say,
                 self.settings,
                 self.cores,
-                _Unlisted(self.scales, held_out, self.cores) if self.scales else None,
+                _Unlisted(self.scales, self.cores) if self.scales else None,
             )
         except KeyboardInterrupt:
             if not found.hypotheses:
@@ -118,10 +115,10 @@ class Inquiry:
         """The conclusion, and the law of the best structure, if it has one."""
         best = likeliest_side(known.judged)
         terms = terms_of(best.hypothesis)
-        lost = known.found.law
-        if lost is not None and lost.fit.over_noise < best.hypothesis.fit.over_noise:
-            nominal = next(j for j in known.judged if not j.hypothesis.effects)
-            return replace(known.conclusion, verdict="unlisted_physics", best=nominal, groups=()), lost
+        if lost_in(best.hypothesis) is not None:
+            lost = lost_of(known.bench, best, known.held_out, self.settings, self.cores)
+            told = replace(known.conclusion, verdict="unlisted_physics", best=_beside(known, best), groups=())
+            return told, lost
         if not terms:
             return known.conclusion, None
         stages = {terms[0].input.stage}
@@ -132,7 +129,7 @@ class Inquiry:
             if theirs and possible and theirs[0].input.stage not in stages:
                 stages.add(theirs[0].input.stage)
                 rivals.append(theirs[0].input.stage)
-        law = law_of(known.bench, best, known.held_out, rivals, self.cores)
+        law = law_of(known.bench, best, known.held_out, rivals, self.settings, self.cores)
         named = _beside(known, best)
         groups = (tuple(f"unlisted.{s}" for s in (terms[0].input.stage, *rivals)),) if rivals else ()
         return replace(known.conclusion, verdict="unlisted_physics", best=named, groups=groups), law
@@ -143,15 +140,10 @@ class _Unlisted:
     """Physics in no list; see `best_first.Unlisted`."""
 
     scales: Mapping[str, Scales]
-    held_out: Sequence[Experiment]
     cores: int
 
-    def offer(self, bench: Workbench, parent: Hypothesis) -> Offer:
+    def offer(self, bench: Workbench, parent: Hypothesis) -> Sequence[Any]:
         return terms_for(bench, parent, self.scales, self.cores)
-
-    def lost(self, bench: Workbench, parent: Hypothesis, span: Span) -> FoundLaw | None:
-        step = bench.coarsest(parent, parent.fit.over_noise, COARSE)
-        return lost_commands(bench, parent, self.held_out, span, step, EXPLAINED)
 
 
 def _beside(known: Known, best: Judged) -> Judged:
@@ -167,7 +159,7 @@ def _astray(known: Known) -> bool:
     """Whether the best structure explains the training data and goes astray on the held-out ones."""
     best = known.judged[0]
     at_noise = best.hypothesis.fit.over_noise <= MORE_AHEAD
-    return at_noise and best.over_noise > PREDICTED
+    return at_noise and best.over_noise > MORE_AHEAD
 
 
 def _begun_from(found: Tried) -> Tried:

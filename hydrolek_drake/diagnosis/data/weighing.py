@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.data.joints_together import felt_together
 from hydrolek_drake.diagnosis.evidence.noise import FAR
+from hydrolek_drake.diagnosis.lost_commands.windows import arrivals
 from hydrolek_drake.diagnosis.structures.as_rig import rig_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.channel import faithful
@@ -33,7 +34,8 @@ def weighted_by(
     if hypothesis.fit.over_noise < FAR and any(e.others is not None for e in experiments):
         experiments = felt_together(rig_of(bench.rig, hypothesis), experiments)
     better = []
-    for experiment in experiments:
+    arrived = arrivals(hypothesis.effects, hypothesis.values, experiments)
+    for recorded, experiment in zip(experiments, arrived, strict=True):
         coarse = experiment.simulate(records, bench.fine).signals
         fine = experiment.simulate(records, 0.5 * bench.fine).signals
         alone = None
@@ -56,5 +58,5 @@ def weighted_by(
                 )
             )
         response = experiment.responding(records, 0.5 * bench.fine, fine)
-        better.append(replace(experiment, channels=tuple(channels), start_response=response))
+        better.append(replace(recorded, channels=tuple(channels), start_response=response))
     return better

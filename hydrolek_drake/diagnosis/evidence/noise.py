@@ -4,9 +4,6 @@ FAR = 3.0
 """Structures this many times above the noise are told apart by rollouts with twice the rig's own step: its error stays
 far below what is to be explained."""
 
-COARSE = 4.0
-"""Integration step while lost commands are looked for, over the rig's own, at most: 16 times its error."""
-
 NOISE_KNOWN = 0.015
 """Relative uncertainty of the noise level, which is estimated from the recording."""
 

@@ -103,10 +103,9 @@ def _beside(bench: Workbench, runners: Sequence[Runner], cores: int) -> list[Run
     now = list(runners)
     most = max((len(r.effects) for r in runners), default=0)
     for number in range(most):
-        for what in ("size", "moment"):
-            ways = [_way(r, number, what) for r in now]
-            if not any(ways):
-                continue
+        own = [_ways(r, number) for r in now]
+        for turn in range(max(map(len, own), default=0)):
+            ways = [each[turn] if turn < len(each) else None for each in own]
             places = searched_along([r.place for r in now], ways, bench.pool, cores)
             moved = [place is not r.place for place, r in zip(places, now, strict=True)]
             places = [p if m else replace(p, ended=True) for p, m in zip(places, moved, strict=True)]
@@ -115,26 +114,24 @@ def _beside(bench: Workbench, runners: Sequence[Runner], cores: int) -> list[Run
     return now
 
 
-def _way(runner: Runner, number: int, what: str) -> Along | None:
-    """What is tried of one of a structure's additions."""
+def _ways(runner: Runner, number: int) -> list[Along]:
+    """Lines along which one of a structure's additions is tried elsewhere."""
     if number >= len(runner.effects):
-        return None
+        return []
     candidate = runner.effects[number]
     paths = list(runner.place.problem.parameters.paths)
-    if what == "moment":
-        for free in candidate.moments:
-            index = paths.index(free.path)
-            grid = (np.arange(MOMENTS) + 0.5) / MOMENTS
-            near = (
-                runner.place.unit[index] + np.array([-1.0, -0.3, -0.1, -0.03, 0.03, 0.1, 0.3, 1.0]) / MOMENTS
-            )
-            return Along(index, np.clip(np.concatenate([grid, near]), 0.0, 1.0))
-        return None
-    if not candidate.sudden:
-        return None
-    free, index = candidate.size, paths.index(candidate.size_path)
-    value = free.from_unit(float(runner.place.unit[index]))
-    return Along(index, np.clip([free.to_unit(value * stride) for stride in STRIDES], EDGE, 1.0 - EDGE))
+    ways = []
+    if candidate.sudden:
+        free, index = candidate.size, paths.index(candidate.size_path)
+        value = free.from_unit(float(runner.place.unit[index]))
+        places = np.clip([free.to_unit(value * stride) for stride in STRIDES], EDGE, 1.0 - EDGE)
+        ways.append(Along(index, places))
+    grid = (np.arange(MOMENTS) + 0.5) / MOMENTS
+    near = np.array([-1.0, -0.3, -0.1, -0.03, 0.03, 0.1, 0.3, 1.0]) / MOMENTS
+    for free in candidate.searched:
+        index = paths.index(free.path)
+        ways.append(Along(index, np.clip(np.concatenate([grid, runner.place.unit[index] + near]), 0.0, 1.0)))
+    return ways
 
 
 def _led(

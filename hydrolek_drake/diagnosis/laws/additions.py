@@ -61,6 +61,7 @@ class LawTerm:
     weakens: ClassVar[bool] = False
     sudden: ClassVar[bool] = False
     moments: ClassVar[tuple[Free, ...]] = ()
+    searched: ClassVar[tuple[Free, ...]] = ()
     beneath: ClassVar[float] = 0.0
 
     @property
@@ -223,3 +224,12 @@ class WithTerms(ParameterSet):
     def unit(self, values: Mapping[str, float] | None = None) -> np.ndarray:
         """Place of the given values, or of the rig's own and of terms that do nothing, pulled into the cube."""
         return super().unit({**self._neutral, **(values or {})})
+
+
+ADDED = (".effects.", ".law.", ".lost.")
+"""In the paths of parameters that the nominal model does not have."""
+
+
+def of_additions(values: Mapping[str, float]) -> dict[str, float]:
+    """Those of some values that belong to what is added to the nominal model."""
+    return {path: value for path, value in values.items() if any(part in path for part in ADDED)}

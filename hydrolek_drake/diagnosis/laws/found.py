@@ -6,12 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.evidence.judging import units_ahead
+from hydrolek_drake.diagnosis.evidence.judging import stands_ahead
 from hydrolek_drake.diagnosis.evidence.noise import NOISE_KNOWN
 from hydrolek_drake.diagnosis.intervals.curvature import intervals_of
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.laws.law import FRICTIONS, SCAN_S, FoundLaw, Law
 from hydrolek_drake.diagnosis.laws.terms import Term
+from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
@@ -24,7 +25,12 @@ def terms_of(hypothesis: Hypothesis) -> list[LawTerm]:
 
 
 def law_of(
-    bench: Workbench, judged: Judged, held_out: Sequence[Experiment], rivals: Sequence[str], cores: int
+    bench: Workbench,
+    judged: Judged,
+    held_out: Sequence[Experiment],
+    rivals: Sequence[str],
+    settings: Settings,
+    cores: int,
 ) -> FoundLaw:
     """What a structure's terms are together.
 
@@ -33,6 +39,7 @@ def law_of(
         judged: a structure with terms.
         held_out: data that it was held against.
         rivals: other stages at which a law does as well.
+        settings: of the search.
         cores: that roll out at the same time.
     """
     h = judged.hypothesis
@@ -53,11 +60,10 @@ def law_of(
             for name in PLACED.get(t.term.place, ())
         ]
     rest = [i for i in range(len(paths)) if i not in order]
-    units = units_ahead(bench, [h], held_out, h.step, cores)[0]
     parameters = bench.parameters(h.effects)
     ahead = []
-    for unit in units:
-        values = parameters.values(unit)
+    for effects, unit in stands_ahead(bench, [h], held_out, h.step, settings, cores)[0]:
+        values = bench.parameters(effects).values(unit)
         ahead.append(np.array([values[paths[i]] for i in order]))
     experiment = next(e for e in bench.training if e.joint == first.joint)
     records = parameters.records(h.fit.unit)

@@ -1,42 +1,22 @@
-"""Commands that got lost on their way: windows in which the machine did what it does without any.
+"""What is told of commands that got lost on their way: windows in which the machine did what it does without any."""
 
-Such windows follow no law, so they are found in each recording (`windows`). Where they begin and how long they
-last is fitted together with the nominal parameters.
-"""
-
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.fitting.projection import Across
+from hydrolek_drake.diagnosis.evidence.judged import Judged
 from hydrolek_drake.diagnosis.intervals.curvature import intervals_of
 from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.laws.law import FoundLaw, Law
-from hydrolek_drake.diagnosis.laws.terms import Span, Term
-from hydrolek_drake.diagnosis.lost_commands.fit import fitted_windows
-from hydrolek_drake.diagnosis.lost_commands.problem import LostProblem
-from hydrolek_drake.diagnosis.lost_commands.windows import (
-    LONGEST_S,
-    NONE,
-    Windows,
-    found_in,
-    in_order,
-    recording_of,
-    too_much,
-)
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.laws.terms import Term
+from hydrolek_drake.diagnosis.lost_commands.search import lost_in, windows_ahead
+from hydrolek_drake.diagnosis.lost_commands.windows import LONGEST_S, Windows, arrivals, recording_of
+from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.rollout.rollout import Signals
-
-ROUNDS = 3
-"""So often more windows are looked for, beside those that were fitted."""
-
-FINER = 2.0
-"""Integration step of the fits over the rig's own, at most."""
 
 LOST = Input("command", "command", "time for which a command is lost", "s", LONGEST_S, one_sided=True)
 """What is told of them: how long one lasts."""
@@ -93,83 +73,48 @@ class LostCommands(FoundLaw):
         return arrived.simulate(records, step).signals
 
 
-def lost_commands(
-    bench: Workbench,
-    left: Hypothesis,
-    held_out: Sequence[Experiment],
-    span: Span,
-    step: float,
-    most: float = math.inf,
-) -> LostCommands | None:
-    """Windows in which commands were lost, fitted, or None if they do not explain what a model leaves.
+def lost_of(
+    bench: Workbench, judged: Judged, held_out: Sequence[Experiment], settings: Settings, cores: int
+) -> LostCommands:
+    """What is told of the commands that a structure has lost.
 
     Args:
-        bench: training data of one joint.
-        left: the model that leaves it.
-        held_out: data in which windows are found and nothing else is fitted.
-        span: what laws are told in.
-        step: of the integration while windows are looked for [s].
-        most: over the noise, that they may leave of the training data; else none are looked for in the held-out data.
+        bench: data and problems.
+        judged: a structure with lost commands.
+        held_out: data that it was held against.
+        settings: of the search.
+        cores: that roll out at the same time.
     """
-    parameters = bench.parameters(left.effects)
-    neutral = float(
-        parameters.records(parameters.unit(left.values))[bench.training[0].index]["command"]["neutral"]
-    )
-    finer = min(step, FINER * bench.fine)
-    unit, windows, fit = (
-        parameters.unit(left.values),
-        {recording_of(e): NONE for e in bench.training},
-        left.fit,
-    )
-    at = Across(fit)
-    for _ in range(ROUNDS):
-        records = parameters.records(unit)
-        found = found_in(bench, bench.training, windows, records, step, neutral, at, fit.off_prior)
-        if not any(len(lost) for lost in found.values()):
-            break
-        windows = {name: in_order(lost, found[name]) for name, lost in windows.items()}
-        problem = LostProblem(parameters, bench.training, finer, windows, neutral)
-        fit, windows = fitted_windows(bench, problem, unit, found)
-        if any(too_much(windows[recording_of(e)], e) for e in bench.training):
-            return None
-        unit = fit.unit[: len(parameters)]
-        at = Across(fit)
-    if finer > bench.fine:  # oil that rings does so with the rig's own step
-        finer = bench.fine
-        problem = LostProblem(parameters, bench.training, finer, windows, neutral)
-        fit, windows = fitted_windows(bench, problem, unit, None)
-        unit = fit.unit[: len(parameters)]
-    if fit.over_noise > most or not any(len(lost) for lost in windows.values()):
-        return None
-    every = dict(windows)
+    h = judged.hypothesis
+    lost = lost_in(h)
+    assert lost is not None
+    every = lost.windows(h.values)
     for experiment in held_out:
-        if recording_of(experiment) not in every:  # blocks of a recording that is fitted too have its windows
-            every[recording_of(experiment)] = _in_held_out(
-                bench, parameters, experiment, unit, finer, neutral
-            )
-    records = parameters.records(unit)
-    ahead = LostProblem(parameters, held_out, finer, every, neutral).left(records, every)
-    counted = sum(experiment.counted for experiment in held_out)
-    first = bench.training[0]
-    difference = (
-        first.without_command(windows[recording_of(first)], neutral).simulate(records, finer).signals.reading
-        - first.simulate(records, finer).signals.reading
-    )
-    lasted = np.concatenate([np.diff(lost, axis=1).ravel() for lost in windows.values()])
+        which = recording_of(experiment)
+        if which not in every:
+            ahead = windows_ahead(bench, h, experiment, h.step, settings, cores)
+            assert ahead is not None
+            every[which] = ahead.seen[which]
+    parameters = bench.parameters(h.effects)
+    records = parameters.records(h.fit.unit)
+    first = next(e for e in bench.training if e.joint == lost.joint)
+    [arrived] = arrivals(h.effects, h.values, [first])
+    with_lost, plain = (e.simulate(records, bench.fine).signals.reading for e in (arrived, first))
+    lasted = np.concatenate([np.diff(windows, axis=1).ravel() for windows in every.values()])
     return LostCommands(
         law=Law(LOST, (Term(("command",)),), 0.0),
         values=np.array([float(np.median(lasted))]),
-        parameters=parameters.values(unit),
-        fit=fit,
-        held_out_over_noise=float(np.sqrt(ahead @ ahead / max(counted, 1))),
-        difference=difference,
-        span=span,
-        ahead=tuple(every[recording_of(e)].ravel() for e in held_out),
-        joint=first.joint,
-        intervals=intervals_of(parameters, fit),
+        parameters={path: value for path, value in h.values.items() if ".lost." not in path},
+        fit=h.fit,
+        held_out_over_noise=judged.over_noise,
+        difference=with_lost - plain,
+        span=lost.span,
+        ahead=tuple(every[recording_of(e)].ravel() for e in held_out if e.joint == lost.joint),
+        joint=lost.joint,
+        intervals={p: known for p, known in intervals_of(parameters, h.fit).items() if ".lost." not in p},
         windows=every,
         called=names_of([*bench.training, *held_out]),
-        neutral=neutral,
+        neutral=lost.neutral,
     )
 
 
@@ -183,28 +128,3 @@ def names_of(experiments: Sequence[Experiment]) -> dict[str, str]:
                 experiment.name if not alike else f"{experiment.name} ({alike + 1})"
             )
     return names
-
-
-def _in_held_out(
-    bench: Workbench,
-    parameters: ParameterSet,
-    experiment: Experiment,
-    unit: np.ndarray,
-    step: float,
-    neutral: float,
-) -> Windows:
-    """Windows in a recording to which nothing else is fitted."""
-    own = recording_of(experiment)
-    windows = {own: NONE}
-    for _ in range(ROUNDS):
-        records = parameters.records(unit)
-        found = found_in(bench, [experiment], windows, records, step, neutral, None, np.zeros(0))
-        if not len(found[own]):
-            break
-        together = in_order(windows[own], found[own])
-        problem = LostProblem(parameters, [experiment], step, {own: together}, neutral)
-        _, fitted = fitted_windows(bench, problem, unit, found, alone=True)
-        if too_much(fitted[own], experiment):
-            break
-        windows = fitted
-    return windows[own]

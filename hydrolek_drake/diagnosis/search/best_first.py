@@ -5,13 +5,8 @@ from dataclasses import replace
 from typing import Any, Protocol
 
 from hydrolek_drake.diagnosis.data.weighing import weighted_by
-from hydrolek_drake.diagnosis.evidence.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
-from hydrolek_drake.diagnosis.laws.additions import LawTerm
-from hydrolek_drake.diagnosis.laws.law import FoundLaw
-from hydrolek_drake.diagnosis.laws.terms import Span
-from hydrolek_drake.diagnosis.locating.terms_for import Offer
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.search.openings import Opening, enlarged, opened
@@ -21,19 +16,15 @@ from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
-EFFECTS, LAWS, LOST = "effects", "laws", "lost commands"
+EFFECTS, LAWS = "effects", "laws"
 """What structures are enlarged by."""
 
 
 class Unlisted(Protocol):
     """Physics in no list that may be beside a structure."""
 
-    def offer(self, bench: Workbench, parent: Hypothesis) -> Offer:
-        """What may explain what a structure leaves."""
-        ...
-
-    def lost(self, bench: Workbench, parent: Hypothesis, span: Span) -> FoundLaw | None:
-        """Commands that got lost, fitted beside a structure."""
+    def offer(self, bench: Workbench, parent: Hypothesis) -> Sequence[Any]:
+        """Terms of laws and lost commands that may explain what a structure leaves."""
         ...
 
 
@@ -68,13 +59,7 @@ def search_structures(
             if key not in seen or seen[key].parent is not parent:
                 own: Sequence[Any] = candidates
                 if kind == LAWS and unlisted is not None:
-                    offer = unlisted.offer(bench, parent)
-                    own = offer.terms
-                    if offer.lost > settings.lost and found.law is None and (parent.ids, LOST) not in done:
-                        done.add((parent.ids, LOST))
-                        found.law = unlisted.lost(bench, parent, offer.span)
-                        if found.law is not None and found.law.fit.over_noise <= EXPLAINED:
-                            return
+                    own = unlisted.offer(bench, parent)
                 seen[key] = opened(bench, parent, kind, own, found, settings, cores)
             openings.append(seen[key])
         openings = [each for each in openings if _worth_while(each)]
@@ -100,7 +85,7 @@ def _open(
     if (frozenset(), EFFECTS) not in done:
         return [(found.baseline, EFFECTS)]
     if best.fit.over_noise <= ABOVE_NOISE:
-        lawful = any(isinstance(c, LawTerm) for c in best.effects)
+        lawful = not all(isinstance(c, Candidate) for c in best.effects)
         items = [(best, LAWS if lawful else EFFECTS)]
     else:
         items = []
@@ -111,7 +96,7 @@ def _open(
             beyond = count >= settings.most_additions or sizes[count] > settings.beam
             if beyond or (h.effects and cost(h) >= cost(found.baseline)):
                 continue
-            if not any(isinstance(c, LawTerm) for c in h.effects):
+            if all(isinstance(c, Candidate) for c in h.effects):
                 items.append((h, EFFECTS))
             if laws:
                 items.append((h, LAWS))

@@ -10,7 +10,9 @@ import numpy as np
 from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
 from hydrolek_drake.diagnosis.fitting.race import Entrant, Runner, problem_of, race
-from hydrolek_drake.diagnosis.laws.additions import LawTerm
+from hydrolek_drake.diagnosis.laws.additions import of_additions
+from hydrolek_drake.diagnosis.lost_commands.search import with_windows
+from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.search.promise import Promise, promises_at
 from hydrolek_drake.diagnosis.search.settings import Rung, Settings
@@ -33,6 +35,7 @@ class Opening:
         pulled: what they promise to an observer around the rig's own numbers.
         sizes: full path -> value of what the structure adds to the nominal model.
         expected: cost of the structure that they promise.
+        lost: windows of lost commands that may be added too.
     """
 
     parent: Hypothesis
@@ -42,6 +45,7 @@ class Opening:
     pulled: tuple[Promise, ...]
     sizes: dict[str, float]
     expected: float
+    lost: LostWindows | None = None
 
     @property
     def key(self) -> tuple[frozenset[str], str]:
@@ -74,8 +78,10 @@ def opened(
         settings: of the search.
         cores: that roll out at the same time.
     """
+    lost = next((c for c in additions if isinstance(c, LostWindows)), None)
+    additions = [c for c in additions if c is not lost]
     own = tuple(c for c in additions if c.size_path not in parent.ids and not redundant(parent.effects, c))
-    sizes = {p: v for p, v in parent.values.items() if ".effects." in p or ".law." in p}
+    sizes = of_additions(parent.values)
     if not own:
         return Opening(parent, kind, (), (), (), sizes, math.inf)
     coarse = (1.0 if parent.fit.over_noise < FAR else 2.0) * bench.fine
@@ -93,6 +99,8 @@ def opened(
         near = descend([begun], 2, bench.pool, cores)[0]
         pulled = promises_at(bench, near, parent.effects, own, first.coarse * bench.fine, settings, cores)
         shares.append(_share(pulled[0].gain, near.objective, near.problem.counted))
+        if lost is not None:
+            shares.append(lost.share)
     excess = max(parent.fit.objective - parent.fit.counted, 0.0)
     count = max(parent.fit.counted, 1)
     left = max(parent.fit.objective - max(shares) * excess, count)
@@ -106,7 +114,7 @@ def opened(
         + "; pulled "
         + ", ".join(f"{p.candidate.id} {p.gain:.0f}" for p in pulled[:4])
     )
-    return Opening(parent, kind, own, tuple(free), tuple(pulled), sizes, expected)
+    return Opening(parent, kind, own, tuple(free), tuple(pulled), sizes, expected, lost)
 
 
 def _share(gain: float, objective: float, counted: int) -> float:
@@ -159,6 +167,9 @@ def enlarged(
         ended += race(bench, entrants, _steps(settings.continued, fine), cores, _traced("observed"))
     for each in ended:
         found.keep(each)
+    if opening.lost is not None and reached > AT_NOISE and opening.lost.share >= settings.lost:
+        for each in with_windows(bench, parent, opening.lost, settings, cores):
+            found.keep(each)
     _widened(bench, found, settings, cores)
     _lessened(bench, found, settings, cores)
 
@@ -188,7 +199,7 @@ def _widened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> 
     """The best structure with wider ranges, where a number of what it adds lies at an end of one (`ranges`)."""
     best = found.best
     wide: tuple[Any, ...] = tuple(
-        c.widened(best.values) if isinstance(c, LawTerm) else widened(c, best.values) for c in best.effects
+        widened(c, best.values) if isinstance(c, Candidate) else c.widened(best.values) for c in best.effects
     )
     if any(a.free != b.free for a, b in zip(wide, best.effects, strict=True)):
         for each in race(bench, [Entrant(wide, best.values)], settings.free[-1:], cores):

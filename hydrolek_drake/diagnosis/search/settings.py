@@ -75,9 +75,12 @@ class Settings:
     patience: int = 3
     """The search ends once so many rounds have not improved the best structure."""
 
-    lost: float = 0.5
-    """Commands that got lost are fitted if they promise this share of what is left above the noise: they have two
-    numbers for every time, and take minutes to fit."""
+    lost: float = 0.3
+    """Commands that got lost are fitted if they promise this share of what is left above the noise."""
+
+    lost_rounds: int = 5
+    """So often windows of lost commands are looked for beside those that were fitted: what large ones leave hides
+    small ones."""
 
     most_additions: int = 3
     beam: int = 2

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, field
 
-from hydrolek_drake.diagnosis.laws.law import FoundLaw
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.promise import Promise
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
@@ -17,7 +16,6 @@ class Tried:
         left: what effects promise that the structure which was enlarged last has not.
         given_up: structures that were not fitted again when the data were weighed anew.
         weighed_at: what the structure left, over the noise, by which the data are weighed.
-        law: commands that got lost, beside the nominal model; None for none.
         costs: of the best structure after each round.
         seeds: structures fitted to other data, from where fits begin too.
     """
@@ -26,7 +24,6 @@ class Tried:
     left: list[Promise] = field(default_factory=list)
     given_up: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
     weighed_at: float = 0.0
-    law: FoundLaw | None = None
     costs: list[float] = field(default_factory=list)
     seeds: list[Hypothesis] = field(default_factory=list)
 

@@ -19,7 +19,11 @@ def rig_of(rig: Rig, hypothesis: Hypothesis) -> Rig:
         rig: that is diagnosed.
         hypothesis: a structure, fitted.
     """
-    values = {path: value for path, value in hypothesis.values.items() if ".law." not in path}
+    values = {
+        path: value
+        for path, value in hypothesis.values.items()
+        if ".law." not in path and ".lost." not in path
+    }
     laws = dict(rig.laws)
     for term in hypothesis.effects:
         if isinstance(term, LawTerm):

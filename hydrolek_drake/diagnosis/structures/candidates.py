@@ -74,6 +74,11 @@ class Candidate:
         return tuple(free for free, search in pairs if search.moment)
 
     @property
+    def searched(self) -> tuple[Free, ...]:
+        """Those along which it is tried elsewhere too, since residuals have no slope there: moments."""
+        return self.moments
+
+    @property
     def size(self) -> Free:
         """The parameter that switches it on."""
         return next(free for free in self.free if free.path == self.size_path)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.laws.additions import LawTerm, WithTerms
+from hydrolek_drake.diagnosis.lost_commands.windows import LostProblem, LostWindows, WithWindows
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
@@ -22,9 +23,6 @@ SPREAD = 1.0 / math.sqrt(12.0)
 Used as a weak prior about the rig's own values: what a recording does not tell stays where the rig has it,
 instead of wandering off to make up for physics that is missing.
 """
-
-STEP_SHARE = 0.5
-"""A coarse step may be wrong by this share of what is to be explained: a quarter of the squared residuals."""
 
 
 @dataclass(frozen=True)
@@ -127,12 +125,14 @@ class Workbench:
         key = frozenset(own)  # with their ranges, which may be widened
         if key not in self._sets:
             terms = [c for c in effects if isinstance(c, LawTerm)]
-            of_rig = [p for c in effects if not isinstance(c, LawTerm) for p in c.free]
-            self._sets[key] = (
+            lost = [c for c in effects if isinstance(c, LostWindows)]
+            of_rig = [p for c in effects if not isinstance(c, LawTerm | LostWindows) for p in c.free]
+            found = (
                 WithTerms(self.rig, [*self.nominal, *of_rig], terms)
                 if terms
-                else ParameterSet(self.rig, [*self.nominal, *own])
+                else ParameterSet(self.rig, [*self.nominal, *of_rig])
             )
+            self._sets[key] = WithWindows(found, lost) if lost else found
         return self._sets[key]
 
     def problem(
@@ -147,6 +147,8 @@ class Workbench:
         parameters = self.parameters(effects)
         prior = np.full(len(parameters), np.inf)
         prior[: len(self.nominal)] = SPREAD
+        if kind is Problem and isinstance(parameters, WithWindows):
+            kind = LostProblem
         return kind(
             parameters,
             experiments or self.training,
@@ -186,22 +188,3 @@ class Workbench:
                 future.cancel()
             wait(futures)
             raise
-
-    def coarsest(self, hypothesis: Hypothesis, over: float, most: float) -> float:
-        """Integration step [s] at most so many times the rig's own whose error is below what is to be explained.
-
-        Args:
-            hypothesis: at whose values the error is told.
-            over: what is to be explained, in units of the noise.
-            most: the coarsest that is asked for, over the rig's own.
-        """
-        if most <= 1.0:
-            return self.fine
-        exact = self.residuals(hypothesis, self.training, self.fine)
-        counted = sum(experiment.counted for experiment in self.training)
-        while most > 1.0:
-            error = self.residuals(hypothesis, self.training, most * self.fine) - exact
-            if np.nan_to_num(error @ error, nan=np.inf) < (STEP_SHARE * over) ** 2 * counted:
-                break
-            most *= 0.5
-        return max(most, 1.0) * self.fine
