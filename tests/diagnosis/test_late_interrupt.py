@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from hydrolek_drake.cli.app import run
-from hydrolek_drake.diagnosis import attempt, diagnosis
+from hydrolek_drake.diagnosis import diagnosis, inquiry
 
 PAIR = Path(__file__).parents[1] / "data" / "bench" / "practice_01"
 
@@ -26,7 +26,7 @@ PAIR = Path(__file__).parents[1] / "data" / "bench" / "practice_01"
             ("detectable_from", "locations"),
             marks=pytest.mark.long("takes a third of a minute more"),
         ),
-        (attempt, "judge", ()),
+        (inquiry, "judge_structures", ()),
     ],
 )
 def test_what_is_known_is_kept_and_written(tmp_path, monkeypatch, where, what, lost) -> None:

@@ -4,14 +4,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.law_inputs import Input, inputs_of
-from hydrolek_drake.diagnosis.laws import Span, span_of
+from hydrolek_drake.diagnosis.laws.additions import LawTerm
+from hydrolek_drake.diagnosis.laws.inputs import Input, inputs_of
+from hydrolek_drake.diagnosis.laws.terms import Span, span_of
 from hydrolek_drake.diagnosis.locating.law_forms import STEADY, terms_seen
-from hydrolek_drake.diagnosis.locating.lost import lost_seen
 from hydrolek_drake.diagnosis.locating.unknown_input import OBSERVER_S, Estimate, near, unknown_inputs
-from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
-from hydrolek_drake.diagnosis.structures.lost_windows import LostWindows
-from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.lost_commands.seen import lost_seen
+from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.rollout.rollout import Signals
 

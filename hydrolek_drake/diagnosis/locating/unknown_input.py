@@ -22,12 +22,12 @@ import numpy as np
 from scipy.sparse import csc_matrix
 
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
-from hydrolek_drake.diagnosis.law_inputs import Input
-from hydrolek_drake.diagnosis.score import Across
-from hydrolek_drake.diagnosis.structures.law_terms import of_additions
-from hydrolek_drake.diagnosis.structures.lost_windows import arrivals
-from hydrolek_drake.diagnosis.structures.race import hypothesis_of
-from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.fitting.projection import Across
+from hydrolek_drake.diagnosis.fitting.race import hypothesis_of
+from hydrolek_drake.diagnosis.laws.additions import of_additions
+from hydrolek_drake.diagnosis.laws.inputs import Input
+from hydrolek_drake.diagnosis.lost_commands.windows import arrivals
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rollout.lane_view import LANES
