@@ -24,6 +24,7 @@ COLOURS = {
     "none": "#2f7d4f",
     "missing_physics": "#b4520b",
     "ambiguous": "#8a6d00",
+    "interrupted": "#8a6d00",
     "unlisted_physics": "#8b2c5b",
     "bad_data": "#9b1c1c",
 }

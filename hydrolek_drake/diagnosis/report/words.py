@@ -91,6 +91,15 @@ def headline(diagnosis: Diagnosis) -> str:
             f"Nothing is missing: the nominal model, with its own parameters fitted, predicts the held-out data "
             f"to {after} the noise."
         )
+    if diagnosis.verdict == "interrupted":
+        so_far = _listed([c.effect.title for c in best.hypothesis.effects]) or "the nominal model"
+        if diagnosis.law is not None:
+            so_far = f"a law at the stage {diagnosis.law.law.input.stage}"
+            after = _ratio(diagnosis.law.held_out_over_noise)
+        return (
+            f"Cut off before the search had ended: best so far is {so_far}, which leaves {after} the noise on "
+            f"held-out data (nominal model: {before}). More time may change it."
+        )
     names = _listed([c.effect.title for c in best.hypothesis.effects])
     stages = ", ".join(dict.fromkeys(c.effect.stage for c in best.hypothesis.effects))
     if diagnosis.verdict == "missing_physics":
@@ -101,11 +110,6 @@ def headline(diagnosis: Diagnosis) -> str:
         )
     if diagnosis.verdict == "ambiguous":
         groups = diagnosis.conclusion.groups if diagnosis.conclusion else ()
-        if not groups and diagnosis.reasons:
-            return (
-                f"Interrupted before a cause was found: the best model so far leaves {after} the noise on "
-                f"held-out data (nominal model: {before})."
-            )
         if not groups:
             return "Something small may be missing, but these data do not decide whether it is."
         group = " or ".join(groups[0])
