@@ -19,7 +19,7 @@ from hydrolek_drake.control.catalogue import build_law, rig_setting
 from hydrolek_drake.control.controlled_station import run_controlled
 from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.diagnosis.diagnosis import diagnose
-from hydrolek_drake.diagnosis.report_json import as_json
+from hydrolek_drake.diagnosis.report.as_json import as_json
 from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.files import read_kept, write_whole
 from hydrolek_drake.identification.parameter_set import free_of_joints

@@ -21,7 +21,7 @@ from riddles import PARTS, random_voltage, record, rig_of
 
 from hydrolek_drake.challenge.build import build_of
 from hydrolek_drake.diagnosis.diagnosis import diagnose
-from hydrolek_drake.diagnosis.report_json import as_json
+from hydrolek_drake.diagnosis.report.as_json import as_json
 from hydrolek_drake.files import read_kept, write_whole
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.rigs import load_rig

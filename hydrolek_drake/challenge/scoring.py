@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrolek_drake.challenge.build import BENCH
 from hydrolek_drake.challenge.drawing import SHOWS
-from hydrolek_drake.diagnosis.effort import ABOVE_NOISE
+from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE
 
 BINS = (0.0, 0.5, 0.7, 0.9, 0.99, 1.0 + 1e-9)
 """Edges of the probabilities for the calibration."""

@@ -29,9 +29,6 @@ def challenge(
     workers: Annotated[
         int | None, typer.Option(help="threads; as many as there are cores by default")
     ] = None,
-    method: Annotated[
-        str, typer.Option(help="how structures are searched: rules, or evidence (in work)")
-    ] = "rules",
     earlier: Annotated[
         Path | None,
         typer.Option(
@@ -46,8 +43,6 @@ def challenge(
 
     Machines drawn and finished cases are kept and scored: the same command goes on where it was interrupted.
     """
-    if method not in (methods := ("rules", "evidence")):
-        raise InputError(f"--method {method}: choose {' or '.join(methods)}")
     for name, value in (("--cases", cases), ("--workers", workers), ("--first", first)):
         if value is not None and value < 1:
             raise InputError(f"{name} {value}: at least 1 is needed")
@@ -60,13 +55,12 @@ def challenge(
     from hydrolek_drake.challenge.results import earlier_scores, write_results
     from hydrolek_drake.challenge.scoring import score, summaries_markdown
     from hydrolek_drake.cli.output import console, progress
+    from hydrolek_drake.diagnosis.answer import INTERRUPTED
     from hydrolek_drake.diagnosis.diagnosis import diagnose
-    from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
-    from hydrolek_drake.diagnosis.report_json import as_json
+    from hydrolek_drake.diagnosis.report.as_json import as_json
     from hydrolek_drake.files import read_kept, write_whole
     from hydrolek_drake.recordings import read_recording
     from hydrolek_drake.rigs import load_rig
-    from hydrolek_drake.rollout.pool import RolloutPool
     from hydrolek_drake.runs.report import prepare_folder
 
     if kind not in (known := [name for name, _ in KINDS]) and kind != "all":
@@ -96,8 +90,7 @@ def challenge(
     scored = earlier_scores(earlier, sha256) if earlier else {}
     try:
         count = workers or os.cpu_count() or 1
-        threads = RolloutPool(count) if method == "rules" else ThreadPoolExecutor(count)
-        with progress("starting") as tell, threads as pool:
+        with progress("starting") as tell, ThreadPoolExecutor(count) as pool:
             for number, label in enumerate(told, start=1):
                 if label["name"] in scored:
                     continue
@@ -112,7 +105,7 @@ def challenge(
                         read_recording(folder / f"{side}.csv", machine.columns)
                         for side in ("train", "holdout")
                     ]
-                    done = diagnose(machine, recordings[:1], recordings[1:], pool, cores=count, method=method)
+                    done = diagnose(machine, recordings[:1], recordings[1:], pool, cores=count)
                     if INTERRUPTED in done.reasons:
                         raise KeyboardInterrupt
                     write_whole(report, json.dumps(as_json(done), indent=1))

@@ -36,9 +36,6 @@ def diagnose(
         float | None,
         typer.Option(metavar="MINUTES", help="end the search then, with what is known by that time"),
     ] = None,
-    method: Annotated[
-        str, typer.Option(help="how structures are searched: rules, or evidence (in work)")
-    ] = "rules",
     confirm: ConfirmOption = True,
     set_: SetOption = None,
     out: Annotated[
@@ -55,28 +52,23 @@ def diagnose(
         raise InputError(f"--workers {workers}: at least 1 is needed")
     if at_most is not None and not 0.0 < at_most < math.inf:
         raise InputError(f"--at-most {at_most:g}: minutes must be more than 0")
-    if method not in (methods := ("rules", "evidence")):
-        raise InputError(f"--method {method}: choose {' or '.join(methods)}")
     refuse_twice([*recordings, *(holdout or [])], "; held-out data must be other data")
     output = console()
     loaded, (train, held) = rig_and_recordings(rig, set_, recordings, holdout)
 
     from concurrent.futures import ThreadPoolExecutor
 
+    from hydrolek_drake.diagnosis.answer import INTERRUPTED
     from hydrolek_drake.diagnosis.diagnosis import diagnose as run_diagnosis
-    from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
-    from hydrolek_drake.diagnosis.report import write_report
-    from hydrolek_drake.diagnosis.table import summary
-    from hydrolek_drake.rollout.pool import RolloutPool
+    from hydrolek_drake.diagnosis.report.files import write_report
+    from hydrolek_drake.diagnosis.report.table import summary
     from hydrolek_drake.runs.report import prepare_folder
     from hydrolek_drake.runs.time_limit import ended_after
 
     if out is not None:
         prepare_folder(out)
     count = workers or os.cpu_count() or 1
-    # by evidence, what is to be rolled out at a moment fills whole tables of lanes by itself
-    threads = RolloutPool(count) if method == "rules" else ThreadPoolExecutor(count)
-    with progress("starting") as tell, threads as pool:
+    with progress("starting") as tell, ThreadPoolExecutor(count) as pool:
         tell("checking ...")
         tell_what_looks_wrong(loaded, [*train, *held], output)
 
@@ -85,9 +77,7 @@ def diagnose(
 
         with ended_after(None if at_most is None else 60.0 * at_most) as limit:
             try:
-                done = run_diagnosis(
-                    loaded, train, held, pool, say=say, between=between, cores=count, method=method
-                )
+                done = run_diagnosis(loaded, train, held, pool, say=say, between=between, cores=count)
             except KeyboardInterrupt:
                 if not limit.reached:
                     raise

@@ -1,4 +1,4 @@
-"""The whole diagnosis: data, fair baseline, search, judgement, place and words."""
+"""The whole diagnosis: data, search, judgement, place and numbers."""
 
 import os
 import time as clock
@@ -8,33 +8,30 @@ from dataclasses import dataclass, replace
 
 from threadpoolctl import threadpool_limits
 
-from hydrolek_drake.diagnosis import inquiry
-from hydrolek_drake.diagnosis.candidates import candidates_of
-from hydrolek_drake.diagnosis.conclusion import Conclusion
-from hydrolek_drake.diagnosis.enlarged import enlarged_rig, room_for_law
-from hydrolek_drake.diagnosis.evidence import FINER, judge_given_up
-from hydrolek_drake.diagnosis.found import Search
-from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
-from hydrolek_drake.diagnosis.intervals import Interval, intervals_of
-from hydrolek_drake.diagnosis.judged import Judged
-from hydrolek_drake.diagnosis.last_numbers import with_last_numbers
-from hydrolek_drake.diagnosis.law_problem import FoundLaw
-from hydrolek_drake.diagnosis.locate import Location, locate, locate_law
+from hydrolek_drake.diagnosis.answer import INTERRUPTED
+from hydrolek_drake.diagnosis.data.splitting import prepared
+from hydrolek_drake.diagnosis.evidence.conclusion import Conclusion
+from hydrolek_drake.diagnosis.evidence.judged import Judged
+from hydrolek_drake.diagnosis.evidence.predictive import FINER, judge_given_up
+from hydrolek_drake.diagnosis.experiment.proposal import Proposal, propose
+from hydrolek_drake.diagnosis.experiment.visible import Visible, visible_sizes
+from hydrolek_drake.diagnosis.inquiry import Inquiry
+from hydrolek_drake.diagnosis.intervals.curvature import Interval, intervals_of
+from hydrolek_drake.diagnosis.intervals.last_numbers import with_last_numbers
+from hydrolek_drake.diagnosis.intervals.moments import intervals_of_moments
+from hydrolek_drake.diagnosis.laws.law import FoundLaw
+from hydrolek_drake.diagnosis.locating.place import Location, locate, locate_law
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
-from hydrolek_drake.diagnosis.moments import intervals_of_moments
-from hydrolek_drake.diagnosis.next_experiment import Proposal, propose
-from hydrolek_drake.diagnosis.splitting import prepared
-from hydrolek_drake.diagnosis.structures import answering
-from hydrolek_drake.diagnosis.visible import Visible, visible_sizes
-from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.structures.as_rig import enlarged_rig, room_for_law
+from hydrolek_drake.diagnosis.structures.candidates import candidates_of
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import Free, free_of_joints
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
-
-RULES, EVIDENCE = METHODS = ("rules", "evidence")
-"""How structures are searched: by the rules of docs/diagnosis_method.md, or best first by evidence."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +61,7 @@ class Diagnosis:
     verdict: str
     reasons: tuple[str, ...]
     conclusion: Conclusion | None
-    search: Search | None
+    search: Tried | None
     judged: tuple[Judged, ...]
     also_tried: tuple[Judged, ...]
     bench: Workbench | None
@@ -107,7 +104,6 @@ def diagnose(
     say: Callable[[str], None] = lambda text: None,
     between: tuple[float, float] | None = None,
     cores: int = os.cpu_count() or 1,
-    method: str = RULES,
 ) -> Diagnosis:
     """Find out what physics a rig's model leaves out.
 
@@ -120,7 +116,6 @@ def diagnose(
         between: start and end of the part of the recordings that is fitted [s]; what lies outside is held out if
             there is no `holdout`. None for all.
         cores: that roll out at the same time.
-        method: one of `METHODS`.
 
     An interrupt during the search ends it; what is known by then is judged and returned with a reason.
 
@@ -130,7 +125,7 @@ def diagnose(
     """
     # fits run side by side already: threads of the linear algebra under each of them only wait for each other
     with threadpool_limits(limits=1, user_api="blas"):
-        return _diagnosed(rig, recordings, holdout, pool, say, between, cores, method)
+        return _diagnosed(rig, recordings, holdout, pool, say, between, cores)
 
 
 def _diagnosed(
@@ -141,7 +136,6 @@ def _diagnosed(
     say: Callable[[str], None],
     between: tuple[float, float] | None,
     cores: int,
-    method: str,
 ) -> Diagnosis:
     """See `diagnose`."""
     begun = clock.perf_counter()
@@ -156,14 +150,10 @@ def _diagnosed(
     candidates = list(
         {c.size_path: c for joint in joints for c in candidates_of(rig, joint, scales[joint])}.values()
     )
-    lawful = {joint: scales[joint] for joint in joints if room_for_law(rig, joint)}
+    settings = Settings()
+    lawful = {joint: scales[joint] for joint in joints if room_for_law(rig, joint, settings.most_additions)}
     apart = bool(holdout) or between is not None
-    asked: answering.Inquiry | inquiry.Inquiry
-    if method == EVIDENCE:
-        asked = answering.Inquiry(candidates, lawful, apart, say, cores)
-    else:
-        asked = inquiry.Inquiry(candidates, lawful, several=len(joints) > 1, apart=apart, say=say)
-    answer = asked.answer(bench, held_out)
+    answer = Inquiry(candidates, lawful, apart, say, cores, settings).answer(bench, held_out)
     known, conclusion, law, remarks = answer.known, answer.conclusion, answer.law, answer.remarks
     bench, held_out, found, judged = known.bench, known.held_out, known.found, known.judged
     best = conclusion.best.hypothesis

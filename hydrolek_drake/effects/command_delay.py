@@ -19,7 +19,6 @@ EFFECT = Effect(
     confused_with={
         "valve.spool_stiction": "stiction delays small commands more than large ones, a delay all alike",
     },
-    shifts={"command.delay": ("delay_s", 1.0)},
 )
 
 

@@ -78,8 +78,6 @@ class Effect:
         sudden: whether the joint moves otherwise as soon as it is there, however small it is, as when a contact opens;
             then a fitted model without it does not tell what it would gain.
         contains: ids of effects that are special cases of it, so that both together say nothing new.
-        shifts: what it adds to a joint's own parameters: their path under the joint -> parameter and sign. Where these
-            are free to take it over, the joint is only another one of its kind, and nothing is missing.
         beneath: attribute of `scales.Scales`: no larger than this, its size says no more than what the equations
             themselves simplify. Nothing if not given.
     """
@@ -97,7 +95,6 @@ class Effect:
     weakens: bool = False
     sudden: bool = False
     contains: tuple[str, ...] = ()
-    shifts: dict[str, tuple[str, float]] = field(default_factory=dict)
     beneath: str = ""
     hooks: dict[str, Callable[..., Any]] = field(default_factory=dict)
 

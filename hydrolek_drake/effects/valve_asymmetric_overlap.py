@@ -20,7 +20,6 @@ EFFECT = Effect(
         "valve.null_leakage": "leakage lets the joint creep at zero command",
         "load.payload": "a load acts on pressures at rest as well",
     },
-    shifts={"valve.overlap_a": ("shift_m", 1.0), "valve.overlap_b": ("shift_m", -1.0)},
     needs={"valve": ("plain", "pressure_compensated", "four_edges")},
 )
 

@@ -26,7 +26,6 @@ class Channel:
             nothing. # (n,)
         blur: what averaging over blocks of samples adds, sample by sample; None for a recording that is kept as
             it is. # (n,)
-        widened: factor for all of this where no model comes near the noise, see `diagnosis.balance`.
     """
 
     key: str
@@ -36,7 +35,6 @@ class Channel:
     noise: float
     model_error: np.ndarray | None = None
     blur: np.ndarray | None = None
-    widened: float = 1.0
 
     @property
     def deviation(self) -> np.ndarray | float:
@@ -45,7 +43,7 @@ class Channel:
         for error in (self.model_error, self.blur):
             if error is not None:
                 variance = variance + error**2
-        return self.widened * (self.noise if isinstance(variance, float) else np.sqrt(variance))
+        return self.noise if isinstance(variance, float) else np.sqrt(variance)
 
     @property
     def model_share(self) -> np.ndarray:

@@ -155,9 +155,9 @@ def fit_from_afar(
 ) -> Fit:
     """Least squares from a start far from the optimum, first with pulled rollouts.
 
-    The residuals of a free rollout pile up what went wrong before, and least squares ends in the next hollow. Pulled
-    rollouts forget, as the prediction errors of an observer do (Ljung, System Identification, 1999, chapter 7), first
-    at once and then within `PULLS_S`, and lead near; free ones then see what drifts slowly, too.
+    The residuals of a free rollout pile up what went wrong before, and least squares ends in the next local minimum.
+    Pulled rollouts forget, as the prediction errors of an observer do (Ljung, System Identification, 1999, chapter 7),
+    first at once and then within `PULLS_S`, and lead near; free ones then see what drifts slowly, too.
 
     Args:
         problem: residuals and Jacobian.

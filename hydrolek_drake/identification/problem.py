@@ -29,8 +29,8 @@ takes to open and a chamber to fill, and far shorter than a move, over which err
 
 PULLS_S = (0.03, PULL_S)
 """Time constants of fits that begin far off, one after the other. Within the first hardly anything piles up: what is
-left of it is nearly the error of the rates themselves, over which the squared residuals have few hollows (an equation
-error; Ljung, System Identification, 1999, chapter 7). The second one sees what is slower."""
+left of it is nearly the error of the rates themselves, over which the squared residuals have few local minima (an
+equation error; Ljung, System Identification, 1999, chapter 7). The second one sees what is slower."""
 
 LONGER = 2.0
 """Slopes that only lead a search are told by rollouts with steps so many times as long, ..."""
@@ -68,7 +68,6 @@ class Problem:
         pool: Executor | None = None,
         prior: np.ndarray | None = None,
         pull_time: float | None = None,
-        difference: float = DIFFERENCE,
     ) -> None:
         """Prepare.
 
@@ -82,7 +81,6 @@ class Problem:
                 infinite for those of which nothing is known; None for none of them. # (n,)
             pull_time: with which rollouts are pulled to what was measured [s], so that errors do not pile up:
                 residuals then are prediction errors over that time; None for free rollouts.
-            difference: step of the Jacobian's differences, as a fraction of a parameter's range.
         """
         self.parameters = parameters
         self.experiments = tuple(experiments)
@@ -92,7 +90,6 @@ class Problem:
         self._prior_mean = parameters.unit()
         self._prior_weight = np.zeros(len(parameters)) if prior is None else 1.0 / prior
         self.pull_time = pull_time
-        self.difference = difference
         self._anchor: list[tuple[tuple[bytes, ...], np.ndarray]] | None = None
         self._longer_does = True
         self.evaluations = 0
@@ -287,7 +284,7 @@ class Problem:
 
     def differences(self, unit: np.ndarray) -> np.ndarray:
         """Differences of the Jacobian: forward, and backward near the upper end. # (n,)."""
-        sizes = np.clip(self._to_the_next_step(unit), self.difference, 0.5)
+        sizes = np.clip(self._to_the_next_step(unit), DIFFERENCE, 0.5)
         return np.where(unit + sizes <= 1.0, sizes, -sizes)
 
     def _to_the_next_step(self, unit: np.ndarray) -> np.ndarray:

@@ -12,20 +12,15 @@ from hydrolek_drake.physics.solenoid import steps_needed
 from hydrolek_drake.rollout.drive import acts_early
 from hydrolek_drake.rollout.lane_view import Kind
 
-GROUPS = (
-    ("rod_friction", "load_friction"),
-    ("coil_gain", "flow_gain", "viscous_gain"),
-    ("spool_friction",),
-    ("linkage_gap",),
-    ("base_stiffness", "base_inertia"),
-)
-"""Hooks whose effects take time in every step, or make it another program. A loop over lanes is compiled with a group
-or without it; what enters at other hooks costs little, and is a number that may be zero."""
+GROUPS = (("rod_friction", "load_friction"),)
+"""Hooks whose effects take time in every step. A loop over lanes is compiled with a group or without it. What enters at
+other hooks is a number that may be zero: all of them together make a step of eight machines a fifth slower, and each
+kind that is not compiled costs 10 s, or has its machines rolled out one by one, which takes three times as long."""
 
 SOMETIMES = ("command.ramp", "amplifier.coil_time", "valve.flow_force", "cylinder.stop_stiffness")
 """Parameters of the stages that most machines have at zero, and that cost as much."""
 
-TERMS = (1, 2, 3, MOST_TERMS)
+TERMS = (1, 2, MOST_TERMS)
 """Numbers of a law's terms for which loops are compiled; a law in between gets terms of no size."""
 
 
@@ -49,7 +44,10 @@ def kind_of(joint: np.ndarray, spool_steps: int, law: np.ndarray | None = None, 
     if law is None:
         return Kind(tuple(sorted(known.items())), steps, probed=probed)
     terms = next(count for count in TERMS if count >= len(law))
-    return Kind(tuple(sorted(known.items())), steps, terms, bool(acts_early(law, joint[0])), probed)
+    # that a law acts early costs a fifth of a step, and is taken for granted where another kind would be compiled; with
+    # inputs from outside commands are rounded otherwise then
+    early = bool(acts_early(law, joint[0])) if probed else True
+    return Kind(tuple(sorted(known.items())), steps, terms, early, probed)
 
 
 _Places = tuple[tuple[int, float], ...]

@@ -1,19 +1,19 @@
-"""Short recordings of the bench, made by its own rollout, and laws that are sought in them."""
+"""Short recordings of the bench, made by its own rollout, and what is found in them."""
 
-from collections.abc import Callable, Sequence
+import math
+from collections.abc import Callable, Collection, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis import law_scan, law_search, unlisted
-from hydrolek_drake.diagnosis.baseline import fit_baseline
-from hydrolek_drake.diagnosis.effort import POLISH
-from hydrolek_drake.diagnosis.judged import Judged
-from hydrolek_drake.diagnosis.law_problem import FoundLaw
-from hydrolek_drake.diagnosis.unlisted import find_law
-from hydrolek_drake.diagnosis.workbench import Workbench
+from hydrolek_drake.diagnosis.answer import Answer
+from hydrolek_drake.diagnosis.fitting.race import Entrant, race
+from hydrolek_drake.diagnosis.inquiry import Inquiry
+from hydrolek_drake.diagnosis.search.settings import Rung
+from hydrolek_drake.diagnosis.structures.candidates import candidates_of
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -78,35 +78,50 @@ def recorded() -> Callable[..., list[Experiment]]:
     return make
 
 
-@pytest.fixture
-def in_less_time(monkeypatch) -> None:
-    """For laws that are not periodic: up to 4 Hz with free rollouts alone, at seven of eleven inputs."""
-    own = unlisted.inputs_of
-    left_out = ("command", "amplifier", "back_a", "back_b")
-    monkeypatch.setattr(law_scan, "HIGHEST_HZ", 4.0)
-    monkeypatch.setattr(law_search, "shaking", lambda *given: [])
-    monkeypatch.setattr(
-        unlisted, "inputs_of", lambda *given: tuple(i for i in own(*given) if i.probe not in left_out)
-    )
+@pytest.fixture(scope="session")
+def fitted() -> Callable[..., Hypothesis]:
+    """(workbench, additions, where they begin, steps, step over the rig's own) -> a structure, fitted."""
+
+    def fit(
+        workbench: Workbench, effects=(), values=None, rounds: int = 12, coarse: float = 1.0
+    ) -> Hypothesis:
+        rung = Rung(math.inf, coarse, math.inf, rounds, 1)
+        return race(workbench, [Entrant(tuple(effects), values or {})], (rung,), 2)[0]
+
+    return fit
 
 
-@pytest.fixture
-def with_fewer_laws(monkeypatch) -> None:
-    """Half as many first fits, where what is right promises much."""
-    monkeypatch.setattr(unlisted, "TRIED", 12)
+SHIFTED = {"valve.max_area": 1.08, "fluid.bulk_modulus": 0.9, "supply.pressure": 1.05}
+"""By how much the machine's own numbers differ from the rig's."""
 
 
-@pytest.fixture
-def sought() -> Callable[..., tuple[Workbench, Judged, FoundLaw | None]]:
-    """(bench, training, held-out data) -> workbench, fitted nominal model, the law that is found beside it."""
+@pytest.fixture(scope="session")
+def answer_of(bench, recorded) -> Callable[..., Answer]:
+    """(planted values, effects that are candidates, laws too, own numbers, told, how it was recorded, training)
+    -> the answer for a machine with other numbers than the rig."""
 
-    def seek(bench, training, held_out):
+    def make(
+        planted: dict[str, float],
+        only: Collection[str] | None = None,
+        laws: bool = True,
+        own: dict[str, float] = SHIFTED,
+        say: Callable[[str], None] = lambda text: None,
+        trained: dict | None = None,
+        **how,
+    ) -> Answer:
+        free = [each.path for each in free_parameters(bench)]
+        numbers = {
+            path: by * bench.value(path) for end, by in own.items() for path in free if path.endswith(end)
+        }
+        machine = bench.with_values({**numbers, **planted})
+        how = {"pressure_noise_Pa": 3e4, **how}
+        training = recorded(machine, bench, seed=1, **{**how, **(trained or {})})
+        held_out = recorded(machine, bench, seed=2, **how)
+        scales = natural_scales(bench, "joint", training)
+        candidates = [c for c in candidates_of(bench, "joint", scales) if only is None or c.id in only]
         with ThreadPoolExecutor(2) as pool:
             workbench = Workbench(bench, free_parameters(bench), training, pool)
-            nominal = workbench.refit(fit_baseline(workbench), workbench.fine, POLISH)
-            left = workbench.residuals(nominal, held_out, workbench.fine)
-            judged = Judged(nominal, left, sum(e.counted for e in held_out))
-            scales = natural_scales(bench, "joint", training)
-            return workbench, judged, find_law(workbench, judged, held_out, scales)
+            asked = Inquiry(candidates, {"joint": scales} if laws else {}, apart=True, say=say, cores=2)
+            return asked.answer(workbench, held_out)
 
-    return seek
+    return make

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.intervals import intervals_of
+from hydrolek_drake.diagnosis.intervals.curvature import intervals_of
 from hydrolek_drake.identification.least_squares import fit_from, fit_from_afar, multi_start
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem

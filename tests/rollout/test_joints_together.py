@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.law_terms import Term
-from hydrolek_drake.diagnosis.laws import Reach, Span, law_record
+from hydrolek_drake.diagnosis.laws.terms import Reach, Span, Term, law_record
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rigs.short_law import terms_of
 from hydrolek_drake.rollout import roll_out

@@ -237,29 +237,23 @@ def _law(rng, terms):
     return law
 
 
-def _side_by_side(count, wanted):
-    """Machines with laws of as many terms, drawn until the wanted programs are among them; others are left out."""
+def _side_by_side(count):
+    """Machines with laws of as many terms, at any stage."""
     rig, rng = load_rig("joint_bench"), np.random.default_rng(5)
     times, volts = _driven(3.0)
     runs = []
     while len(runs) < 2 * LANES:
         law = _law(rng, count)
-        if kind_of(rig.records()[:1], 1, law).early in wanted:
-            runs.append(Run(_varied(rig.records()[:1], rng, 1), times, volts, times, STEP, law=law))
+        runs.append(Run(_varied(rig.records()[:1], rng, 1), times, volts, times, STEP, law=law))
     assert len({run.law["probe"][0] for run in runs}) > 5  # stages
     for one, run in zip(roll_out_lanes(runs, at_once=True), runs, strict=True):
         _alike(one, run.outcome())
 
 
-@pytest.mark.long("a third of a minute: a loop is compiled")
-def test_laws_of_different_factors_side_by_side():
-    _side_by_side(1, {False})
-
-
-@pytest.mark.long("a minute: loops of five kinds are compiled")
+@pytest.mark.long("a third of a minute for each count: a loop is compiled")
 @pytest.mark.parametrize("count", [1, 2, 5])
-def test_laws_of_several_terms_and_before_the_spool(count):
-    _side_by_side(count, {True, False})
+def test_laws_of_different_factors_side_by_side(count):
+    _side_by_side(count)
 
 
 def _outside(rng, seconds, spacing, only=()):

@@ -1,1 +1,1 @@
-"""Fits of many structures from many starts, their rollouts in lanes."""
+"""Many fits side by side: rollouts in lanes, descents in lockstep, line searches, races."""

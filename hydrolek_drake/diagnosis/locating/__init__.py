@@ -1,1 +1,1 @@
-"""Where a mismatch enters, when, and against which variable: unknown inputs, estimated."""
+"""Where a mismatch enters, when, and what it depends on."""

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.law_counterpart import seen_by_laws
-from hydrolek_drake.diagnosis.laws import TERMS, Span, law_record
+from hydrolek_drake.diagnosis.laws.additions import LawTerm
+from hydrolek_drake.diagnosis.laws.terms import TERMS, Span, law_record
 from hydrolek_drake.diagnosis.locating.unknown_input import Seen, Unknown
-from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
-from hydrolek_drake.rollout.one_point import law_along
+from hydrolek_drake.rollout.one_point import law_along, stroke_and_lever
+from hydrolek_drake.rollout.rollout import Signals
 
 HIGHEST_HZ = 8.0
 """Frequencies up to this one are looked for; joints hardly follow faster ones."""
@@ -69,7 +69,7 @@ def _periodic(unknown: Unknown, joint: str, span: Span) -> list[tuple[float, Law
 
 def _movement(seen: Seen, record: np.void) -> tuple[np.ndarray, np.ndarray]:
     """What laws may depend on, as rows, and when."""
-    parts = [seen_by_laws(signals, record)[0] for signals in seen.signals]
+    parts = [_seen_by_laws(signals, record) for signals in seen.signals]
     rows = np.concatenate(parts)
     return rows, rows[:, 0]
 
@@ -83,3 +83,14 @@ def _at_knots(knots: np.ndarray, moments: np.ndarray, values: np.ndarray) -> np.
         for a, b, i, j in zip(firsts[:-1], firsts[1:], begins[:-1], begins[1:], strict=True)
     ]
     return np.concatenate(parts)
+
+
+def _seen_by_laws(run: Signals, record: np.void) -> np.ndarray:
+    """What a law may depend on (`physics.law.Seen` as rows), where the rollout is finite."""
+    there = np.isfinite(run.position)
+    t, q, w, p_a, p_b, x = (
+        each[there]
+        for each in (run.time, run.position, run.velocity, run.pressure_a, run.pressure_b, run.spool)
+    )
+    stroke, lever = np.array([stroke_and_lever(angle, record) for angle in q.tolist()]).T
+    return np.stack([t, q, w, stroke, lever * w, p_a, p_b, x], axis=1)

@@ -1,27 +1,19 @@
 """Terms of laws that may be added to a structure."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
-from hydrolek_drake.diagnosis.law_inputs import Input, inputs_of
-from hydrolek_drake.diagnosis.laws import Span, span_of
+from hydrolek_drake.diagnosis.laws.additions import LawTerm
+from hydrolek_drake.diagnosis.laws.inputs import Input, inputs_of
+from hydrolek_drake.diagnosis.laws.terms import Span, span_of
 from hydrolek_drake.diagnosis.locating.law_forms import STEADY, terms_seen
-from hydrolek_drake.diagnosis.locating.lost import share_lost
-from hydrolek_drake.diagnosis.locating.unknown_input import Estimate, unknown_inputs
-from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
-from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.locating.unknown_input import OBSERVER_S, Estimate, near, unknown_inputs
+from hydrolek_drake.diagnosis.lost_commands.seen import lost_seen
+from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.rollout.rollout import Signals
-
-OBSERVER_S = 0.3
-"""Time constant of the observer whose innovations tell of unknown inputs [s]: longer than a valve takes to open, and
-far shorter than a move."""
-
-FITTED = 3
-"""Steps by which the structure's own parameters are fitted to these innovations before."""
 
 EACH = 3
 """So many terms of each input are offered, and the best of all beyond these."""
@@ -29,23 +21,10 @@ EACH = 3
 OFFERED = 20
 
 
-@dataclass(frozen=True)
-class Offer:
-    """What in no list may explain what a structure leaves.
-
-    Attributes:
-        terms: of laws, the most promising first.
-        lost: which share of it commands that got lost would take.
-        span: what laws are told in.
-    """
-
-    terms: tuple[LawTerm, ...]
-    lost: float
-    span: Span
-
-
-def terms_for(bench: Workbench, parent: Hypothesis, scales: Mapping[str, Scales], cores: int) -> Offer:
-    """Terms that promise most beside a structure, and what lost commands do.
+def terms_for(
+    bench: Workbench, parent: Hypothesis, scales: Mapping[str, Scales], cores: int
+) -> tuple[LawTerm | LostWindows, ...]:
+    """What in no list may explain what a structure leaves: terms that promise most, and commands that got lost.
 
     Args:
         bench: data and problems.
@@ -57,7 +36,7 @@ def terms_for(bench: Workbench, parent: Hypothesis, scales: Mapping[str, Scales]
     inputs = _inputs(bench, joint, scales[joint])
     has = {c.input.probe for c in parent.effects if isinstance(c, LawTerm)}
     inputs = tuple(each for each in inputs if not has or each.probe in has)
-    values = _near(bench, parent, cores)
+    values = near(bench, parent, OBSERVER_S, cores)
     seen = unknown_inputs(bench, parent, values, inputs, OBSERVER_S, cores)
     parameters = bench.parameters(parent.effects)
     record = parameters.records(parameters.unit(values))[bench.training[0].index]
@@ -70,16 +49,11 @@ def terms_for(bench: Workbench, parent: Hypothesis, scales: Mapping[str, Scales]
     for term in ranked:
         taken[term.input.probe] = taken.get(term.input.probe, 0) + 1
         (first if taken[term.input.probe] <= EACH else rest).append(term)
-    lost = 0.0
-    if not parent.effects:
-        command = next(u for u in seen.unknowns if u.input.probe == "command")
-        lost = share_lost(
-            command,
-            bench.training,
-            float(record["command"]["neutral"]),
-            sum(e.counted for e in bench.training),
-        )
-    return Offer(tuple([*first, *rest][: max(OFFERED, len(first))]), lost, span)
+    terms = [*first, *rest][: max(OFFERED, len(first))]
+    command = next(each for each in _inputs(bench, joint, scales[joint]) if each.probe == "command")
+    known = next((c.windows(parent.values) for c in parent.effects if isinstance(c, LostWindows)), {})
+    lost = lost_seen(bench, parent, command, float(record["command"]["neutral"]), known, span, cores)
+    return (*terms, lost) if lost is not None else tuple(terms)
 
 
 def estimates_for(
@@ -95,18 +69,9 @@ def estimates_for(
         cores: that roll out at the same time.
     """
     inputs = tuple(i for i in _inputs(bench, joint, scales) if i.probe not in STEADY)
-    values = _near(bench, nominal, cores)
+    values = near(bench, nominal, OBSERVER_S, cores)
     seen = unknown_inputs(bench, nominal, values, inputs, OBSERVER_S, cores)
     return tuple(sorted((u.estimated() for u in seen.unknowns), key=lambda e: -e.evidence))
-
-
-def _near(bench: Workbench, parent: Hypothesis, cores: int) -> dict[str, float]:
-    """Full path -> value of a structure's parameters where an observer's innovations are small, from the rig's own."""
-    own = {path: value for path, value in parent.values.items() if ".effects." in path or ".law." in path}
-    problem = bench.problem(parent.effects, 2.0 * bench.fine, bench.training, OBSERVER_S)
-    moving = bench.movable(parent.effects, problem.parameters)
-    begun = Place(problem, moving, np.clip(problem.parameters.unit(own), 1e-6, 1.0 - 1e-6))
-    return problem.parameters.values(descend([begun], FITTED, bench.pool, cores)[0].unit)
 
 
 def _inputs(bench: Workbench, joint: str, scales: Scales) -> tuple[Input, ...]:

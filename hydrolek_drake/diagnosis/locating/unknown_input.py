@@ -13,6 +13,7 @@ innovations, g = A' r, N = A' A and a prior of variance s^2 for each knot
 likely s is taken, and stages are compared by that likelihood.
 """
 
+import math
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -20,11 +21,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csc_matrix
 
-from hydrolek_drake.diagnosis.fitting.lockstep import Place, with_slopes
-from hydrolek_drake.diagnosis.law_inputs import Input
-from hydrolek_drake.diagnosis.score import Across
-from hydrolek_drake.diagnosis.structures.race import hypothesis_of
-from hydrolek_drake.diagnosis.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
+from hydrolek_drake.diagnosis.fitting.projection import Across
+from hydrolek_drake.diagnosis.fitting.race import hypothesis_of
+from hydrolek_drake.diagnosis.laws.additions import of_additions
+from hydrolek_drake.diagnosis.laws.inputs import Input
+from hydrolek_drake.diagnosis.lost_commands.windows import arrivals
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rollout.lane_view import LANES
@@ -33,6 +36,10 @@ from hydrolek_drake.rollout.rollout import Signals
 
 SPACING_S = 0.05
 """Between knots [s]: a joint hardly follows what is faster."""
+
+OBSERVER_S = 0.3
+"""Time constant of the observer whose innovations tell of unknown inputs [s]: longer than a valve takes to open, and
+far shorter than a move."""
 
 FORGOTTEN = 6.0
 """So many time constants after an input its trace in the innovations is gone (e^-6)."""
@@ -134,6 +141,26 @@ class Seen:
     signals: tuple[Signals, ...]
 
 
+FITTED = 3
+"""Steps by which a structure's own parameters are fitted to innovations before they are asked for unknown inputs."""
+
+
+def near(bench: Workbench, structure: Hypothesis, observer_s: float, cores: int) -> dict[str, float]:
+    """Full path -> value of a structure's parameters where an observer's innovations are small, from the rig's own.
+
+    Args:
+        bench: data and problems.
+        structure: whose additions begin where they were fitted.
+        observer_s: time constant of the observer [s].
+        cores: that roll out at the same time.
+    """
+    problem = bench.problem(structure.effects, 2.0 * bench.fine, bench.training, observer_s)
+    moving = bench.movable(structure.effects, problem.parameters)
+    begun = problem.parameters.unit(of_additions(structure.values))
+    place = Place(problem, moving, np.clip(begun, 1e-6, 1.0 - 1e-6))
+    return problem.parameters.values(descend([place], FITTED, bench.pool, cores)[0].unit)
+
+
 def unknown_inputs(
     bench: Workbench,
     parent: Hypothesis,
@@ -149,11 +176,13 @@ def unknown_inputs(
         parent: the structure.
         values: full path -> where its parameters stand.
         inputs: of the joint.
-        observer_s: time constant of the observer [s].
+        observer_s: time constant of the observer [s]; infinite for free rollouts, of which each knot takes one.
         cores: that roll out at the same time.
     """
     step = 2.0 * bench.fine
-    problem = bench.problem(parent.effects, step, bench.training, observer_s)
+    pulled = None if math.isinf(observer_s) else observer_s
+    problem = bench.problem(parent.effects, step, bench.training, pulled)
+    arrived = arrivals(parent.effects, values, bench.training)
     place = Place(problem, bench.movable(parent.effects, problem.parameters), problem.parameters.unit(values))
     place = with_slopes([place], bench.pool, cores, 1.0)[0]
     assert place.residuals is not None and place.slopes is not None
@@ -162,12 +191,12 @@ def unknown_inputs(
     basis = Across(fit).basis[: place.residuals.size]
     rest = place.residuals - basis @ (basis.T @ place.residuals)
     records = problem.parameters.records(place.unit)
-    here = _rolled([e.run(records, step, pull_time=observer_s) for e in bench.training], bench.pool)
-    at_rest = [e.residuals(each) for e, each in zip(bench.training, here, strict=True)]
+    here = _rolled([e.run(records, step, pull_time=pulled) for e in arrived], bench.pool)
+    at_rest = [e.residuals(each) for e, each in zip(arrived, here, strict=True)]
     unknowns = []
     for given in inputs:
         parts, times = [], []
-        for experiment, still in zip(bench.training, at_rest, strict=True):
+        for experiment, still in zip(arrived, at_rest, strict=True):
             columns, knots = _response(bench.pool, experiment, records, step, observer_s, given, still)
             parts.append(columns)
             times.append(knots)
@@ -205,13 +234,14 @@ def _response(
     """How the innovations of a recording answer to each knot, in scales of the input, and the knots' times."""
     time = experiment.time
     count = int(np.ceil((time[-1] - time[0]) / SPACING_S)) + 1
-    apart = int(np.ceil(FORGOTTEN * observer_s / SPACING_S)) + 2
+    apart = count + 1 if math.isinf(observer_s) else int(np.ceil(FORGOTTEN * observer_s / SPACING_S)) + 2
+    pull = None if math.isinf(observer_s) else observer_s
     place = PROBES.index(given.probe)
     runs = []
-    for first in range(apart):
+    for first in range(min(apart, count)):
         rows = np.zeros((count, len(PROBES)))
         rows[first::apart, place] = AMPLITUDE * given.scale
-        runs.append(experiment.run(records, step, (SPACING_S, rows), observer_s))
+        runs.append(experiment.run(records, step, (SPACING_S, rows), pull))
     answers = _rolled(runs, pool)
     channels, samples = len(experiment.channels), time.size
     knot_of_sample = (time - time[0]) / SPACING_S

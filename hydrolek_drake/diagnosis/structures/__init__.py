@@ -1,1 +1,1 @@
-"""Structures: the nominal model and what may be added to it, and the search among them."""
+"""Structures: the nominal model and what may be added to it, and the data that they are fitted to."""

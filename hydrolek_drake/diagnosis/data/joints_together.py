@@ -1,0 +1,64 @@
+"""What joints that move together do to each other, by rolling out all of them at once.
+
+Joints of one arm shake each other on their oil, faster than smoothed angles tell. Near the noise that matters: a
+healthy machine would look as if something were missing. A rollout of all joints with a fitted model's values tells it.
+Its motion and flows then stand as known inputs of each joint's own rollout, which gives the same movement at these
+values (`identification.neighbours`), and nearly so at values close by: the fit goes on with them and asks again.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.neighbours import probes_of
+from hydrolek_drake.identification.recorded_together import OneRecording, recordings_of
+from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rollout.together import Together
+
+SPACING_S = 1e-3
+"""Of the samples of what the joints do [s]: a tenth of the period of the fastest shaking of an arm."""
+
+
+def felt_together(rig: Rig, experiments: Sequence[Experiment]) -> list[Experiment]:
+    """The same experiments, those of joints that move together with what the others do by rolling out all.
+
+    Where that leaves all bounds they stay as they are.
+
+    Args:
+        rig: the machine with the values of a fitted model.
+        experiments: of one or more recordings.
+    """
+    felt: list[Experiment] = []
+    for group in recordings_of(experiments):
+        felt += group if group[0].others is None else _felt(rig, group)
+    return felt
+
+
+def _felt(rig: Rig, group: Sequence[Experiment]) -> list[Experiment]:
+    """The joints of one recording, beside each other."""
+    begin, end = min(float(e.time[0]) for e in group), max(float(e.time[-1]) for e in group)
+    times = begin + SPACING_S * np.arange(int((end - begin) / SPACING_S + 1e-6) + 2)
+    records = rig.records()
+    done = OneRecording(rig, group).roll_out(records, times)
+    if done.diverged is not None:
+        return list(group)
+    motions, flows = {}, {}
+    for i, joint in enumerate(done.joints):
+        position, velocity = done.signals["position"][:, i], done.signals["velocity"][:, i]
+        motions[joint] = (position, velocity, np.gradient(velocity, SPACING_S))
+        flows[joint] = done.signals["drawn"][:, i]
+    firsts = {e.joint: float(e.time[0]) - begin for e in group}
+    probes = probes_of(rig, motions, flows, SPACING_S, firsts)
+    felt = [replace(e, others=probes[e.joint]) for e in group]
+    return [replace(e, others_error=_apart(e, records, done)) for e in felt]
+
+
+def _apart(experiment: Experiment, records: np.ndarray, done: Together) -> np.ndarray:
+    """By how much a joint's own rollout differs from that of all at the same values. # (channels, n)."""
+    own = experiment.simulate(records).signals
+    column = done.joints.index(experiment.joint)
+    models = [channel.model for channel in experiment.channels]
+    whole = [np.interp(experiment.time, done.time, done.signals[model][:, column]) for model in models]
+    return np.array([getattr(own, model) for model in models]) - np.array(whole)

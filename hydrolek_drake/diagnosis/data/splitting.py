@@ -1,0 +1,103 @@
+"""Which data are fitted, and which are held out to decide."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.data.quality import reasons_against
+from hydrolek_drake.errors import InputError, UninformativeError
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.recordings import Recording
+from hydrolek_drake.rigs import Rig
+
+BLOCKS = 6
+"""Without a held-out recording, each recording is cut into so many blocks ..."""
+
+HELD_BLOCKS = (2, 5)
+"""... of which these are held out: one in the middle and the last."""
+
+SHORT_BLOCKS = 18
+"""Held-out data are cut into so many blocks, of which every other one chooses and those between report. Where they show
+what the training data do not, two of three are fitted too: short ones, so that what they show is in every part."""
+
+
+def prepared(
+    rig: Rig,
+    recordings: Sequence[Recording],
+    holdout: Sequence[Recording],
+    between: tuple[float, float] | None,
+) -> tuple[tuple[Experiment, ...], tuple[Experiment, ...], list[str]]:
+    """Training data, held-out data, and reasons against them."""
+    sets: list[list[Experiment]] = []
+    reasons: list[str] = []
+    for group in (recordings, holdout):
+        experiments: list[Experiment] = []
+        for recording in group:
+            try:
+                own = experiments_of(rig, recording)
+            except UninformativeError as error:
+                reasons.append(str(error))
+                continue
+            reasons += reasons_against(recording, own)
+            experiments += own
+        sets.append(experiments)
+    training, held_out = sets
+    if training and not held_out and not reasons:
+        held = [_held_blocks(e) if between is None else ~_within(e, between) for e in training]
+        held_out = [e.split(e.used & h) for e, h in zip(training, held, strict=True)]
+        training = [e.split(e.used & ~h) for e, h in zip(training, held, strict=True)]
+    elif between is not None:
+        training = [e.split(e.used & _within(e, between)) for e in training]
+    return tuple(training), tuple(held_out), reasons
+
+
+def _within(experiment: Experiment, between: tuple[float, float]) -> np.ndarray:
+    """Samples of the part that is fitted. # (n,).
+
+    Raises:
+        InputError: there is none, or the recording has nothing else.
+    """
+    start, end = between
+    inside = (experiment.time >= start) & (experiment.time <= end)
+    if not start < end or not inside.any() or inside.all():
+        first, last = experiment.time[[0, -1]]
+        raise InputError(
+            f"--between {start:g} {end:g}: must be a part of recording {experiment.name} and leave another part of "
+            f"it; it has samples from {first:g} to {last:g} s"
+        )
+    return inside
+
+
+def _held_blocks(experiment: Experiment) -> np.ndarray:
+    """Samples of the blocks that are held out. # (n,)."""
+    block = np.floor(BLOCKS * np.arange(experiment.time.size) / experiment.time.size)
+    return np.isin(block, HELD_BLOCKS)
+
+
+def _short_blocks(experiment: Experiment) -> np.ndarray:
+    """In which of `SHORT_BLOCKS` each sample that counts lies. # (n,)."""
+    so_far = np.cumsum(experiment.used) - 1
+    count = max(int(experiment.used.sum()), 1)
+    return np.asarray(np.floor(SHORT_BLOCKS * np.maximum(so_far, 0) / count).astype(int))
+
+
+def halves(held_out: Sequence[Experiment]) -> tuple[tuple[Experiment, ...], tuple[Experiment, ...]]:
+    """Held-out data in two parts: blocks by which structures are chosen, and those between, which only report.
+
+    What chose among many is no longer an independent test of the one that was chosen.
+    """
+    chosen = tuple(e.split(e.used & (_short_blocks(e) % 2 == 0)) for e in held_out)
+    kept = tuple(e.split(e.used & (_short_blocks(e) % 2 == 1)) for e in held_out)
+    return chosen, kept
+
+
+def mixed(
+    training: Sequence[Experiment], held_out: Sequence[Experiment]
+) -> tuple[tuple[Experiment, ...], tuple[Experiment, ...], tuple[Experiment, ...]]:
+    """Two thirds of the held-out data for training too; of the rest, what chooses, and what reports as in `halves`."""
+    blocks = [_short_blocks(e) for e in held_out]
+    fitted = [e.split(e.used & (b % 3 != 2)) for e, b in zip(held_out, blocks, strict=True)]
+    chosen = [e.split(e.used & (b % 6 == 2)) for e, b in zip(held_out, blocks, strict=True)]
+    kept = [e.split(e.used & (b % 6 == 5)) for e, b in zip(held_out, blocks, strict=True)]
+    return (*training, *fitted), tuple(chosen), tuple(kept)

@@ -1,0 +1,98 @@
+"""Hypotheses held against data that nothing was fitted to, and how probable that makes each."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.evidence.noise import NOISE_KNOWN
+from hydrolek_drake.diagnosis.search.cost import cost
+from hydrolek_drake.diagnosis.search.gains import FIDELITY
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
+
+EFFECT_COST = 4.5
+"""Log-odds against each further effect at least: with some twenty to choose from, chance has to be paid for."""
+
+PARAMETER_COST = 2.0
+"""Log-odds against each further parameter, so that a special case is preferred to what contains it."""
+
+SMALL = 3.0
+"""Held-out residuals above so many times the noise are no small deviation from a model that is right: they speak
+against it as they are, unless it explains the training data. Then a joint may have stuck or slipped where a hair's
+breadth decides, and is off from there on; whether other values of its parameters follow both is tried."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A hypothesis and what the held-out data say of it.
+
+    Attributes:
+        hypothesis: fitted to the training data.
+        held_out: residuals on the held-out data, in units of the noise. # (values,)
+        held_out_counted: how many of them count.
+        probability: among all that were judged.
+        chi_squared: r' (I + J S J')^-1 r; None for r' r.
+        spread: log det (I + J S J').
+    """
+
+    hypothesis: Hypothesis
+    held_out: np.ndarray
+    held_out_counted: int
+    probability: float = math.nan
+    chi_squared: float | None = None
+    spread: float = 0.0
+
+    @property
+    def over_noise(self) -> float:
+        """Held-out root mean square over the noise."""
+        return math.sqrt(float(self.held_out @ self.held_out) / max(self.held_out_counted, 1))
+
+    @property
+    def ahead(self) -> float:
+        """The same; where it is far off, what the model leaves of both data fitted together, see `SMALL`."""
+        if self.over_noise <= SMALL:
+            return self.over_noise
+        return self.unaccounted
+
+    @property
+    def unaccounted(self) -> float:
+        """Held-out root mean square over the noise that the parameters' uncertainty does not account for."""
+        return math.sqrt(2.0 * self.half_chi_squared / max(self.held_out_counted, 1))
+
+    @property
+    def support(self) -> float:
+        """Log-likelihood of held-out and training data, less the cost of its effects and parameters in each."""
+        effect = max(EFFECT_COST, 0.5 * FIDELITY * self.held_out_counted)
+        added = effect * len(self.hypothesis.effects) + PARAMETER_COST * self.hypothesis.extra
+        return -self.half_chi_squared - 0.5 * self.spread - added - 0.5 * cost(self.hypothesis)
+
+    @property
+    def half_chi_squared(self) -> float:
+        """Half of the held-out squared residuals that the parameters' uncertainty does not account for."""
+        if self.chi_squared is not None:
+            return 0.5 * self.chi_squared
+        return 0.5 * float(self.held_out @ self.held_out)
+
+
+def with_probabilities(judged: Sequence[Judged]) -> list[Judged]:
+    """The same, with probabilities, the most probable first."""
+    scale = dispersion(min(judged, key=lambda j: j.half_chi_squared))
+    support = np.array([j.support for j in judged]) / scale
+    weight = np.exp(support - support.max())
+    weight /= weight.sum()
+    ranked = sorted(zip(weight.tolist(), judged, strict=True), key=lambda pair: -pair[0])
+    return [replace(j, probability=w) for w, j in ranked]
+
+
+def dispersion(best: Judged) -> float:
+    """How much flatter than for pure noise the likelihood is: what the best model leaves beyond it, a parameter."""
+    fit = best.hypothesis.fit
+    counted = best.held_out_counted + fit.counted
+    left = 2.0 * best.half_chi_squared + fit.chi_squared
+    return max(1.0, (left - (1.0 + NOISE_KNOWN) ** 2 * counted) / len(fit.unit))
+
+
+def probability_of(effect_path: str, judged: Sequence[Judged]) -> float:
+    """Probability that an effect is there: of all hypotheses that hold it."""
+    return sum(j.probability for j in judged if effect_path in j.hypothesis.ids)

@@ -1,0 +1,149 @@
+"""Which recording would decide between effects that the present ones cannot tell apart.
+
+Every proposal is checked by simulation: one hypothesis plays the machine, the other tries to explain it with
+all its parameters (linearised), and what it cannot explain, in units of the noise, is what the recording would
+show.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.evidence.conclusion import Conclusion
+from hydrolek_drake.diagnosis.fitting.projection import Across
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.channel import Channel
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import Fit
+
+DURATION_S = 40.0
+SAMPLE_S = 0.01
+ENOUGH = 5.0
+"""Root of the squared residuals that must be left for a decision: five standard deviations."""
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """An experiment that was checked by simulation.
+
+    Attributes:
+        sentence: what to do, and what it would show.
+        time: of the command's samples [s]. # (n,)
+        command: to be driven, or what was driven before [V]. # (n,)
+        separation: what the wrong hypothesis could not explain, in standard deviations.
+    """
+
+    sentence: str
+    time: np.ndarray
+    command: np.ndarray
+    separation: float
+
+
+def commands_of(amplitude: float) -> dict[str, np.ndarray]:
+    """Commands to choose from: words -> voltage every 10 ms over 40 s. # (n,) each."""
+    time = np.arange(0.0, DURATION_S, SAMPLE_S)
+
+    def steps(levels: Sequence[float], hold: float) -> np.ndarray:
+        return np.array(levels)[(time / hold).astype(int) % len(levels)]
+
+    shapes = {
+        "small steps to and fro, 2 s each, with rests": steps([0.0, 0.35, 0.0, -0.35], 2.0),
+        "large steps to and fro, 1.5 s each, with rests of 1.5 s": steps([0.0, 1.0, 0.0, -1.0], 1.5),
+        "a staircase of rising steps to and fro, 1 s each": steps(
+            [0.0, 0.3, -0.3, 0.45, -0.45, 0.6, -0.6, 0.8, -0.8, 1.0, -1.0], 1.0
+        ),
+        "a slow sine of 20 s": 0.6 * np.sin(2.0 * math.pi * time / 20.0),
+        "fast reversals, a sine of 2 s": 0.8 * np.sin(2.0 * math.pi * time / 2.0),
+        "short moves, each followed by 8 s of rest": steps(
+            [0.8, 0.0, 0.0, 0.0, 0.0, -0.8, 0.0, 0.0, 0.0, 0.0], 2.0
+        ),
+    }
+    return {words: amplitude * shape for words, shape in shapes.items()}
+
+
+def propose(bench: Workbench, conclusion: Conclusion, hypotheses: Sequence[Hypothesis]) -> Proposal | None:
+    """The experiment that tells the two most probable hypotheses apart best; None if there is only one.
+
+    Args:
+        bench: data and fits.
+        conclusion: with its groups.
+        hypotheses: fitted, the most probable first.
+    """
+    if (
+        len(hypotheses) < 2
+        or conclusion.verdict not in ("ambiguous", "missing_physics")
+        or not conclusion.groups
+    ):
+        return None
+    first, second = hypotheses[0], hypotheses[1]
+    template = bench.training[0]
+    amplitude = float(np.abs(template.command).max())
+    options: list[tuple[str, Experiment]] = []
+    hydraulic = bench.rig.variant(template.joint, "cylinder") != "electric_motor"
+    unrecorded = hydraulic and len(template.channels) == 1
+    if unrecorded:
+        options.append(
+            ("the same command with both chamber pressures recorded", _with_pressures(bench, template))
+        )
+    for words, command in commands_of(amplitude).items():
+        experiment = _with_command(template, command)
+        options.append((f"{words} (up to {amplitude:.3g} V)", experiment))
+        if unrecorded:
+            options.append((f"{words} (up to {amplitude:.3g} V), with both chamber pressures recorded",
+                            _with_pressures(bench, experiment)))  # fmt: skip
+    seen = bench.side_by_side(lambda option: _separation(bench, first, second, option[1]), options)
+    ranked = sorted(zip(seen, options, strict=True), key=lambda pair: -pair[0])
+    separation, (words, experiment) = ranked[0]
+    names = " from ".join(_names(h) for h in (first, second))
+    told = (
+        f"it would tell {names} at {separation:.0f} standard deviations (checked by simulation)"
+        if separation >= ENOUGH
+        else f"even it would tell {names} only at {separation:.1f} standard deviations"
+    )
+    return Proposal(
+        f"Drive {experiment.joint} with {words}: {told}.", experiment.time, experiment.command, separation
+    )
+
+
+def _names(hypothesis: Hypothesis) -> str:
+    return " + ".join(c.id for c in hypothesis.effects) or "the nominal model"
+
+
+def _with_command(template: Experiment, command: np.ndarray) -> Experiment:
+    time = np.arange(command.size) * SAMPLE_S
+    channels = tuple(
+        replace(channel, measured=np.zeros(command.size), model_error=None, blur=None)
+        for channel in template.channels
+    )
+    return replace(
+        template, name="proposal", time=time, command_times=time, command=command, channels=channels,
+        used=np.ones(command.size, dtype=bool), start_response=None,
+    )  # fmt: skip
+
+
+def _with_pressures(bench: Workbench, experiment: Experiment) -> Experiment:
+    """The same with both chamber pressures, at the noise that the rig states, or 0.2 % of the supply."""
+    stated = bench.rig.value(f"joints.{experiment.joint}.sensor.pressure_noise")
+    noise = stated if stated > 0.0 else 0.002 * bench.rig.value("supply.pressure")
+    nothing = np.zeros(experiment.time.size)
+    more = tuple(
+        Channel(f"{experiment.joint}.{name}", "Pa", name, nothing, noise)
+        for name in ("pressure_a", "pressure_b")
+    )
+    position = replace(experiment.channels[0], measured=nothing, model_error=None)
+    return replace(experiment, channels=(position, *more), start_response=None)
+
+
+def _separation(bench: Workbench, truth: Hypothesis, rival: Hypothesis, experiment: Experiment) -> float:
+    """Root of the squared residuals that the rival leaves after its best (linear) change of parameters."""
+    played = bench.residuals(truth, [experiment], bench.fine)
+    problem = bench.problem(rival.effects, bench.fine, [experiment])
+    unit = problem.parameters.unit(rival.values)
+    base = problem.residuals(unit)
+    off = problem.prior_residuals(unit)
+    jacobian = problem.jacobian(unit, base)
+    across = Across(Fit(unit, base, off, jacobian, problem.prior_jacobian(), base.size, 0))
+    left = across(np.concatenate([base - played, np.zeros(off.size)]))
+    return float(np.linalg.norm(left))

@@ -1,0 +1,223 @@
+"""A race of structures: all are fitted a little, the better ones more (successive halving).
+
+Jamieson and Talwalkar, Non-stochastic best arm identification and hyperparameter optimization, AISTATS 2016.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.fitting.line_search import Along, searched_along
+from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
+from hydrolek_drake.diagnosis.search.settings import Rung
+from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.problem_together import ProblemTogether
+
+EDGE = 1e-6
+
+
+@dataclass(frozen=True)
+class Entrant:
+    """A structure and where its fit begins.
+
+    Attributes:
+        effects: what is added to the nominal model.
+        values: full path -> start; what is not named starts at the rig's own value.
+        parent: a structure whose fit ended where this one begins, and whose slopes lead it at first; None for none.
+    """
+
+    effects: tuple[Candidate, ...]
+    values: dict[str, float]
+    parent: Hypothesis | None = None
+
+
+@dataclass(frozen=True)
+class Runner:
+    """A structure on its way."""
+
+    effects: tuple[Candidate, ...]
+    place: Place
+
+    @property
+    def key(self) -> frozenset[str]:
+        """What tells its structure from others."""
+        return frozenset(c.size_path for c in self.effects)
+
+
+def race(
+    bench: Workbench,
+    entrants: Sequence[Entrant],
+    rungs: Sequence[Rung],
+    cores: int,
+    seen: Callable[[Sequence[Runner], Rung], None] = lambda runners, rung: None,
+) -> list[Hypothesis]:
+    """Fit structures, the better ones to the end; each structure counts by its best fit.
+
+    Args:
+        bench: data and problems.
+        entrants: structures and starts.
+        rungs: of the race.
+        cores: that roll out at the same time.
+        seen: told how the fits stand after each rung.
+
+    Returns:
+        Those that ended on the last rung, the best first.
+    """
+    runners = [_begun(bench, entrant) for entrant in entrants]
+    for rung in rungs:
+        problems = {r.key: problem_of(bench, r.effects, rung) for r in runners}
+        begun = [r.place.at(problems[r.key]) for r in runners]
+        if rung is rungs[0]:
+            begun = _led(bench, entrants, begun, rung, cores)
+        last = rung is rungs[-1]
+        places = descend(
+            begun,
+            rung.rounds,
+            bench.pool,
+            cores,
+            share=1e-4 if last else 3e-3,
+            stop=bench.alive,
+        )
+        bench.evaluations += sum(p.evaluations for p in problems.values())
+        runners = [replace(r, place=place) for r, place in zip(runners, places, strict=True)]
+        if rung is not rungs[0]:
+            runners = _beside(bench, runners, cores)
+        seen(runners, rung)
+        runners = sorted(runners, key=lambda r: r.place.objective)
+        runners = _best_of_each(runners, 2 if rung is not rungs[-1] else 1)[: rung.keep]
+    return [hypothesis_of(r.effects, r.place, rungs[-1].coarse * bench.fine) for r in runners]
+
+
+STRIDES = (0.25, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 1.02, 1.05, 1.1, 1.25, 1.5, 2.0, 4.0)
+MOMENTS = 16
+
+
+def _beside(bench: Workbench, runners: Sequence[Runner], cores: int) -> list[Runner]:
+    """The same with what has no slope tried elsewhere, and fitted on where that helped."""
+    now = list(runners)
+    most = max((len(r.effects) for r in runners), default=0)
+    for number in range(most):
+        own = [_ways(r, number) for r in now]
+        for turn in range(max(map(len, own), default=0)):
+            ways = [each[turn] if turn < len(each) else None for each in own]
+            places = searched_along([r.place for r in now], ways, bench.pool, cores)
+            moved = [place is not r.place for place, r in zip(places, now, strict=True)]
+            places = [p if m else replace(p, ended=True) for p, m in zip(places, moved, strict=True)]
+            places = descend(places, 3, bench.pool, cores, stop=bench.alive)
+            now = [replace(r, place=place) for r, place in zip(now, places, strict=True)]
+    return now
+
+
+def _ways(runner: Runner, number: int) -> list[Along]:
+    """Lines along which one of a structure's additions is tried elsewhere."""
+    if number >= len(runner.effects):
+        return []
+    candidate = runner.effects[number]
+    paths = list(runner.place.problem.parameters.paths)
+    ways = []
+    if candidate.sudden:
+        free, index = candidate.size, paths.index(candidate.size_path)
+        value = free.from_unit(float(runner.place.unit[index]))
+        places = np.clip([free.to_unit(value * stride) for stride in STRIDES], EDGE, 1.0 - EDGE)
+        ways.append(Along(index, places))
+    grid = (np.arange(MOMENTS) + 0.5) / MOMENTS
+    near = np.array([-1.0, -0.3, -0.1, -0.03, 0.03, 0.1, 0.3, 1.0]) / MOMENTS
+    for free in candidate.searched:
+        index = paths.index(free.path)
+        ways.append(Along(index, np.clip(np.concatenate([grid, runner.place.unit[index] + near]), 0.0, 1.0)))
+    return ways
+
+
+def _led(
+    bench: Workbench, entrants: Sequence[Entrant], begun: Sequence[Place], rung: Rung, cores: int
+) -> list[Place]:
+    """The same places with the slopes of their parents, which are as good as their own near where these ended."""
+    parents = {e.parent.ids: e.parent for e in entrants if e.parent is not None}
+    places = {}
+    for key, parent in parents.items():
+        problem = problem_of(bench, parent.effects, rung)
+        place = Place(problem, bench.movable(parent.effects, problem.parameters), parent.fit.unit)
+        places[key] = with_slopes([place], bench.pool, cores)[0]
+    led = []
+    for entrant, place in zip(entrants, begun, strict=True):
+        if entrant.parent is None:
+            led.append(place)
+            continue
+        known = places[entrant.parent.ids]
+        assert known.slopes is not None
+        slopes = np.full((len(known.slopes), place.unit.size), np.nan)
+        paths = list(place.problem.parameters.paths)
+        for column, path in enumerate(known.problem.parameters.paths):
+            if path in paths:
+                slopes[:, paths.index(path)] = known.slopes[:, column]
+        led.append(replace(place, slopes=slopes))
+    return led
+
+
+def _best_of_each(runners: Sequence[Runner], count: int) -> list[Runner]:
+    """At most so many fits of each structure, the best first."""
+    taken: dict[frozenset[str], int] = {}
+    kept = []
+    for runner in runners:
+        taken[runner.key] = taken.get(runner.key, 0) + 1
+        if taken[runner.key] <= count:
+            kept.append(runner)
+    return kept
+
+
+def problem_of(bench: Workbench, effects: tuple[Candidate, ...], rung: Rung) -> Problem:
+    """Residuals of a structure on a rung."""
+    data = bench.training if math.isinf(rung.seconds) else [e.until(rung.seconds) for e in bench.training]
+    return problem_with(bench, effects, rung.coarse * bench.fine, data, rung.observer_s)
+
+
+def problem_with(
+    bench: Workbench,
+    effects: tuple[Candidate, ...],
+    step: float,
+    experiments: Sequence[Experiment],
+    observer_s: float = math.inf,
+) -> Problem:
+    """Residuals of a structure; joints that move together are all rolled out at once.
+
+    Args:
+        bench: data.
+        effects: of the structure.
+        step: of the integration [s].
+        experiments: what must be followed.
+        observer_s: time constant of the observer [s]; infinite for free rollouts.
+    """
+    kind = ProblemTogether if any(e.others is not None for e in experiments) else Problem
+    observer = None if math.isinf(observer_s) else observer_s
+    return bench.problem(effects, step, experiments, observer, kind=kind)
+
+
+def _begun(bench: Workbench, entrant: Entrant) -> Runner:
+    problem = problem_with(bench, entrant.effects, bench.fine, bench.training)
+    moving = bench.movable(entrant.effects, problem.parameters)
+    unit = problem.parameters.unit(entrant.values)
+    unit[moving] = np.clip(unit[moving], EDGE, 1.0 - EDGE)
+    return Runner(entrant.effects, Place(problem, moving, unit))
+
+
+def hypothesis_of(effects: tuple[Candidate, ...], place: Place, step: float) -> Hypothesis:
+    """A fit as the rest of the diagnosis takes it."""
+    problem, unit, residuals, moving = place.problem, place.unit, place.residuals, place.moving
+    assert residuals is not None
+    fit = Fit(
+        unit=unit,
+        residuals=residuals,
+        off_prior=problem.prior_residuals(unit),
+        slopes=lambda: problem.jacobian(unit, residuals, moving),
+        prior_jacobian=problem.prior_jacobian(),
+        counted=problem.counted,
+        evaluations=problem.evaluations,
+        unsure=problem.unsure,
+    )
+    return Hypothesis(effects, problem.parameters.values(unit), fit, step)

@@ -1,0 +1,144 @@
+"""The numbers of the model that is named: fitted to the last square, and how far each of its effects' is known.
+
+Fits that choose among models end where another step tells none of them from another. A number may be several of its
+standard deviations from the bottom there, and where a joint sticks and slips or takes up a play, the curvature of a
+local minimum says little of how far it reaches, and nothing of a deeper one beside it. So each number of the effects is
+gone along on both sides, all others following, until the likelihood has fallen by what its interval allows; what lies
+lower on the way is where the fit begins anew (profile likelihood: Raue et al., Bioinformatics 25, 2009, 1923).
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.data.joints_together import felt_together
+from hydrolek_drake.diagnosis.evidence.judged import Judged
+from hydrolek_drake.diagnosis.evidence.predictive import FINER
+from hydrolek_drake.diagnosis.intervals.curvature import CONFIDENCE, Interval, covariance_of, intervals_of
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.problem_together import ProblemTogether
+from hydrolek_drake.identification.profile import Profile, profile
+from hydrolek_drake.identification.secant_descent import SecantDescent
+
+WORTH = 0.1
+"""Squares that a step must promise: it moves a number by a third of its standard deviation at most otherwise."""
+
+LOWER = 1.0
+"""Another place is lower if it leaves so many squares less: it is a standard deviation away, or another
+local minimum."""
+
+MOST_ROUNDS = 3
+"""So often the fit begins anew in a lower local minimum."""
+
+FIRST = 2.0
+"""Standard deviations on either side: a little beyond what curvature has for the interval."""
+
+
+class LastNumbers:
+    """Fits one set of effects to the last square, joints that move together rolled out at once."""
+
+    def __init__(self, bench: Workbench, hypothesis: Hypothesis) -> None:
+        """Prepare.
+
+        Args:
+            bench: fits, and the training data.
+            hypothesis: near its optimum.
+        """
+        self._bench = bench
+        self._begun = hypothesis
+        self._step = bench.fine if bench.together else min(hypothesis.step, FINER * bench.fine)
+        self.problem = self._problem(bench.training)
+        self._moving = bench.movable(hypothesis.effects, self.problem.parameters)
+        self._descent = SecantDescent(
+            self.problem,
+            worth=WORTH,
+            stop=bench.interrupted,
+            moving=self._moving,
+            slopes=self.problem.jacobian_without_jumps,
+        )
+
+    def _problem(self, experiments: Sequence[Experiment]) -> Problem:
+        kind = ProblemTogether if self._bench.together else Problem
+        return self._bench.problem(self._begun.effects, self._step, experiments, kind=kind)
+
+    def found(self) -> tuple[Hypothesis, dict[str, Interval]]:
+        """The fit, and the intervals of all its numbers, full path -> interval."""
+        bench, before = self._bench, self.problem.evaluations
+        fit = self._descent.from_start(self._begun.fit.unit)
+        profiles = self._profiles(fit)
+        for _ in range(MOST_ROUNDS):
+            lowest = max(profiles, key=lambda p: p.improved, default=None)
+            if lowest is None or lowest.improved < LOWER:
+                break
+            fit = self._descent.from_start(lowest.lowest)
+            profiles = self._profiles(fit)
+        bench.evaluations += self.problem.evaluations - before
+        parameters = self.problem.parameters
+        intervals = intervals_of(parameters, fit)
+        for one in profiles:
+            free = parameters.free[one.index]
+            low, high = (
+                free.from_unit(end if reached is None else reached)
+                for end, reached in ((0.0, one.low), (1.0, one.high))
+            )
+            known = intervals[free.path]
+            intervals[free.path] = Interval(known.value, min(known.low, low), max(known.high, high))
+        values = parameters.values(fit.unit)
+        return Hypothesis(self._begun.effects, values, fit, self._step), intervals
+
+    def _profiles(self, fit: Fit) -> list[Profile]:
+        """Of each number of the effects that least squares moves and that the data tell."""
+        covariance = covariance_of(fit)
+        numbers = {free.path for effect in self._begun.effects for free in effect.free}
+        told = [
+            index
+            for index, path in enumerate(self.problem.parameters.paths)
+            if path in numbers and self._moving[index] and covariance[index, index] > 0.0
+        ]
+        return self._bench.side_by_side(lambda index: self._profile(fit, covariance, index), told)
+
+    def _profile(self, fit: Fit, covariance: np.ndarray, index: int) -> Profile:
+        """One number's, the others led by the fit's Jacobian, which a Jacobian at each place would hardly change."""
+        along = covariance[:, index] / covariance[index, index]
+        others = self._moving & (np.arange(fit.unit.size) != index)
+
+        def following(start: np.ndarray) -> tuple[np.ndarray, float]:
+            begun = np.clip(fit.unit + (start[index] - fit.unit[index]) * along, 0.0, 1.0)
+            begun[index] = start[index]
+            there = self._descent.led_by(fit.jacobian, self._descent.at(begun), others)
+            return there.unit, there.objective
+
+        deviation = float(np.sqrt(covariance[index, index])) / max(1.0, fit.over_noise)
+        return profile(
+            self.problem, fit.unit, index, deviation, confidence=CONFIDENCE, first=FIRST, others=following
+        )
+
+    def ahead(self, fitted: Hypothesis, held_out: Sequence[Experiment]) -> np.ndarray:
+        """Residuals on the held-out data, in units of the noise. # (values,)."""
+        return self._problem(held_out).residuals(fitted.fit.unit)
+
+
+def with_last_numbers(
+    bench: Workbench, best: Judged, held_out: Sequence[Experiment]
+) -> tuple[Judged, dict[str, Interval], tuple[Experiment, ...]]:
+    """The model that is named, with its last numbers.
+
+    Args:
+        bench: fits, and the training data, which are told anew where joints move together.
+        best: the model, as it was judged.
+        held_out: what decided.
+
+    Returns:
+        The model; full path -> interval of every number; and the held-out data, told anew as the training data.
+    """
+    last = LastNumbers(bench, best.hypothesis)
+    there, intervals = last.found()
+    rig = bench.rig.with_values(there.values)
+    training, told = felt_together(rig, bench.training), felt_together(rig, held_out)
+    ahead = last.ahead(there, told)
+    bench.training = tuple(training)  # an interrupt before leaves all as it was
+    return replace(best, hypothesis=there, held_out=ahead), intervals, tuple(told)

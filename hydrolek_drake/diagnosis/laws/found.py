@@ -1,0 +1,151 @@
+"""A structure's terms of laws, as the report tells them."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.evidence.judged import Judged
+from hydrolek_drake.diagnosis.evidence.judging import stands_ahead
+from hydrolek_drake.diagnosis.evidence.noise import NOISE_KNOWN
+from hydrolek_drake.diagnosis.intervals.curvature import intervals_of
+from hydrolek_drake.diagnosis.laws.additions import LawTerm
+from hydrolek_drake.diagnosis.laws.law import FRICTIONS, SCAN_S, FoundLaw, Law
+from hydrolek_drake.diagnosis.laws.terms import Term
+from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.physics.law import PLACED
+
+
+def terms_of(hypothesis: Hypothesis) -> list[LawTerm]:
+    """The terms of laws of a structure."""
+    return [c for c in hypothesis.effects if isinstance(c, LawTerm)]
+
+
+def law_of(
+    bench: Workbench,
+    judged: Judged,
+    held_out: Sequence[Experiment],
+    rivals: Sequence[str],
+    settings: Settings,
+    cores: int,
+) -> FoundLaw:
+    """What a structure's terms are together.
+
+    Args:
+        bench: data and problems.
+        judged: a structure with terms.
+        held_out: data that it was held against.
+        rivals: other stages at which a law does as well.
+        settings: of the search.
+        cores: that roll out at the same time.
+    """
+    h = judged.hypothesis
+    terms = terms_of(h)
+    first = terms[0]
+    periodic = first.term is None
+    forms = tuple(_as_fitted(t, h) for t in terms if t.term is not None)
+    law = Law(first.input, () if periodic else forms, first.frequency if periodic else 0.0)
+    paths = list(h.values)
+    order = [paths.index(t.size_path) for t in terms]
+    if periodic:
+        order += [paths.index(f"{first.path}.{name}") for name in ("cosine", "frequency")]
+    else:
+        order += [
+            paths.index(f"{t.path}.{name}")
+            for t in terms
+            if t.term is not None
+            for name in PLACED.get(t.term.place, ())
+        ]
+    rest = [i for i in range(len(paths)) if i not in order]
+    parameters = bench.parameters(h.effects)
+    ahead = []
+    for effects, unit in stands_ahead(bench, [h], held_out, h.step, settings, cores)[0]:
+        values = bench.parameters(effects).values(unit)
+        ahead.append(np.array([values[paths[i]] for i in order]))
+    experiment = next(e for e in bench.training if e.joint == first.joint)
+    records = parameters.records(h.fit.unit)
+    without = records.copy()
+    without["law"] = bench.rig.records()["law"]
+    with_law, plain = (experiment.simulate(r, bench.fine).signals.reading for r in (records, without))
+    return FoundLaw(
+        law=law,
+        values=np.array([h.values[paths[i]] for i in order]),
+        parameters={paths[i]: h.values[paths[i]] for i in rest},
+        fit=_told(h, terms, order, rest),
+        held_out_over_noise=judged.over_noise,
+        difference=with_law - plain,
+        span=first.span,
+        ahead=tuple(own for own, e in zip(ahead, held_out, strict=True) if e.joint == first.joint),
+        joint=first.joint,
+        rivals=tuple(rivals),
+        intervals={
+            path: known for path, known in intervals_of(parameters, h.fit).items() if ".law." not in path
+        },
+    )
+
+
+def _as_fitted(term: LawTerm, h: Hypothesis) -> Term:
+    """The form of a term, where it was fitted."""
+    assert term.term is not None
+    own = PLACED.get(term.term.place, ())
+    centre = h.values[f"{term.path}.centre"] if "centre" in own else term.term.centre
+    reach = h.values[f"{term.path}.reach"] if "reach" in own else term.term.reach
+    return replace(term.term, centre=centre, reach=reach)
+
+
+def _told(h: Hypothesis, terms: Sequence[LawTerm], order: list[int], rest: list[int]) -> Fit:
+    """The fit with the terms' parameters last, on the scales that `intervals.of_laws` takes them in."""
+    scales = np.ones(len(h.fit.unit))
+    for term in terms:
+        paths = list(h.values)
+        if term.input.one_sided:
+            scales[paths.index(term.size_path)] = 2.0
+        if term.term is None:
+            scales[paths.index(f"{term.path}.frequency")] = 1.0 / (SCAN_S * 2.0 * term.breadth)
+    turned = [*rest, *order]
+    slopes = h.fit.jacobian * scales
+    return replace(
+        h.fit,
+        unit=h.fit.unit[turned],
+        off_prior=h.fit.off_prior[turned],
+        slopes=slopes[:, turned],
+        prior_jacobian=h.fit.prior_jacobian[np.ix_(turned, turned)],
+    )
+
+
+SIDES = ("cylinder", "load")
+
+
+def likeliest_side(judged: Sequence[Judged]) -> Judged:
+    """The most probable structure; of laws at the rod and at the joint that do hardly differ, the likelier side.
+
+    A friction at the rod and one at the joint make the same movement and pressures if each may vary over the stroke,
+    and so do any two forces where the lever is constant. A friction is named at the rod then, where seals are pressed
+    on by the oil, and what pushes or shakes at the load: an assumption about such machines; the other side is told too.
+
+    Args:
+        judged: structures, the most probable first.
+    """
+    best = judged[0]
+    stage, brakes = _side(best)
+    if stage not in SIDES:
+        return best
+    wanted = "cylinder" if brakes else "load"
+    most = _left(best) * (1.0 + 2.0 * NOISE_KNOWN)
+    near = (j for j in judged if _side(j) == (wanted, brakes) and _left(j) <= most)
+    return next(near, best)
+
+
+def _side(judged: Judged) -> tuple[str, bool]:
+    """The stage of a structure's law, and whether it is a friction."""
+    terms = terms_of(judged.hypothesis)
+    brakes = all(t.term is not None and t.term.speed in FRICTIONS for t in terms)
+    return (terms[0].input.stage, brakes) if terms else ("", False)
+
+
+def _left(judged: Judged) -> float:
+    """Squares that a structure leaves of all data."""
+    return judged.hypothesis.fit.objective + float(judged.held_out @ judged.held_out)

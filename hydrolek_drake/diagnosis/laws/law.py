@@ -1,0 +1,192 @@
+"""A law for physics in no list, as it was found and is told."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.intervals.curvature import Interval
+from hydrolek_drake.diagnosis.laws.inputs import Input
+from hydrolek_drake.diagnosis.laws.terms import CONSTANT, Span, Term, law_record, law_records
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.physics.law import PLACED
+from hydrolek_drake.replay.display import shown
+from hydrolek_drake.rollout.rollout import Signals
+
+SCAN_S = 12.0
+"""Frequencies are first looked for in so many seconds."""
+
+
+FRICTIONS = ("sign(v)", "v", "v |v|")
+"""Factors of a term that changes its sign with the speed."""
+
+
+@dataclass(frozen=True)
+class Law:
+    """A law at a stage.
+
+    Attributes:
+        input: what it gives.
+        terms: of which it is the sum; none for a periodic one.
+        frequency: first guess [Hz]; 0 for terms.
+    """
+
+    input: Input
+    terms: tuple[Term, ...]
+    frequency: float
+
+    @property
+    def periodic(self) -> bool:
+        """Whether it is a sine in time."""
+        return not self.terms
+
+    @property
+    def placed(self) -> tuple[tuple[int, str], ...]:
+        """Which of its terms have which numbers of a place (`physics.law.PLACED`), that are fitted."""
+        return tuple(
+            (number, name) for number, term in enumerate(self.terms) for name in PLACED.get(term.place, ())
+        )
+
+    @property
+    def sizes(self) -> int:
+        """How many of its parameters are amplitudes."""
+        return 2 if self.periodic else len(self.terms)
+
+    @property
+    def size(self) -> int:
+        """How many parameters it has: amplitudes, then a frequency, or the numbers of its places."""
+        return 3 if self.periodic else self.sizes + len(self.placed)
+
+    def at(self, values: np.ndarray) -> "Law":
+        """The law with its placed terms where they were fitted."""
+        if not self.placed:
+            return self
+        terms = list(self.terms)
+        for (number, name), value in zip(self.placed, values[self.sizes :].tolist(), strict=True):
+            terms[number] = replace(terms[number], **{name: value})
+        return replace(self, terms=tuple(terms))
+
+
+@dataclass(frozen=True)
+class FoundLaw:
+    """A fitted law.
+
+    Attributes:
+        law: stage and form.
+        values: amplitudes (SI), then the numbers of its places (`Law.placed`, as in `terms.Term`); or sine and cosine
+            amplitudes and frequency [Hz].
+        parameters: full path -> nominal parameters fitted with it.
+        fit: on the training data.
+        held_out_over_noise: root mean square on held-out data over the noise.
+        difference: of the reading on the first training recording, with and without the law. # (n,)
+        span: what its variables are told in.
+        ahead: its values on each held-out recording of the joint, where a periodic one has its phase of its own.
+        joint: at which it acts; of several that were driven, the one whose data `fit` and held-out error are of.
+        rivals: other stages at which a law leaves as little of all data.
+        intervals: full path -> the parameters fitted with it, with their intervals.
+    """
+
+    law: Law
+    values: np.ndarray
+    parameters: dict[str, float]
+    fit: Fit
+    held_out_over_noise: float
+    difference: np.ndarray
+    span: Span
+    ahead: tuple[np.ndarray, ...]
+    joint: str
+    rivals: tuple[str, ...] = ()
+    intervals: Mapping[str, Interval] = field(default_factory=dict)
+
+    of_the_machine: ClassVar[bool] = True
+    """Whether a rig can hold it."""
+
+    remark: ClassVar[str] = ""
+    """What is to be said of it where it has no letters to explain."""
+
+    @property
+    def condition(self) -> str:
+        """When it acts, as far as its form tells; empty if it does not."""
+        return f"periodic, {self.values[2]:.3g} Hz" if self.law.periodic else ""
+
+    @property
+    def acts(self) -> tuple[tuple[float, float], ...]:
+        """When it acts in the first training recording [s], if its form tells; empty if it always may."""
+        return ()
+
+    def more(self) -> dict[str, Any]:
+        """What `report.json` tells of it beside its amplitudes."""
+        return {}
+
+    def signals(
+        self, experiment: Experiment, records: np.ndarray, step: float, values: np.ndarray
+    ) -> Signals:
+        """What a model with the law does.
+
+        Args:
+            experiment: whose commands it is given.
+            records: of all joints of the rig. # (joints,)
+            step: of the integration [s].
+            values: the law's on this recording.
+        """
+        return experiment.simulate(records, step, law=records_of(self.law, self.span, values)).signals
+
+    def held_against(self, held_out: Sequence[Experiment], records: np.ndarray, step: float) -> "FoundLaw":
+        """The law with what it leaves of held-out data, of which the weights may have changed since it was found.
+
+        Args:
+            held_out: in the order of `ahead`, of all joints.
+            records: of all joints of the rig, with the parameters fitted with the law. # (joints,)
+            step: of the integration [s].
+        """
+        at_joint = [experiment for experiment in held_out if experiment.joint == self.joint]
+        left = [
+            e.residuals(self.signals(e, records, step, own))
+            for e, own in zip(at_joint, self.ahead, strict=True)
+        ]
+        squares = sum(float(part @ part) for part in left)
+        counted = sum(experiment.counted for experiment in at_joint)
+        return replace(self, held_out_over_noise=math.sqrt(squares / max(counted, 1)))
+
+    @property
+    def amplitudes(self) -> list[float]:
+        """Sizes of the input (SI): of every term with its sign, or the largest of a periodic one."""
+        sizes = self.values[: self.law.sizes]
+        return [math.hypot(*sizes)] if self.law.periodic else sizes.tolist()
+
+    @property
+    def names(self) -> list[str]:
+        """Of its terms, with the places near which they act."""
+        reach = self.span.at(self.law.input.probe)
+
+        def told(term: Term) -> str:
+            if term.place not in PLACED:
+                return term.name
+            where = [reach.position(term.centre), reach.distance(term.reach)][: len(PLACED[term.place])]
+            told = ", ".join(shown(each, reach.unit) for each in where)
+            return term.name.replace(term.place, f"{term.place}({told})")
+
+        return [told(term) for term in self.law.at(self.values).terms]
+
+    def equation(self) -> str:
+        """The law as an equation."""
+        sizes = [shown(size, self.law.input.unit) for size in self.amplitudes]
+        if self.law.periodic:
+            phase = math.atan2(self.values[1], self.values[0])
+            sine = f"sin(2 pi {self.values[2]:.4g} Hz t {'-' if phase < 0.0 else '+'} {abs(phase):.2f})"
+            return f"{self.law.input.symbol} = {sizes[0]} * {sine}"
+        products = [
+            size if name == CONSTANT else f"{size} * {name}"
+            for size, name in zip(sizes, self.names, strict=True)
+        ]
+        return f"{self.law.input.symbol} = {' + '.join(products).replace('+ -', '- ')}"
+
+
+def records_of(law: Law, span: Span, values: np.ndarray) -> np.ndarray:
+    """A law with its values (SI) as the rollout takes it. # (k,) of `physics.law.LAW`."""
+    if law.periodic:
+        return law_record(law.input.probe, span, None, *values.tolist())
+    return law_records(law.input.probe, span, law.at(values).terms, values[: law.sizes].tolist())

@@ -1,0 +1,1 @@
+"""Commands that got lost on their way."""

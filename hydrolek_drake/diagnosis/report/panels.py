@@ -1,0 +1,135 @@
+"""What the pictures of a diagnosis show: measured, before and after, and what each leaves."""
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.diagnosis import Diagnosis
+from hydrolek_drake.diagnosis.laws.law import FoundLaw
+from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.replay.display import display_factor, display_unit
+from hydrolek_drake.replay.panels import (
+    COMMAND_COLOUR,
+    MEASURED_COLOUR,
+    MODEL_COLOUR,
+    RESIDUAL_COLOUR,
+    Line,
+    Panel,
+)
+from hydrolek_drake.replay.spans import BEYOND_NOISE
+from hydrolek_drake.replay.thinning import thinned
+from hydrolek_drake.rollout.rollout import Signals
+
+BEFORE_COLOUR = "#b8c0c8"
+AFTER_COLOUR = MODEL_COLOUR
+
+
+def columns(diagnosis: Diagnosis) -> list[list[Panel]]:
+    """Training data on the left, held-out data on the right; the joint with the largest mismatch."""
+    assert diagnosis.bench is not None
+    joint = diagnosis.locations[0].joint if diagnosis.locations else diagnosis.bench.training[0].joint
+    train = next(e for e in diagnosis.bench.training if e.joint == joint)
+    held = next((e for e in diagnosis.held_out if e.joint == joint), train)
+    if np.array_equal(train.channels[0].measured, held.channels[0].measured, equal_nan=True):
+        return [_stack(diagnosis, train, "", held_out_spans(held))]
+    right = (
+        _stack(diagnosis, held, "fitted, but for the shaded blocks", held_out_spans(held))
+        if partly_fitted(diagnosis, held)
+        else _stack(diagnosis, held, "held out", ())
+    )
+    return [_stack(diagnosis, train, "fitted", ()), right]
+
+
+def course_panel(estimate: Estimate) -> Panel:
+    """The course of an unknown input in the first recording, with two standard deviations to either side."""
+    times = estimate.unknown.times
+    first = slice(0, int(np.argmax(np.diff(times, append=-np.inf) < 0.0)) + 1)
+    given = estimate.unknown.input
+    factor, unit = display_factor(given.unit), display_unit(given.unit)
+    course, width = factor * estimate.course[first], 2.0 * factor * estimate.deviation[first]
+    lines = (
+        Line("less 2 standard deviations", times[first], course - width, BEFORE_COLOUR),
+        Line("and 2 more", times[first], course + width, BEFORE_COLOUR),
+        Line(given.symbol, times[first], course, RESIDUAL_COLOUR),
+    )
+    return Panel(f"{given.symbol} [{unit}]", lines, (), None, 2.0)
+
+
+def partly_fitted(diagnosis: Diagnosis, held: Experiment) -> bool:
+    """Whether other parts of a held-out experiment's recording were fitted."""
+    assert diagnosis.bench is not None
+    return any(
+        e.joint == held.joint
+        and np.array_equal(e.channels[0].measured, held.channels[0].measured, equal_nan=True)
+        for e in diagnosis.bench.training
+    )
+
+
+def held_out_spans(experiment: Experiment) -> tuple[tuple[float, float], ...]:
+    """Stretches of a recording that are held out [s]."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], experiment.used, [False]]).astype(int)))
+    last = experiment.time.size - 1
+    return tuple(
+        (float(experiment.time[a]), float(experiment.time[min(b, last)]))
+        for a, b in zip(edges[::2], edges[1::2], strict=True)
+    )
+
+
+def before(diagnosis: Diagnosis, experiment: Experiment) -> Signals:
+    """What the nominal model, refitted, does under the recorded command."""
+    return _simulated(diagnosis, diagnosis.baseline.hypothesis, experiment)
+
+
+def after(diagnosis: Diagnosis, experiment: Experiment) -> Signals:
+    """What the best model does under the recorded command, with the law for physics in no list if one was found."""
+    return _simulated(diagnosis, diagnosis.best.hypothesis, experiment, diagnosis.law)
+
+
+def _simulated(
+    diagnosis: Diagnosis, hypothesis: Hypothesis, experiment: Experiment, law: FoundLaw | None = None
+) -> Signals:
+    assert diagnosis.bench is not None
+    parameters = diagnosis.bench.parameters(hypothesis.effects)
+    if law is None or law.joint != experiment.joint:
+        records = parameters.records(parameters.unit(hypothesis.values))
+        return experiment.simulate(records, diagnosis.step).signals
+    held_out = [held for held in diagnosis.held_out if held.joint == law.joint]
+    place = next((i for i, held in enumerate(held_out) if held is experiment), None)
+    own = law.values if place is None else law.ahead[place]
+    records = parameters.records(parameters.unit(law.parameters))
+    return law.signals(experiment, records, diagnosis.step, own)
+
+
+def _stack(
+    diagnosis: Diagnosis, experiment: Experiment, what: str, shaded: tuple[tuple[float, float], ...]
+) -> list[Panel]:
+    without, enlarged = before(diagnosis, experiment), after(diagnosis, experiment)
+    more = bool(diagnosis.best.hypothesis.effects) or diagnosis.law is not None
+    name_after = "with the missing physics" if diagnosis.law is None else "with the law found"
+    time = experiment.time
+    stack: list[Panel] = []
+    for channel in experiment.channels:
+        factor, unit = display_factor(channel.unit), display_unit(channel.unit)
+        old, new = getattr(without, channel.model), getattr(enlarged, channel.model)
+        curves = [
+            ("measured", channel.measured, MEASURED_COLOUR),
+            ("nominal model, refitted", old, BEFORE_COLOUR),
+        ]
+        if more:
+            curves.append((name_after, new, AFTER_COLOUR))
+        lines = tuple(Line(name, *thinned(time, factor * v), colour) for name, v, colour in curves)
+        stack.append(
+            Panel(f"{channel.key} [{unit}]", lines, shaded, None, 2.0, heading=what if not stack else "")
+        )
+        band = BEYOND_NOISE * factor * channel.noise
+        told = [("left before", channel.measured - old, RESIDUAL_COLOUR)]
+        if more:
+            told.append(("left after", channel.measured - new, AFTER_COLOUR))
+        for name, residual, colour in told:
+            line = Line(name, *thinned(time, factor * residual), colour)
+            stack.append(Panel(f"{name} [{unit}]", (line,), shaded, band, 1.0, 2.0 * band))
+    command = Line(
+        "command", *thinned(experiment.command_times, experiment.command), COMMAND_COLOUR, stepped=True
+    )
+    stack.append(Panel("command [V]", (command,), shaded, None, 0.8))
+    return stack

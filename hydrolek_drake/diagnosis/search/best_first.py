@@ -1,0 +1,155 @@
+"""Best-first search among structures: what promises most evidence is fitted next, until nothing more is promised."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any, Protocol
+
+from hydrolek_drake.diagnosis.data.weighing import weighted_by
+from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE
+from hydrolek_drake.diagnosis.fitting.race import Entrant, race
+from hydrolek_drake.diagnosis.search.cost import cost
+from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
+from hydrolek_drake.diagnosis.search.openings import Opening, enlarged, opened
+from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.search.tracing import trace
+from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+
+EFFECTS, LAWS = "effects", "laws"
+"""What structures are enlarged by."""
+
+
+class Unlisted(Protocol):
+    """Physics in no list that may be beside a structure."""
+
+    def offer(self, bench: Workbench, parent: Hypothesis) -> Sequence[Any]:
+        """Terms of laws and lost commands that may explain what a structure leaves."""
+        ...
+
+
+def search_structures(
+    bench: Workbench,
+    candidates: Sequence[Candidate],
+    found: Tried,
+    say: Callable[[str], None],
+    settings: Settings,
+    cores: int,
+    unlisted: Unlisted | None = None,
+) -> None:
+    """Fill what is found.
+
+    Args:
+        bench: data and problems; its training data are weighed anew by what is found.
+        candidates: every effect that may be missing.
+        found: receives what was tried.
+        say: told what is being done.
+        settings: of the search.
+        cores: that roll out at the same time.
+        unlisted: physics in no list; None for none.
+    """
+    say("fitting the nominal model")
+    _nominal(bench, found, settings, cores)
+    done: set[tuple[frozenset[str], str]] = set()
+    seen: dict[tuple[frozenset[str], str], Opening] = {}
+    for _ in range(settings.most_expansions):
+        openings = []
+        for parent, kind in _open(found, done, settings, laws=unlisted is not None):
+            key = (parent.ids, kind)
+            if key not in seen or seen[key].parent is not parent:
+                own: Sequence[Any] = candidates
+                if kind == LAWS and unlisted is not None:
+                    own = unlisted.offer(bench, parent)
+                seen[key] = opened(bench, parent, kind, own, found, settings, cores)
+            openings.append(seen[key])
+        openings = [each for each in openings if _worth_while(each)]
+        if not openings:
+            break
+        next_ = min(openings, key=lambda each: each.expected)
+        say(f"{next_.kind} beside {' + '.join(c.id for c in next_.parent.effects) or 'the nominal model'}")
+        done.add(next_.key)
+        enlarged(bench, next_, candidates, found, settings, cores)
+        _weigh(bench, found, settings, cores)
+        if found.rounds_without_gain(settings.patience):
+            break
+
+
+def _open(
+    found: Tried, done: set[tuple[frozenset[str], str]], settings: Settings, *, laws: bool
+) -> list[tuple[Hypothesis, str]]:
+    """Structures that may be enlarged, and by what.
+
+    The nominal model is enlarged by effects first, and the best one only once it leaves nothing above the noise.
+    """
+    best = found.best
+    if (frozenset(), EFFECTS) not in done:
+        return [(found.baseline, EFFECTS)]
+    if best.fit.over_noise <= ABOVE_NOISE:
+        lawful = not all(isinstance(c, Candidate) for c in best.effects)
+        items = [(best, LAWS if lawful else EFFECTS)]
+    else:
+        items = []
+        sizes: dict[int, int] = {}
+        for h in sorted(found.hypotheses.values(), key=cost):
+            count = len(h.effects)
+            sizes[count] = sizes.get(count, 0) + 1
+            beyond = count >= settings.most_additions or sizes[count] > settings.beam
+            if beyond or (h.effects and cost(h) >= cost(found.baseline)):
+                continue
+            if all(isinstance(c, Candidate) for c in h.effects):
+                items.append((h, EFFECTS))
+            if laws:
+                items.append((h, LAWS))
+    return [(h, kind) for h, kind in items if (h.ids, kind) not in done]
+
+
+def _worth_while(opening: Opening) -> bool:
+    """Whether a structure leaves more than noise, or an addition promises to take what it must of the rest."""
+    fit = opening.parent.fit
+    if not opening.own:
+        return False
+    return fit.over_noise > ABOVE_NOISE or opening.promising >= PROMISING * opening.own[0].cost * gain_needed(
+        fit
+    )
+
+
+def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
+    """The nominal model by continuation, from the rig's own numbers and from the middle of their ranges."""
+    centre = {free.path: free.from_unit(0.5) for free in bench.nominal}
+    starts = [Entrant((), {}), Entrant((), centre)]
+    led = race(bench, starts, settings.nominal, cores)
+    last = settings.nominal[-1]
+    best = race(bench, [Entrant((), led[0].values), *starts], (last,), cores)[0]
+    bench.training = tuple(weighted_by(bench, best, bench.training))
+    best = race(bench, [Entrant((), best.values)], (replace(last, rounds=12),), cores)[0]
+    trace(f"nominal {best.fit.over_noise:.4f}")
+    found.keep(best)
+    found.weighed_at = best.fit.over_noise
+    if found.seeds:
+        rung = replace(last, keep=len(found.seeds))
+        for each in race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (rung,), cores):
+            found.keep(each)
+
+
+def _weigh(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
+    """Weigh the data by the best structure where it tells their noise better, and fit what is near it again."""
+    best = found.best
+    if best.fit.over_noise > settings.nearer * found.weighed_at:
+        return
+    bench.training = tuple(weighted_by(bench, best, bench.training))
+    ranked = sorted(found.hypotheses.values(), key=lambda h: h.fit.objective)
+    near = [h for h in ranked if h.fit.objective < 4.0 * best.fit.objective][:6]
+    chosen = {h.ids: h for h in (found.baseline, *near)}
+    rung = replace(settings.free[-1], keep=len(chosen))
+    again = race(bench, [Entrant(h.effects, h.values) for h in chosen.values()], (rung,), cores)
+    found.given_up.update(found.hypotheses)
+    found.hypotheses.clear()
+    for each in again:
+        found.keep(each)
+    found.weighed_at = found.best.fit.over_noise
+    trace(
+        "  weighed: "
+        + ", ".join(
+            f"{[c.id for c in h.effects]} {h.fit.over_noise:.4f}" for h in sorted(again, key=cost)[:4]
+        )
+    )

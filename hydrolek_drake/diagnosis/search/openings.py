@@ -1,0 +1,224 @@
+"""One structure enlarged by one addition: what each promises, and the races of those that may be right."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, AT_NOISE, FAR
+from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
+from hydrolek_drake.diagnosis.fitting.race import Entrant, Runner, problem_of, race
+from hydrolek_drake.diagnosis.laws.additions import of_additions
+from hydrolek_drake.diagnosis.lost_commands.search import with_windows
+from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
+from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
+from hydrolek_drake.diagnosis.search.promise import Promise, promises_at
+from hydrolek_drake.diagnosis.search.settings import Rung, Settings
+from hydrolek_drake.diagnosis.search.tracing import trace
+from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.structures.candidates import Candidate, redundant, widenings
+from hydrolek_drake.diagnosis.structures.ranges import widened
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+
+
+@dataclass(frozen=True)
+class Opening:
+    """A structure and what additions of one kind promise beside it.
+
+    Attributes:
+        parent: the structure.
+        kind: "effects" or "laws".
+        own: the additions.
+        free: what they promise in free rollouts where the structure was fitted.
+        pulled: what they promise to an observer around the rig's own numbers.
+        sizes: full path -> value of what the structure adds to the nominal model.
+        expected: cost of the structure that they promise.
+        lost: windows of lost commands that may be added too.
+    """
+
+    parent: Hypothesis
+    kind: str
+    own: tuple[Any, ...]
+    free: tuple[Promise, ...]
+    pulled: tuple[Promise, ...]
+    sizes: dict[str, float]
+    expected: float
+    lost: LostWindows | None = None
+
+    @property
+    def key(self) -> tuple[frozenset[str], str]:
+        """What tells it from others."""
+        return self.parent.ids, self.kind
+
+    @property
+    def promising(self) -> float:
+        """Largest fall of the squares that is promised, in free rollouts."""
+        return self.free[0].gain if self.free else 0.0
+
+
+def opened(
+    bench: Workbench,
+    parent: Hypothesis,
+    kind: str,
+    additions: Sequence[Any],
+    found: Tried,
+    settings: Settings,
+    cores: int,
+) -> Opening:
+    """See what additions promise beside a structure.
+
+    Args:
+        bench: data and problems.
+        parent: the structure, fitted.
+        kind: "effects" or "laws".
+        additions: effects, or terms of laws.
+        found: receives what effects promise.
+        settings: of the search.
+        cores: that roll out at the same time.
+    """
+    lost = next((c for c in additions if isinstance(c, LostWindows)), None)
+    additions = [c for c in additions if c is not lost]
+    own = tuple(c for c in additions if c.size_path not in parent.ids and not redundant(parent.effects, c))
+    sizes = of_additions(parent.values)
+    if not own:
+        return Opening(parent, kind, (), (), (), sizes, math.inf)
+    coarse = (1.0 if parent.fit.over_noise < FAR else 2.0) * bench.fine
+    exact = Rung(math.inf, 1.0, math.inf, 0, 1)
+    place = descend([_place(bench, parent, exact, parent.fit.unit)], 0, bench.pool, cores)[0]
+    free = promises_at(bench, place, parent.effects, own, coarse, settings, cores)
+    if kind == "effects":
+        found.left = free
+    pulled: list[Promise] = []
+    shares = [_share(free[0].gain, parent.fit.objective, parent.fit.counted)]
+    if parent.fit.over_noise > ABOVE_NOISE:
+        first = settings.continued[0]
+        parameters = bench.parameters(parent.effects)
+        begun = _place(bench, parent, first, np.clip(parameters.unit(sizes), 1e-6, 1.0 - 1e-6))
+        near = descend([begun], 2, bench.pool, cores)[0]
+        pulled = promises_at(bench, near, parent.effects, own, first.coarse * bench.fine, settings, cores)
+        shares.append(_share(pulled[0].gain, near.objective, near.problem.counted))
+        if lost is not None:
+            shares.append(lost.share)
+    excess = max(parent.fit.objective - parent.fit.counted, 0.0)
+    count = max(parent.fit.counted, 1)
+    left = max(parent.fit.objective - max(shares) * excess, count)
+    needed = gain_needed(parent.fit)
+    costs = sum(c.cost for c in parent.effects) + own[0].cost
+    expected = count * (1.0 + math.log(left / count)) + needed * costs
+    trace(
+        f"  open {kind} beside {_names(parent.effects)} {parent.fit.over_noise:.4f}, expected "
+        f"{math.sqrt(left / count):.3f}: needed {needed:.0f}; free "
+        + ", ".join(f"{p.candidate.id} {p.gain:.0f}" for p in free[:4])
+        + "; pulled "
+        + ", ".join(f"{p.candidate.id} {p.gain:.0f}" for p in pulled[:4])
+    )
+    return Opening(parent, kind, own, tuple(free), tuple(pulled), sizes, expected, lost)
+
+
+def _share(gain: float, objective: float, counted: int) -> float:
+    """Which share of what is left above the noise a gain takes."""
+    excess = objective - counted
+    return min(gain / excess, 1.0) if excess > 0.02 * counted else 0.0
+
+
+def enlarged(
+    bench: Workbench,
+    opening: Opening,
+    candidates: Sequence[Candidate],
+    found: Tried,
+    settings: Settings,
+    cores: int,
+) -> None:
+    """Fit a structure with each of the additions that may be right, and what these lead to without others.
+
+    Args:
+        bench: data and problems.
+        opening: the structure and its additions.
+        candidates: all effects.
+        found: receives the fits.
+        settings: of the search.
+        cores: that roll out at the same time.
+    """
+    parent = opening.parent
+    needed = gain_needed(parent.fit)
+    near = parent.fit.over_noise <= ABOVE_NOISE
+    free = [
+        Entrant((*parent.effects, p.candidate), {**parent.values, **start}, parent)
+        for number, p in enumerate(opening.free[: settings.entrants])
+        if not near or p.gain > PROMISING * needed
+        for start in p.starts[: settings.starts if number < settings.doubled else 1]
+    ]
+    free += [
+        Entrant(effects, {**parent.values, **{k: v for k, v in start.items() if k not in parent.values}})
+        for _, wider, effects in widenings(parent.effects, candidates)
+        for start in wider.starts[:4]
+    ]
+    fine = parent.fit.over_noise < FAR
+    ended = race(bench, free, _steps(settings.free, fine), cores, _traced("free"))
+    reached = min([parent, *ended], key=lambda h: h.fit.objective).fit.over_noise
+    if reached > AT_NOISE and opening.pulled:
+        entrants = [
+            Entrant((*parent.effects, p.candidate), {**opening.sizes, **start})
+            for p in opening.pulled[: settings.entrants]
+            for start in p.starts[:1]
+        ]
+        ended += race(bench, entrants, _steps(settings.continued, fine), cores, _traced("observed"))
+    for each in ended:
+        found.keep(each)
+    if opening.lost is not None and reached > AT_NOISE and opening.lost.share >= settings.lost:
+        for each in with_windows(bench, parent, opening.lost, settings, cores):
+            found.keep(each)
+    _widened(bench, found, settings, cores)
+    _lessened(bench, found, settings, cores)
+
+
+def _place(bench: Workbench, structure: Hypothesis, rung: Rung, unit: np.ndarray) -> Place:
+    problem = problem_of(bench, structure.effects, rung)
+    return Place(problem, bench.movable(structure.effects, problem.parameters), unit)
+
+
+def _steps(rungs: Sequence[Rung], fine: bool) -> tuple[Rung, ...]:
+    """Rungs with the rig's own step where the error of a longer one would be more than what is to be explained."""
+    return tuple(replace(rung, coarse=1.0) for rung in rungs) if fine else tuple(rungs)
+
+
+def _lessened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
+    """Backward elimination: the best structure without each of its additions, from where it led."""
+    best = found.best
+    entrants = [
+        Entrant(best.without(c), {k: v for k, v in best.values.items() if not k.startswith(c.path + ".")})
+        for c in best.effects
+    ]
+    for each in race(bench, entrants, settings.free[-1:], cores) if entrants else ():
+        found.keep(each)
+
+
+def _widened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
+    """The best structure with wider ranges, where a number of what it adds lies at an end of one (`ranges`)."""
+    best = found.best
+    wide: tuple[Any, ...] = tuple(
+        widened(c, best.values) if isinstance(c, Candidate) else c.widened(best.values) for c in best.effects
+    )
+    if any(a.free != b.free for a, b in zip(wide, best.effects, strict=True)):
+        for each in race(bench, [Entrant(wide, best.values)], settings.free[-1:], cores):
+            found.keep(each)
+
+
+def _names(effects: Sequence[Candidate]) -> str:
+    return "+".join(c.id for c in effects) or "nominal"
+
+
+def _traced(name: str) -> Callable[[Sequence[Runner], Rung], None]:
+    def seen(runners: Sequence[Runner], rung: Rung) -> None:
+        ranked = sorted(runners, key=lambda r: r.place.objective)[:5]
+        trace(
+            f"    {name} T={rung.observer_s} x{rung.coarse} {len(runners)}: "
+            + ", ".join(
+                f"{_names(r.effects)} {math.sqrt(r.place.objective / r.place.problem.counted):.4f}"
+                for r in ranked
+            )
+        )
+
+    return seen

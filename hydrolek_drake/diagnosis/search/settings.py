@@ -1,0 +1,86 @@
+"""Every constant of the search among structures, with the principle or measurement it comes from."""
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One rung of a race: how a structure is fitted, and how many go on.
+
+    Attributes:
+        observer_s: time constant of the observer [s]; infinite for free rollouts.
+        coarse: integration step over the rig's own.
+        seconds: so much of the recordings is seen.
+        rounds: steps of a fit.
+        keep: so many fits go on.
+    """
+
+    observer_s: float
+    coarse: float
+    seconds: float
+    rounds: int
+    keep: int
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Constants of the search."""
+
+    sizes: tuple[float, ...] = (1.0, 0.1, 0.01)
+    """Sizes at which an addition is tried, as multiples of where its search begins."""
+
+    starts: int = 2
+    """So many places of each addition are fitted from on each way."""
+
+    entrants: int = 24
+    """So many additions of those that promise most are fitted; there are fewer effects, and more terms of laws."""
+
+    doubled: int = 8
+    """So many of them from more than one start."""
+
+    free: tuple[Rung, ...] = (
+        Rung(math.inf, 2.0, 20.0, 4, 8),
+        Rung(math.inf, 2.0, math.inf, 4, 4),
+        Rung(math.inf, 1.0, math.inf, 8, 3),
+    )
+    """A race of free rollouts, from where the structure before it led."""
+
+    continued: tuple[Rung, ...] = (
+        Rung(0.1, 2.0, 20.0, 3, 10),
+        Rung(0.5, 2.0, math.inf, 3, 6),
+        Rung(3.0, 2.0, math.inf, 4, 4),
+        Rung(math.inf, 1.0, math.inf, 8, 3),
+    )
+    """A race by continuation, from the rig's own numbers: prediction errors of an observer forget, so that they have
+    few local minima (Ljung, System Identification, 1999, chapter 7); free rollouts see what is slow."""
+
+    nominal: tuple[Rung, ...] = (
+        Rung(0.1, 2.0, math.inf, 4, 4),
+        Rung(0.5, 2.0, math.inf, 4, 4),
+        Rung(3.0, 1.0, math.inf, 6, 4),
+        Rung(math.inf, 1.0, math.inf, 10, 1),
+    )
+    """The nominal model by continuation, to the end."""
+
+    last: Rung = Rung(math.inf, 0.5, math.inf, 4, 8)
+    """The last fits, with half of the rig's own step, so that the error of the integration cannot decide."""
+
+    nearer: float = 0.8
+    """A structure that leaves this share of what the one left that the data are weighed by tells their noise better."""
+
+    most_expansions: int = 8
+    """So many structures are enlarged at most."""
+
+    patience: int = 3
+    """The search ends once so many rounds have not improved the best structure."""
+
+    lost: float = 0.3
+    """Commands that got lost are fitted if they promise this share of what is left above the noise."""
+
+    lost_rounds: int = 5
+    """So often windows of lost commands are looked for beside those that were fitted: what large ones leave hides
+    small ones."""
+
+    most_additions: int = 3
+    beam: int = 2

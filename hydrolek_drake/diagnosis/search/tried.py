@@ -1,0 +1,49 @@
+"""What a search has tried, the best by its cost."""
+
+from dataclasses import dataclass, field
+
+from hydrolek_drake.diagnosis.search.cost import cost
+from hydrolek_drake.diagnosis.search.promise import Promise
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
+
+
+@dataclass
+class Tried:
+    """What was tried, with costs that hold however far structures are from the noise.
+
+    Attributes:
+        hypotheses: every structure that was fitted with the rig's own step, by its key.
+        left: what effects promise that the structure which was enlarged last has not.
+        given_up: structures that were not fitted again when the data were weighed anew.
+        weighed_at: what the structure left, over the noise, by which the data are weighed.
+        costs: of the best structure after each round.
+        seeds: structures fitted to other data, from where fits begin too.
+    """
+
+    hypotheses: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
+    left: list[Promise] = field(default_factory=list)
+    given_up: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
+    weighed_at: float = 0.0
+    costs: list[float] = field(default_factory=list)
+    seeds: list[Hypothesis] = field(default_factory=list)
+
+    def keep(self, hypothesis: Hypothesis) -> None:
+        """Remember it if it is the best fit of its structure."""
+        known = self.hypotheses.get(hypothesis.ids)
+        if known is None or hypothesis.fit.objective < known.fit.objective:
+            self.hypotheses[hypothesis.ids] = hypothesis
+
+    @property
+    def baseline(self) -> Hypothesis:
+        """The nominal model, fitted."""
+        return self.hypotheses[frozenset()]
+
+    @property
+    def best(self) -> Hypothesis:
+        """The structure that costs least."""
+        return min(self.hypotheses.values(), key=cost)
+
+    def rounds_without_gain(self, patience: int) -> bool:
+        """Whether so many rounds have not changed which structure is best, to within a unit of log-odds."""
+        self.costs.append(cost(self.best))
+        return len(self.costs) > patience and self.costs[-1] > self.costs[-1 - patience] - 2.0

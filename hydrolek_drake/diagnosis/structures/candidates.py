@@ -1,0 +1,171 @@
+"""Which effects could explain a recording, how far each is searched, and where a search begins."""
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from hydrolek_drake.effects import EFFECTS, Effect
+from hydrolek_drake.effects.scales import Scales
+from hydrolek_drake.identification.parameter_set import Free
+from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rigs.rig import declaration
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One effect at one joint.
+
+    Attributes:
+        effect: the effect.
+        joint: where it acts.
+        free: its parameters with the range of the search.
+        starts: full path -> value, where searches begin.
+        utmost: full path -> how far the range of a parameter may be widened: what it can be at all, or the range that
+            the rig states. A moment lies in the recording and has none.
+        beneath: no larger than this, its size says no more than what the model's own equations simplify.
+    """
+
+    effect: Effect
+    joint: str
+    free: tuple[Free, ...]
+    starts: tuple[dict[str, float], ...]
+    utmost: Mapping[str, tuple[float, float]] = field(compare=False)
+    beneath: float = 0.0
+
+    cost: ClassVar[float] = 1.0
+    """In effects."""
+
+    @property
+    def weakens(self) -> bool:
+        """Whether it fades as its size grows."""
+        return self.effect.weakens
+
+    @property
+    def sudden(self) -> bool:
+        """Whether the joint moves otherwise as soon as it is there, see `Effect.sudden`."""
+        return self.effect.sudden
+
+    @property
+    def stage(self) -> str:
+        """Where it acts."""
+        return self.effect.stage
+
+    @property
+    def id(self) -> str:
+        """Id of the effect."""
+        return self.effect.id
+
+    @property
+    def path(self) -> str:
+        """Full path of the effect in a rig."""
+        return f"joints.{self.joint}.effects.{self.effect.id}"
+
+    @property
+    def size_path(self) -> str:
+        """Full path of the parameter that switches it on."""
+        return f"{self.path}.{self.effect.size}"
+
+    @property
+    def moments(self) -> tuple[Free, ...]:
+        """Its parameters that say when something happens."""
+        pairs = zip(self.free, self.effect.search.values(), strict=True)
+        return tuple(free for free, search in pairs if search.moment)
+
+    @property
+    def searched(self) -> tuple[Free, ...]:
+        """Those along which it is tried elsewhere too, since residuals have no slope there: moments."""
+        return self.moments
+
+    @property
+    def size(self) -> Free:
+        """The parameter that switches it on."""
+        return next(free for free in self.free if free.path == self.size_path)
+
+    def says_something(self, values: Mapping[str, float]) -> bool:
+        """Whether its size, among fitted values, is beyond what the model's own equations simplify."""
+        return self.beneath == 0.0 or abs(values[self.size_path] - self.effect.neutral_size) > self.beneath
+
+    def is_special_case_of(self, other: "Candidate") -> bool:
+        """Whether another effect at the same joint contains this one."""
+        return isinstance(other, Candidate) and self.joint == other.joint and self.id in other.effect.contains
+
+
+def candidates_of(rig: Rig, joint: str, scales: Scales) -> tuple[Candidate, ...]:
+    """Every effect that can act on this joint and is not switched on in the rig yet.
+
+    The range of a parameter is the rig's own if it states one, else the effect's multiple of the machine's
+    natural scale. Effects on the supply, which all joints share, carry the name of the rig's first joint.
+    """
+    on = rig.effects_on(joint)
+    found = []
+    for effect in EFFECTS.values():
+        if effect.id in on or not effect.search or not _acts(effect, rig, joint):
+            continue
+        candidate = _candidate(effect, rig, rig.owner(effect, joint), scales)
+        if candidate is not None:
+            found.append(candidate)
+    return tuple(found)
+
+
+def _acts(effect: Effect, rig: Rig, joint: str) -> bool:
+    wanted = {**effect.needs, **effect.searched_on}
+    if any(rig.variant(joint, section) not in names for section, names in wanted.items()):
+        return False
+    if "linkage_gap" in effect.hooks:  # play needs something that moves within it
+        return rig.value(f"joints.{joint}.linkage.play_inertia") > 0.0
+    return True
+
+
+def _candidate(effect: Effect, rig: Rig, joint: str, scales: Scales) -> Candidate | None:
+    free: list[Free] = []
+    utmost: dict[str, tuple[float, float]] = {}
+    starts: list[list[tuple[str, float]]] = []
+    for name, search in effect.search.items():
+        path = f"joints.{joint}.effects.{effect.id}.{name}"
+        entry, declared = rig.entries[path], declaration(rig, path)
+        lower, upper, begin = scales.range_of(search)
+        log = search.log
+        if entry.range is not None:
+            lower, upper = entry.range
+            log = entry.scale == "log"
+        lower, upper = max(lower, declared.lowest), min(upper, declared.highest)
+        if not search.moment:
+            stated = entry.range is not None
+            utmost[path] = (lower, upper) if stated else (declared.lowest, declared.highest)
+        if not (math.isfinite(lower) and math.isfinite(upper) and lower < upper):
+            return None
+        free.append(Free(path, lower, upper, log))
+        inside = sorted({min(max(value, lower), upper) for value in begin})
+        starts.append([(path, value) for value in inside])
+    return Candidate(
+        effect,
+        joint,
+        tuple(free),
+        tuple(dict(c) for c in itertools.product(*starts)),
+        utmost,
+        getattr(scales, effect.beneath) if effect.beneath else 0.0,
+    )
+
+
+def widenings(
+    effects: Sequence[Candidate], candidates: Sequence[Candidate]
+) -> list[tuple[Candidate, Candidate, tuple[Candidate, ...]]]:
+    """Each effect that another one contains, that other one, and the effects with it in its place at the end."""
+    return [
+        (effect, wider, (*(other for other in effects if other is not effect), wider))
+        for effect in effects
+        for wider in candidates
+        if effect.is_special_case_of(wider)
+    ]
+
+
+def redundant(effects: Sequence[Candidate], candidate: Candidate) -> bool:
+    """Whether an effect says nothing new beside others, because one of them contains it or is contained in it."""
+    return any(one_contains_the_other(c, candidate) for c in effects)
+
+
+def one_contains_the_other(first: Candidate, second: Candidate) -> bool:
+    """Whether one of two effects at the same joint contains the other."""
+    return first.is_special_case_of(second) or second.is_special_case_of(first)

@@ -1,0 +1,190 @@
+"""Fits of the nominal model and of models with effects, all to the same recordings."""
+
+import math
+import threading
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor, wait
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.laws.additions import LawTerm, WithTerms
+from hydrolek_drake.diagnosis.lost_commands.windows import LostProblem, LostWindows, WithWindows
+from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.parameter_set import Free, ParameterSet
+from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.rigs import Rig
+
+SPREAD = 1.0 / math.sqrt(12.0)
+"""Standard deviation, in ranges, of a parameter of which only its range is known.
+
+Used as a weak prior about the rig's own values: what a recording does not tell stays where the rig has it,
+instead of wandering off to make up for physics that is missing.
+"""
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """The nominal model with some effects, fitted.
+
+    Attributes:
+        effects: what is added to the nominal model; empty for the nominal model itself.
+        values: full path -> fitted value (SI), nominal parameters first.
+        fit: how well it follows the training data, and its Jacobian.
+        step: integration step with which it was fitted [s].
+    """
+
+    effects: tuple[Candidate, ...]
+    values: dict[str, float]
+    fit: Fit
+    step: float
+
+    @property
+    def ids(self) -> frozenset[str]:
+        """What identifies it: id and joint of its effects."""
+        return key_of(self.effects)
+
+    def without(self, effect: Candidate) -> tuple[Candidate, ...]:
+        """Its effects but for one."""
+        return tuple(c for c in self.effects if c is not effect)
+
+    @property
+    def extra(self) -> int:
+        """Parameters that the nominal model does not have."""
+        return sum(len(candidate.free) for candidate in self.effects)
+
+
+def key_of(effects: Iterable[Candidate]) -> frozenset[str]:
+    """A set of effects, whatever their order."""
+    return frozenset(candidate.size_path for candidate in effects)
+
+
+def moments_of(effects: Iterable[Candidate]) -> list[Free]:
+    """Parameters of some effects that say when something happens."""
+    return [free for candidate in effects for free in candidate.moments]
+
+
+class Workbench:
+    """Recordings for training, the rig's nominal parameters, and fits of any set of effects."""
+
+    def __init__(
+        self,
+        rig: Rig,
+        nominal: Sequence[Free],
+        training: Sequence[Experiment],
+        pool: Executor,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            rig: the machine with nominal values and all searched effects off.
+            nominal: its free parameters.
+            training: the recordings that are fitted; weighed anew in time.
+            pool: threads for fits side by side, and for the columns of a fit's Jacobian where some are idle.
+        """
+        self.rig = rig
+        self.nominal = tuple(nominal)
+        self.training = tuple(training)
+        self.pool = pool
+        self._stopped = threading.Event()
+        self.evaluations = 0
+        self._sets: dict[frozenset[Free], ParameterSet] = {}
+
+    def with_training(self, training: Sequence[Experiment]) -> "Workbench":
+        """Another one for other recordings of the same machine."""
+        return Workbench(self.rig, self.nominal, training, self.pool)
+
+    def interrupted(self) -> bool:
+        """Whether the user has interrupted."""
+        return self._stopped.is_set()
+
+    def alive(self) -> None:
+        """End this thread's work if the user has interrupted."""
+        if self.interrupted():
+            raise KeyboardInterrupt
+
+    def resume(self) -> None:
+        """Work again after an interrupt."""
+        self._stopped.clear()
+
+    @property
+    def fine(self) -> float:
+        """The rig's own integration step [s]."""
+        return self.training[0].longest_step
+
+    @property
+    def together(self) -> bool:
+        """Whether joints move at the same time."""
+        return any(experiment.others is not None for experiment in self.training)
+
+    def parameters(self, effects: Sequence[Candidate]) -> ParameterSet:
+        """The searched parameters of the nominal model with these effects."""
+        own = [p for candidate in effects for p in candidate.free]
+        key = frozenset(own)  # with their ranges, which may be widened
+        if key not in self._sets:
+            terms = [c for c in effects if isinstance(c, LawTerm)]
+            lost = [c for c in effects if isinstance(c, LostWindows)]
+            of_rig = [p for c in effects if not isinstance(c, LawTerm | LostWindows) for p in c.free]
+            found = (
+                WithTerms(self.rig, [*self.nominal, *of_rig], terms)
+                if terms
+                else ParameterSet(self.rig, [*self.nominal, *of_rig])
+            )
+            self._sets[key] = WithWindows(found, lost) if lost else found
+        return self._sets[key]
+
+    def problem(
+        self,
+        effects: Sequence[Candidate],
+        step: float,
+        experiments: Sequence[Experiment] | None = None,
+        pull_time: float | None = None,
+        kind: type[Problem] = Problem,
+    ) -> Problem:
+        """Residuals of this model, on the training data unless others are given."""
+        parameters = self.parameters(effects)
+        prior = np.full(len(parameters), np.inf)
+        prior[: len(self.nominal)] = SPREAD
+        if kind is Problem and isinstance(parameters, WithWindows):
+            kind = LostProblem
+        return kind(
+            parameters,
+            experiments or self.training,
+            step,
+            pool=self.pool,
+            prior=prior,
+            pull_time=pull_time,
+        )
+
+    @staticmethod
+    def movable(effects: Sequence[Candidate], parameters: ParameterSet) -> np.ndarray:
+        """Parameters that least squares can move: all but moments, see `intervals.moments`. # (n,)."""
+        held = {free.path for free in moments_of(effects)}
+        return np.array([path not in held for path in parameters.paths])
+
+    def without_jumps(self, hypothesis: Hypothesis) -> Hypothesis:
+        """The same fit with slopes that are worth an interval (`Problem.jacobian_without_jumps`)."""
+        problem = self.problem(hypothesis.effects, hypothesis.step)
+        moving = self.movable(hypothesis.effects, problem.parameters)
+        unit = hypothesis.fit.unit
+        slopes = problem.jacobian_without_jumps(unit, problem.residuals(unit), moving)
+        return replace(hypothesis, fit=replace(hypothesis.fit, slopes=slopes))
+
+    def residuals(self, hypothesis: Hypothesis, experiments: Sequence[Experiment], step: float) -> np.ndarray:
+        """Residuals of a fitted model on any recordings, in units of the noise. # (values,)."""
+        problem = self.problem(hypothesis.effects, step, experiments)
+        return problem.residuals(problem.parameters.unit(hypothesis.values))
+
+    def side_by_side(self, work: Callable, items: Sequence) -> list:
+        """Results of independent pieces of work, in their order; an interrupt cancels those not begun."""
+        futures = [self.pool.submit(work, item) for item in items]
+        try:
+            return [future.result() for future in futures]
+        except BaseException:
+            self._stopped.set()
+            for future in futures:
+                future.cancel()
+            wait(futures)
+            raise

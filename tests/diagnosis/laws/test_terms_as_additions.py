@@ -1,0 +1,57 @@
+"""Terms of laws as additions: a rollout does with them what it does with a law that is given beside the record."""
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.diagnosis.laws.additions import LawTerm, WithTerms
+from hydrolek_drake.diagnosis.laws.inputs import inputs_of
+from hydrolek_drake.diagnosis.laws.terms import TERMS, law_record, span_of
+from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.parameter_set import free_parameters
+
+
+@pytest.fixture
+def machine(bench, recorded):
+    [experiment] = recorded(bench, bench)
+    scales = natural_scales(bench, "joint", [experiment])
+    inputs = {i.probe: i for i in inputs_of(scales, bench.value("supply.pressure"), 10.0, "rad")}
+    signals = experiment.simulate(bench.records()).signals
+    return experiment, inputs, span_of([signals], bench.records()[0], 12.0, "rad")
+
+
+@pytest.mark.parametrize(("probe", "name"), [("cylinder", "near sign(v)"), ("sensor", "z^2")])
+def test_a_term_does_what_the_law_does(bench, machine, probe, name) -> None:
+    experiment, inputs, span = machine
+    form = next(term for term in TERMS if term.name == name and term.meant_for(inputs[probe]))
+    term = LawTerm(inputs[probe], form, "joint", span)
+    parameters = WithTerms(bench, free_parameters(bench), [term])
+    size = 0.1 * inputs[probe].scale
+    with_term = experiment.simulate(parameters.records(parameters.unit({term.size_path: size}))).signals
+    with_law = experiment.simulate(bench.records(), law=law_record(probe, span, form, size)).signals
+    np.testing.assert_allclose(with_term.reading, with_law.reading, rtol=0.0, atol=1e-9)
+
+
+def test_a_term_without_size_changes_nothing(bench, machine) -> None:
+    experiment, inputs, span = machine
+    terms = [
+        LawTerm(inputs["load"], None, "joint", span, 1.3),
+        LawTerm(inputs["load"], TERMS[3], "joint", span),
+    ]
+    parameters = WithTerms(bench, free_parameters(bench), terms)
+    plain = experiment.simulate(bench.records()).signals
+    np.testing.assert_allclose(
+        experiment.simulate(parameters.records(parameters.unit())).signals.reading,
+        plain.reading,
+        rtol=0.0,
+        atol=1e-12,
+    )
+    assert set(parameters.values(parameters.unit())) == set(parameters.paths)
+
+
+def test_each_term_has_a_row_of_its_own(bench, machine) -> None:
+    _, inputs, span = machine
+    terms = [LawTerm(inputs["load"], TERMS[k], "joint", span) for k in (0, 3)]
+    parameters = WithTerms(bench, free_parameters(bench), terms)
+    unit = parameters.unit({terms[0].size_path: 5.0, terms[1].size_path: 7.0})
+    law = parameters.records(unit)["law"][0]
+    assert law["term_1"]["sine"] == pytest.approx(5.0) and law["term_2"]["sine"] == pytest.approx(7.0)

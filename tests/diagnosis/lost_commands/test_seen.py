@@ -1,0 +1,54 @@
+"""Windows in which commands got lost, read from an unknown input that undoes the command for a while."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.diagnosis.laws.inputs import inputs_of
+from hydrolek_drake.diagnosis.laws.terms import span_of
+from hydrolek_drake.diagnosis.lost_commands.seen import lost_seen
+from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
+from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.parameter_set import free_parameters
+
+LOST_S = [(2.6, 2.9), (6.1, 6.35)]
+
+
+@pytest.fixture
+def seen_in(bench, recorded, fitted):
+    """(how it was recorded) -> the recording, and what is seen of lost commands beside the rig's own numbers."""
+
+    def make(**how):
+        training = recorded(bench, bench, **how)
+        with ThreadPoolExecutor(2) as pool:
+            workbench = Workbench(bench, free_parameters(bench), training, pool)
+            nominal = fitted(workbench, rounds=0)
+            inputs = inputs_of(
+                natural_scales(bench, "joint", training), bench.value("supply.pressure"), 10.0, "rad"
+            )
+            [command] = [i for i in inputs if i.probe == "command"]
+            span = span_of([training[0].simulate(bench.records()).signals], bench.records()[0], 12.0, "rad")
+            return training[0], lost_seen(workbench, nominal, command, 0.0, {}, span, 2)
+
+    return make
+
+
+def test_lost_commands_are_seen_where_they_were_and_take_most_of_what_they_leave(seen_in) -> None:
+    recording, lost = seen_in(lost_s=LOST_S)
+    assert lost is not None and lost.share > 0.7
+    windows = lost.seen[recording_of(recording)]
+    for begin, end in LOST_S:
+        middles = windows.mean(axis=1)
+        assert np.any((middles > begin) & (middles < end))
+
+
+def test_a_machine_that_lacks_nothing_has_lost_no_commands(seen_in) -> None:
+    _, lost = seen_in()
+    assert lost is None
+
+
+def test_a_machine_that_is_shaken_has_lost_no_commands(seen_in) -> None:
+    _, lost = seen_in(unknown=("load", 60.0), unknown_Hz=1.3)
+    assert lost is None or lost.share < 0.5

@@ -1,0 +1,60 @@
+"""The score test: it sees what is planted, and nothing where nothing is."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from hydrolek_drake.diagnosis.fitting.projection import gain_of
+from hydrolek_drake.diagnosis.search.gains import GAIN_NEEDED, VISIBLE
+from hydrolek_drake.diagnosis.search.openings import opened
+from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.structures.candidates import candidates_of
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
+from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.parameter_set import free_parameters
+
+NOMINAL = ["supply.pressure", "valve.max_area_a", "load.gravity_cos", "amplifier.max_current_a"]
+
+
+@pytest.fixture
+def promises_of(bench, fitted):
+    """Experiments -> what every effect promises beside the nominal model, the most promising first."""
+
+    def make(experiments):
+        with ThreadPoolExecutor(2) as pool:
+            work = Workbench(bench, free_parameters(bench, NOMINAL), experiments, pool)
+            candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
+            return opened(work, fitted(work), "effects", candidates, Tried(), Settings(), 2).free
+
+    return make
+
+
+def test_nothing_is_seen_where_nothing_is(bench, recorded, promises_of) -> None:
+    # chance of more than 12 for one parameter: 0.05 %; some twenty effects, some of them at two or three sizes
+    assert promises_of(recorded(bench, bench, seed=4))[0].gain < GAIN_NEEDED + 4.0
+
+
+@pytest.mark.parametrize(
+    ("effect_id", "parameter"),
+    [("cylinder.cross_port_leakage", "conductance_m3_per_s_Pa"), ("sensor.nonlinearity", "amplitude_rad")],
+)
+def test_the_visible_size_is_where_the_gain_says_it_is(
+    bench, recorded, promises_of, effect_id, parameter
+) -> None:
+    nothing = {s.candidate.id: s for s in promises_of(recorded(bench, bench, seed=5))}
+    size = 2.0 * nothing[effect_id].visible_from
+    machine = bench.with_values({f"effects.{effect_id}.{parameter}": size})
+    seen = {s.candidate.id: s for s in promises_of(recorded(machine, bench, seed=5))}
+    # twice the visible size: four times its gain, within the scatter of noise of three deviations
+    expected = 4.0 * VISIBLE
+    assert abs(seen[effect_id].gain ** 0.5 - expected**0.5) < 3.5
+
+
+def test_a_change_with_which_the_rollout_diverged_promises_nothing() -> None:
+    rest, good = np.array([1.0, -2.0, 2.0]), np.array([-0.5, 1.0, -1.0])
+    assert gain_of(good, rest) == pytest.approx(9.0)
+    assert gain_of(-good, rest) == 0.0
+    for bad in (np.nan, np.inf):
+        assert gain_of(np.array([-0.5, bad, bad]), rest) == 0.0
