@@ -7,7 +7,7 @@ import numpy as np
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.recorded_together import recordings_of
+from hydrolek_drake.identification.recorded_together import recorded_of, recordings_of
 from hydrolek_drake.replay.by_diagram import moved_by_diagram
 from hydrolek_drake.replay.driving import Driven
 
@@ -35,7 +35,7 @@ class ProblemOnDiagram(Problem):
         rig = self.parameters.with_rig_values(unit)
         parts = []
         for group in self._groups:
-            driven = [Driven(e.joint, e.command_times, e.command, e.start, e.recorded) for e in group]
-            done = moved_by_diagram(rig, driven, group[0].time, {})
+            driven = [Driven(e.joint, e.command_times, e.command, e.start) for e in group]
+            done = moved_by_diagram(rig, driven, group[0].time, {}, recorded_of(rig, group))
             parts += [e.residuals(done[e.joint].signals) for e in group]
         return self.bounded(parts)

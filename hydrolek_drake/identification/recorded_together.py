@@ -5,7 +5,10 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.physics.probes import SUPPLY
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rigs.driven_by import SUPPLY as SUPPLY_KEY
+from hydrolek_drake.rigs.recorded_inputs import Inputs
 from hydrolek_drake.rollout.rest import rest_state_at_reading
 from hydrolek_drake.rollout.rollout import Signals
 from hydrolek_drake.rollout.together import JointsTogether, RunTogether, Together, moving_with
@@ -25,6 +28,20 @@ def recordings_of(experiments: Iterable[Experiment]) -> list[list[Experiment]]:
         else:
             groups.append([experiment])
     return groups
+
+
+def recorded_of(rig: Rig, group: Sequence[Experiment]) -> dict[str, Inputs]:
+    """What was recorded in place of a part of each joint of a rig, by the experiments of one recording.
+
+    Joints without an experiment feel a recorded supply pressure too.
+    """
+    found = {e.joint: e.recorded for e in group if e.recorded is not None}
+    if SUPPLY_KEY in rig.driven_by and found:
+        spacing, rows = next(iter(found.values()))
+        shared = np.zeros_like(rows)
+        shared[:, SUPPLY] = rows[:, SUPPLY]
+        return {joint: (spacing, shared) for joint in rig.joints} | found
+    return found
 
 
 class OneRecording:
@@ -69,7 +86,13 @@ class OneRecording:
                 places[e.index] = rest_state_at_reading(records[e.index : e.index + 1], e.start)[4]
         moving = [self._rig.joints.index(joint) for joint in self._moving.joints]
         return self._moving.run(
-            records, self.group[0].command_times, volts[:, moving], times, places[moving], longest_step
+            records,
+            self.group[0].command_times,
+            volts[:, moving],
+            times,
+            places[moving],
+            longest_step,
+            recorded_of(self._rig, self.group) or None,
         )
 
     def without_still(self, records: np.ndarray) -> "OneRecording":

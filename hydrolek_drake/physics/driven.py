@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics.probes import AMPLIFIER, CAPACITY_A, CAPACITY_B, SUPPLY, Probe
+from hydrolek_drake.physics.probes import AMPLIFIER, CAPACITY_A, CAPACITY_B, SUPPLY, Probe, added
 from hydrolek_drake.physics.supply import supply_pressure
 from hydrolek_drake.physics.usual import rare
 
@@ -42,6 +42,12 @@ def is_driven(joints: np.ndarray) -> bool:
     """Whether a recording drives any of some joints in place of a part of them."""
     numbers = joints.view(np.float64).reshape(len(joints), -1)  # this part of a record stands at its end
     return bool(numbers[:, -len(DRIVEN.names or ()) :].any())
+
+
+@njit
+def driven_by(recorded: Probe, outside: Probe) -> Probe:
+    """Inputs of a joint from outside: what was recorded of it, and what others' laws add to the supply pressure."""
+    return added(recorded, SUPPLY, outside.supply)
 
 
 @njit

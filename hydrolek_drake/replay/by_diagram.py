@@ -6,6 +6,7 @@ import numpy as np
 
 from hydrolek_drake.replay.driving import Driven, Moved
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rigs.recorded_inputs import Inputs
 from hydrolek_drake.rollout.rest import rest_state_at_reading
 from hydrolek_drake.rollout.rollout import Signals
 from hydrolek_drake.station.simulation import Run, command_source, initial_context, run
@@ -15,7 +16,11 @@ from hydrolek_drake.systems.recorded import Recorded
 
 
 def moved_by_diagram(
-    rig: Rig, driven: Sequence[Driven], times: np.ndarray, elsewhere: Mapping[str, float]
+    rig: Rig,
+    driven: Sequence[Driven],
+    times: np.ndarray,
+    elsewhere: Mapping[str, float],
+    recorded: Mapping[str, Inputs] | None = None,
 ) -> dict[str, Moved]:
     """What driven joints do, from rest in balance, with the whole machine in one Diagram.
 
@@ -26,6 +31,7 @@ def moved_by_diagram(
         driven: joints with their commands; what was commanded before the first of `times` counts as its last value.
         times: when signals are wanted [s]; the first is when the machine is switched on. # (k,)
         elsewhere: joint without a command -> reading where it rests, if that is known [rad or m].
+        recorded: joint -> what was recorded in place of a part of it, from the first of `times` on.
     """
     records = rig.records()
     begin = float(times[0])
@@ -39,10 +45,9 @@ def moved_by_diagram(
     for joint, reading in starts.items():
         place = rig.joints.index(joint)
         positions[place] = rest_state_at_reading(records[place : place + 1], reading)[4]
-    by_joint = {one.joint: one.recorded for one in driven}
-    recorded = Recorded([by_joint.get(joint) for joint in rig.joints]) if rig.driven_by else None
+    driving = Recorded([recorded.get(joint) for joint in rig.joints]) if recorded else None
     command = command_source(command_times - begin, volts)
-    station = make_station(rig, sizes=sizes_for(rig), command=command, recorded=recorded)
+    station = make_station(rig, sizes=sizes_for(rig), command=command, recorded=driving)
     seconds = times - begin
     try:
         done = run(station, float(seconds[-1]), context=initial_context(station, positions))

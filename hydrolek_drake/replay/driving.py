@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rigs.recorded_inputs import Inputs
 from hydrolek_drake.rollout.rest import rest_state_at_reading
 from hydrolek_drake.rollout.rollout import Signals, roll_out
 from hydrolek_drake.rollout.together import JointsTogether, moving_with
@@ -20,14 +21,12 @@ class Driven:
         times: of the command [s], increasing. # (m,)
         volts: each held until the next. # (m,)
         start: reading where it rests at first [rad or m]; None for where the rig says.
-        recorded: what is recorded in place of a part of it, as `probes` of `rollout.roll_out`; None for nothing.
     """
 
     joint: str
     times: np.ndarray
     volts: np.ndarray
     start: float | None
-    recorded: tuple[float, np.ndarray] | None = None
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,11 @@ class Moved:
 
 
 def moved(
-    rig: Rig, driven: Sequence[Driven], times: np.ndarray, elsewhere: Mapping[str, float]
+    rig: Rig,
+    driven: Sequence[Driven],
+    times: np.ndarray,
+    elsewhere: Mapping[str, float],
+    recorded: Mapping[str, Inputs] | None = None,
 ) -> dict[str, Moved]:
     """What driven joints do, from rest in balance.
 
@@ -56,15 +59,18 @@ def moved(
         driven: joints with their commands.
         times: when signals are wanted [s]; the first is when the machine is switched on. # (k,)
         elsewhere: joint without a command -> reading where it rests, if that is known [rad or m].
+        recorded: joint -> what was recorded in place of a part of it, from the first of `times` on.
     """
     hydraulic = [one for one in driven if rig.variant(one.joint, "cylinder") != "electric_motor"]
-    together = _together(rig, hydraulic, times, elsewhere) if len(hydraulic) > 1 else {}
+    given = recorded or {}
+    together = _together(rig, hydraulic, times, elsewhere, given) if len(hydraulic) > 1 else {}
     return {
-        one.joint: together[one.joint] if one.joint in together else _alone(rig, one, times) for one in driven
+        one.joint: together[one.joint] if one.joint in together else _alone(rig, one, times, given)
+        for one in driven
     }
 
 
-def _alone(rig: Rig, one: Driven, times: np.ndarray) -> Moved:
+def _alone(rig: Rig, one: Driven, times: np.ndarray, recorded: Mapping[str, Inputs]) -> Moved:
     record = rig.records()[rig.joints.index(one.joint)][None]
     done = roll_out(
         record,
@@ -74,13 +80,17 @@ def _alone(rig: Rig, one: Driven, times: np.ndarray) -> Moved:
         state=None if one.start is None else rest_state_at_reading(record, one.start),
         longest_step=rig.value("integration.longest_step"),
         spool_steps=int(rig.value("integration.spool_steps")),
-        probes=one.recorded,
+        probes=recorded.get(one.joint),
     )
     return Moved(done.signals, done.diverged)
 
 
 def _together(
-    rig: Rig, driven: Sequence[Driven], times: np.ndarray, elsewhere: Mapping[str, float]
+    rig: Rig,
+    driven: Sequence[Driven],
+    times: np.ndarray,
+    elsewhere: Mapping[str, float],
+    recorded: Mapping[str, Inputs],
 ) -> dict[str, Moved]:
     records = rig.records()
     moving = JointsTogether(rig, moving_with(rig, [one.joint for one in driven]))
@@ -96,5 +106,5 @@ def _together(
     for column, (joint, place) in enumerate(zip(moving.joints, places, strict=True)):
         if joint in starts:
             positions[column] = rest_state_at_reading(records[place : place + 1], starts[joint])[4]
-    done = moving.roll_out(records, command_times, volts, times, positions)
+    done = moving.roll_out(records, command_times, volts, times, positions, recorded=recorded or None)
     return {one.joint: Moved(done.signals_of(one.joint), done.diverged) for one in driven}

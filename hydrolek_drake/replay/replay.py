@@ -20,7 +20,7 @@ from hydrolek_drake.replay.readings import (
     supply_pair,
 )
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.recorded_inputs import recorded_inputs, with_commands
+from hydrolek_drake.rigs.recorded_inputs import all_recorded_inputs, with_commands
 
 START_SAMPLES = 5
 """Samples of the recorded position whose median is the start; odd, so that the median is a sample."""
@@ -96,9 +96,9 @@ def replay(
         start, said = _start(rig, joint, window.time, measured, cut)
         notes += said
         until = _command_until(recording, key, window.time[0], window.time[-1])
-        under.append(Driven(joint, *until, start, recorded_inputs(rig, joint, window)))
+        under.append(Driven(joint, *until, start))
         commands[joint] = window.signal(key)
-    outcomes = by(rig, under, window.time, _elsewhere(rig, window, driven))
+    outcomes = by(rig, under, window.time, _elsewhere(rig, window, driven), all_recorded_inputs(rig, window))
     pairs: list[Pair] = []
     for joint, outcome in outcomes.items():
         if outcome.diverged:

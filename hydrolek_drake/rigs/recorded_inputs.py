@@ -11,11 +11,20 @@ from hydrolek_drake.recordings.clock import JITTER_FRACTION
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.driven_by import signals_of
 
+Inputs = tuple[float, np.ndarray]
+"""Spacing of samples [s], and `probes.PROBES` at each of them. # (k, 15)."""
+
 _FINER = 4
 """Samples of inputs have one spacing; of a recording whose clock jitters there are so many for each of its own."""
 
 
-def recorded_inputs(rig: Rig, joint: str, recording: Recording) -> tuple[float, np.ndarray] | None:
+def all_recorded_inputs(rig: Rig, recording: Recording) -> dict[str, Inputs]:
+    """The recorded signals that drive joints, by joint; see `recorded_inputs`."""
+    found = {joint: recorded_inputs(rig, joint, recording) for joint in rig.joints}
+    return {joint: inputs for joint, inputs in found.items() if inputs is not None}
+
+
+def recorded_inputs(rig: Rig, joint: str, recording: Recording) -> Inputs | None:
     """The recorded signals that drive a joint, on straight lines between their samples.
 
     Args:

@@ -1,6 +1,6 @@
 """Joints of a machine that move together, driven through commands: what the Diagram does, compiled."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -8,9 +8,7 @@ import numpy as np
 
 from hydrolek_drake.compiled import read_only
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import hooks
-from hydrolek_drake.physics.driven import is_driven
 from hydrolek_drake.physics.law import LAW, law_of
 from hydrolek_drake.physics.records import as_usual
 from hydrolek_drake.physics.serial_arm import LINK_SIZE, moments_along, scratch
@@ -18,7 +16,13 @@ from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.joint_rows import DRIVE, PLAY, RATES, SPOOL, STATE, room
 from hydrolek_drake.rollout.kernel import SIGNALS
 from hydrolek_drake.rollout.rest import rest_state
-from hydrolek_drake.rollout.rollout import DIVIDED_BY_ZERO, Signals, missing_number, why_diverged
+from hydrolek_drake.rollout.rollout import (
+    DIVIDED_BY_ZERO,
+    Signals,
+    check_driven,
+    missing_number,
+    why_diverged,
+)
 from hydrolek_drake.rollout.together_kernel import TOLD, integrate_together
 
 NO_LINKS = np.zeros((0, LINK_SIZE))
@@ -68,6 +72,8 @@ class RunTogether:
         longest_step: of the integration [s].
         spool_steps: steps of the spool within one step.
         diverged: why it cannot even begin, or None.
+        recorded: what drives joints in place of a part of them: spacing of the samples [s], and `probes.PROBES` of each
+            joint, # (joints, samples, 15); None for nothing.
     """
 
     joints: tuple[str, ...]
@@ -82,6 +88,7 @@ class RunTogether:
     longest_step: float
     spool_steps: int
     diverged: str | None = None
+    recorded: tuple[float, np.ndarray] | None = None
 
     def outcome(self) -> Together:
         """What the joints do, rolled out by themselves."""
@@ -105,6 +112,7 @@ class RunTogether:
             np.concatenate([[0], np.cumsum([len(law) for law in self.laws])]),
             self.links,
             scratch(len(self.links)),
+            *(self.recorded or (1.0, None)),
             told,
         )
         return self.told(told, done)
@@ -166,6 +174,7 @@ class JointsTogether:
         times: np.ndarray,
         positions: np.ndarray,
         longest_step: float | None = None,
+        recorded: Mapping[str, tuple[float, np.ndarray]] | None = None,
     ) -> Together:
         """Drive the joints from rest.
 
@@ -176,8 +185,15 @@ class JointsTogether:
             times: when signals are wanted [s], increasing. # (k,)
             positions: where the joints rest at the first of these [rad or m]. # (joints,)
             longest_step: of the integration [s]; None for the rig's own.
+            recorded: of each joint that a recording drives in place of a part of it, spacing [s] and samples as of
+                `rollout.roll_out`, all of one recording; None for nothing.
+
+        Raises:
+            InputError: a joint is driven so, and nothing recorded is given.
         """
-        return self.run(records, command_times, command_values, times, positions, longest_step).outcome()
+        return self.run(
+            records, command_times, command_values, times, positions, longest_step, recorded
+        ).outcome()
 
     def run(
         self,
@@ -187,14 +203,11 @@ class JointsTogether:
         times: np.ndarray,
         positions: np.ndarray,
         longest_step: float | None = None,
+        recorded: Mapping[str, tuple[float, np.ndarray]] | None = None,
     ) -> "RunTogether":
         """The rollout that `roll_out` makes, to be made beside others (`together_lanes`); arguments as there."""
         own = np.ascontiguousarray(records[self._places])
-        if is_driven(own):
-            raise InputError(
-                "joints that move together cannot be driven by recorded signals; keep one of them in the rig: "
-                f"'keep: [{self.joints[0]}]'"
-            )
+        check_driven(own, recorded is not None)
         found = [law_of(own[i : i + 1]) for i in range(len(own))]
         changes = np.concatenate([[True], np.any(np.diff(command_values, axis=0) != 0.0, axis=1)])
         missing = (missing_number(own[i : i + 1]) for i in range(len(own)))
@@ -223,7 +236,17 @@ class JointsTogether:
             longest_step or self._longest_step,
             self._spool_steps,
             diverged,
+            self._recorded_rows(recorded) if recorded else None,
         )
+
+    def _recorded_rows(self, recorded: Mapping[str, tuple[float, np.ndarray]]) -> tuple[float, np.ndarray]:
+        """Spacing [s] and samples of all joints, zero for those that nothing drives. # (joints, samples, 15)."""
+        spacing, some = next(iter(recorded.values()))
+        rows = np.zeros((len(self.joints), *some.shape))
+        for i, joint in enumerate(self.joints):
+            if joint in recorded:
+                rows[i] = recorded[joint][1]
+        return spacing, rows
 
     def _carried(self, carriers: np.ndarray, positions: np.ndarray) -> list[float | None]:
         """Gravity's moment on each joint at rest [N m]; None where it carries no other joint."""

@@ -10,6 +10,8 @@ import numpy as np
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import command, hooks, load
+from hydrolek_drake.physics.driven import driven_by
+from hydrolek_drake.physics.probes import probe_at
 from hydrolek_drake.physics.serial_arm import CARRIES
 from hydrolek_drake.physics.solenoid import steps_needed
 from hydrolek_drake.rollout.drive import acts_early
@@ -62,6 +64,8 @@ def _step(
     matrices: np.ndarray,
     carriers: np.ndarray,
     joints: np.ndarray,
+    spacing: float,
+    recorded: np.ndarray | None,
 ) -> None:
     """One step of `h` seconds of all joints."""
     n = len(joints)
@@ -70,6 +74,8 @@ def _step(
         joint = joints[i]
         own = own_law(laws, first, i)
         outside = from_others(r, i, STATE, DRIVE + X, shared, time, laws, first, joints)
+        if recorded is not None:
+            outside = driven_by(probe_at(time, 0.0, spacing, recorded[i]), outside)
         steps = steps_needed(spool_steps, joint)
         begins(r, i, time, h, steps, acts_early(own, joint), outside, own, joint)
     drawn_by_all(r)
@@ -83,6 +89,8 @@ def _step(
     for i in range(n):
         own = own_law(laws, first, i)
         outside = from_others(r, i, MIDDLE, DRIVE + X, shared, time + h, laws, first, joints)
+        if recorded is not None:
+            outside = driven_by(probe_at(time + h, 0.0, spacing, recorded[i]), outside)
         goes_on(r, i, r[i, DRIVE + X], time + h, outside, own, joints[i])
     drawn_by_all(r)
     if len(links) > 0:
@@ -154,6 +162,8 @@ def integrate_together(
     first: np.ndarray,
     links: np.ndarray,
     scratch: np.ndarray,
+    spacing: float,
+    recorded: np.ndarray | None,
     out: np.ndarray,
 ) -> int:
     """Integrate joints through their commands and write their signals at `times`.
@@ -174,6 +184,9 @@ def integrate_together(
         first: which of them is a joint's first one, and their number at the end, shape (n + 1,).
         links: of the arms that the joints turn, in their order, or without rows.
         scratch: of `serial_arm`, for as many.
+        spacing: of the samples of what was recorded, from the first of `times` on [s].
+        recorded: what drives joints in place of a part of them, `PROBES` at the places of `driven.INPUTS`, shape
+            (n, samples, 15); None for nothing.
         out: `TOLD`, shape (k, n, 9).
 
     Returns:
@@ -213,6 +226,8 @@ def integrate_together(
                         matrices,
                         carriers,
                         joints,
+                        spacing,
+                        recorded,
                     )
             t = until
         now = t - on
@@ -222,6 +237,8 @@ def integrate_together(
             if out_of_bounds(d.x, s):
                 return row
             outside = from_others(r, i, STATE, DRIVE + X, shared, now, laws, first, joints)
+            if recorded is not None:
+                outside = driven_by(probe_at(now, 0.0, spacing, recorded[i]), outside)
             inertia = inertia_at(now, r[i, ROD], joint)
             volts = arrived(command_values[:, i], held[i], joint)
             told = out[row, i]

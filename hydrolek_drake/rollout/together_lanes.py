@@ -147,7 +147,7 @@ def _aligned(shape: tuple[int, ...]) -> np.ndarray:
 def _in_lanes(run: RunTogether) -> bool:
     """Whether there can be loops over lanes for a machine."""
     alone = any(len(law) > MOST_TERMS or np.any(law["probe"] == SUPPLY) for law in run.laws)
-    return run.begun is not None and not alone
+    return run.begun is not None and run.recorded is None and not alone
 
 
 def _ready(kinds: Kinds, run: RunTogether, count: int) -> bool:

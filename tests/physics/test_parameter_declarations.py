@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.effects import EFFECTS
+from hydrolek_drake.physics.driven import DRIVEN
 from hydrolek_drake.physics.law import LAW, MOST_TERMS
 from hydrolek_drake.physics.records import JOINT, STAGES, flat, position_of
 from hydrolek_drake.units import si_factor
@@ -37,5 +38,6 @@ def test_a_flat_record_shares_memory_and_position_of_finds_its_numbers():
         2,
         sum(len(s.dtype().names) for s in STAGES.values())
         + sum(len(e.parameters) for e in EFFECTS.values())
-        + MOST_TERMS * len(LAW.names),
+        + MOST_TERMS * len(LAW.names)
+        + len(DRIVEN.names),
     )

@@ -5,8 +5,11 @@ from dataclasses import replace as changed
 import numpy as np
 import pytest
 
+from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.identification.recorded_together import OneRecording
 from hydrolek_drake.replay import compare, replay
-from hydrolek_drake.replay.driving import Driven, moved
+from hydrolek_drake.replay.by_diagram import moved_by_diagram
+from hydrolek_drake.replay.driving import Driven, Moved, moved
 from hydrolek_drake.rigs import load_rig
 
 DROOP = "joints.right_j2.effects.supply.pressure_droop.resistance_Pa_s_per_m3"
@@ -44,6 +47,26 @@ def test_each_alone_would_leave_far_more(drooping, recorded_together) -> None:
         one = Driven(joint, recording.time, recording.signal(f"{joint}.command"), None)
         alone |= moved(drooping, [one], recording.time, {})
     assert _off_deg(alone, reading).min() > 10.0 * ALLOWED_DEG
+
+
+@pytest.mark.long("a minute: a program of its own is compiled")
+def test_a_recorded_supply_pressure_drives_both_where_the_rig_knows_no_droop(
+    two_joints, drooping, recorded_together
+) -> None:
+    recording, reading = recorded_together(drooping)
+    ignorant = replay(two_joints, recording)
+    driven = changed(two_joints, driven_by=("supply.pressure",))
+    cut, by_diagram = replay(driven, recording), replay(driven, recording, by=moved_by_diagram)
+    assert _off_deg(cut.outcomes, reading).max() < 0.1 * _off_deg(ignorant.outcomes, reading).max()
+    assert _off_deg(by_diagram.outcomes, reading).max() < 0.1 * _off_deg(ignorant.outcomes, reading).max()
+    assert not any(pair.key == "supply.pressure" for pair in cut.pairs)
+    for outcome in cut.outcomes.values():
+        np.testing.assert_allclose(outcome.signals.supply_pressure, recording.signal("supply.pressure"))
+    fitted = OneRecording(driven, experiments_of(driven, recording))  # as a fit sees it
+    done = fitted.roll_out(driven.records(), fitted.times)
+    again = {e.joint: Moved(fitted.signals_of(e, done), None) for e in fitted.group}
+    model = np.stack([cut.outcomes[joint].signals.reading for joint in again], axis=1)
+    assert _off_deg(again, model[np.searchsorted(recording.time, fitted.times)]).max() < ALLOWED_DEG
 
 
 def test_a_command_that_is_missing_at_first_is_neutral_until_it_comes(two_joints, recorded_together) -> None:
