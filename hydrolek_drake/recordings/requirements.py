@@ -1,5 +1,6 @@
 """What a computation needs from a recording, said before it starts."""
 
+import re
 from collections.abc import Iterable, Mapping
 
 import numpy as np
@@ -48,6 +49,8 @@ def require(
 def _missing(recording: Recording, key: str) -> str:
     unused = f" and the unused columns {', '.join(recording.ignored)}" if recording.ignored else ""
     example = recording.ignored[0] if recording.ignored else "NAME"
+    if not re.fullmatch(r"[\w./-]+", example):  # brackets mean something within a mapping in one line
+        example = f'"{example}"'
     return (
         f"{recording.source}: signal {key} is missing; the file has {', '.join(sorted(recording.signals))}"
         f"{unused}; "

@@ -43,6 +43,9 @@ joints:
       command.delay: {delay_s: {value: 10, unit: ms, source: here}}
       load.payload: {mass_kg: {value: 5, unit: kg, source: here, range: [0, 20]}}
 """,
+    "schema: 1\nbased_on: joint_bench\nrecording:\n"
+    "  columns: {P_S: supply.pressure_bar, '/valve.data[1]': joint.spool_mm}\n"
+    "  driven_by: [supply.pressure, joint.spool, joint.pressure_a, joint.pressure_b]\n",
 )
 _SCENARIOS = (
     "schema: 1\ntitle: t\nrig: joint_bench\nsettings: {supply.pressure: 12 MPa}\nduration: 2 s\n"
@@ -136,7 +139,7 @@ def _settings(rng: np.random.Generator) -> dict[str, Any]:
 
 
 def _read_rig(path: Path) -> str:
-    rig = load_rig(path)
+    rig = load_rig(path).by_itself()
     records = rig.records()
     step = rig.value("integration.longest_step")
     for record in np.split(records, len(records)):
