@@ -33,11 +33,17 @@ def read_mat(path: Path, mapping: Mapping[str, str]) -> Table:
     hdf5 = major == _HDF5_MAJOR
     objects = _has_objects_hdf5(path) if hdf5 else _has_objects(path)
     hint = missing("matio", "MATLAB's tables, timetables and strings") if objects else ""
-    with_objects = objects and not hint
-    if hdf5 and not with_objects:
+    if objects and not hint:
+        try:
+            return Table(tuple(columns_apart("matlab", path, mapping, objects=True)))
+        except (
+            ValueError
+        ) as error:  # of an object of a kind that mat-io does not know; what is plain can be read
+            hint = f"its tables and objects cannot be read: {' '.join(str(error).split())[:120]}"
+    if hdf5:
         columns = [_column(name, values) for name, values in _hdf5_variables(path)]
     else:
-        columns = columns_apart("matlab", path, mapping, objects=with_objects)
+        columns = columns_apart("matlab", path, mapping, objects=False)
     return Table(tuple(columns), hint=hint)
 
 

@@ -80,6 +80,20 @@ def test_matlab_timetables(tmp_path, version):
     np.testing.assert_allclose(recording.signal("j.angle"), 2 * TIME)
 
 
+@pytest.mark.filterwarnings("ignore")
+def test_plain_arrays_are_read_where_the_objects_beside_them_cannot_be(tmp_path):
+    path = tmp_path / "run.mat"
+    frame = pd.DataFrame({"x": TIME}, index=pd.Index(pd.to_timedelta(TIME, unit="s"), name="Time"))
+    matio.save_to_mat(path, {"log": frame, "t": TIME, "u": TIME, "q": 2 * TIME}, version="v7")
+    data = bytearray(path.read_bytes())
+    data[116:124] = (1).to_bytes(8, "little")  # where the objects are kept
+    path.write_bytes(data)
+    recording = read_recording(path, {"t": "time_s", "u": "j.command_V", "q": "j.angle_rad"})
+    np.testing.assert_array_equal(recording.signal("j.angle"), 2 * TIME)
+    with pytest.raises(InputError, match=r"no signal.*its tables and objects cannot be read"):
+        read_recording(path, {"t": "time_s"})
+
+
 def test_what_is_not_installed_is_told_with_how_to_install_it(tmp_path, monkeypatch):
     found = importlib.util.find_spec
     monkeypatch.setattr(
