@@ -225,8 +225,8 @@ def _candidates(diagnosis: Diagnosis) -> str:
     among = (
         "<p class='other'>'Posterior': probability among these models. What is told of an effect is lower, by how "
         "often such names were right on concealed machines, where the truth is known. 'Behind': log-density of the "
-        "held-out data less than that of the most probable, with its standard error over blocks of the recordings; of less "
-        "than two standard errors these data alone do not tell.</p>"
+        "held-out data less than that of the most probable, with its standard error over blocks of the recordings; "
+        "of less than two standard errors these data alone do not tell.</p>"
     )
     return (
         _table(("model", "posterior", "fitted / noise", "held out / noise", "behind", ""), rows, (5,))
