@@ -5,11 +5,11 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from hydrolek_drake.diagnosis.answer import BY_BOTH, INTERRUPTED, Answer, Known
-from hydrolek_drake.diagnosis.data.splitting import mixed
+from hydrolek_drake.diagnosis.data.splitting import halves, mixed
 from hydrolek_drake.diagnosis.data.weighing import weighted_by
 from hydrolek_drake.diagnosis.evidence.conclusion import POSSIBLE, Conclusion, conclude
 from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.evidence.judging import judge_structures
+from hydrolek_drake.diagnosis.evidence.judging import judge_structures, left_of
 from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, MORE_AHEAD
 from hydrolek_drake.diagnosis.evidence.predictive import judge_as_fitted
 from hydrolek_drake.diagnosis.laws.found import law_of, likeliest_side, terms_of
@@ -52,22 +52,26 @@ class Inquiry:
 
         Args:
             bench: data and problems.
-            held_out: data that nothing is fitted to.
+            held_out: data that nothing is fitted to: of every other block structures are chosen, the rest reports.
 
         Raises:
             KeyboardInterrupt: before the nominal model was fitted.
         """
-        known, found = self._known(bench, held_out, Tried())
+        chosen, kept = halves(held_out)
+        known, found = self._known(bench, chosen, Tried())
         remarks: tuple[str, ...] = ()
         if not known.interrupted and self.apart and _astray(known):
             # numbers that the training data do not tell, the held-out ones ask for
-            training, kept = mixed(known.bench.training, known.held_out)
+            training, chosen, kept = mixed(known.bench.training, held_out)
             both = known.bench.with_training(training)
-            known, found = self._known(both, kept, _begun_from(found))
+            known, found = self._known(both, chosen, _begun_from(found))
             remarks = (BY_BOTH,)
+        best = likeliest_side(known.judged).hypothesis
+        known = self._reported(known, kept)
+        conclusion, law = self._told(known, next(j for j in known.judged if j.hypothesis is best))
         if known.interrupted:
             remarks = (*remarks, INTERRUPTED)
-        conclusion, law = self._told(known)
+            conclusion = replace(conclusion, verdict="interrupted")
         estimates: tuple[Estimate, ...] = ()
         if (
             not known.interrupted
@@ -111,9 +115,17 @@ class Inquiry:
         known = Known(bench, found, weighted, tuple(judged), conclude(judged), interrupted)
         return known, found
 
-    def _told(self, known: Known) -> tuple[Conclusion, FoundLaw | None]:
+    def _reported(self, known: Known, kept: Sequence[Experiment]) -> Known:
+        """The same with what structures leave of data by which none was chosen, which have the verdict's last word."""
+        try:
+            weighted = tuple(weighted_by(known.bench, known.judged[0].hypothesis, kept))
+            judged = left_of(known.bench, known.judged, weighted, self.settings, self.cores)
+        except KeyboardInterrupt:
+            return replace(known, interrupted=True)
+        return replace(known, held_out=weighted, judged=judged, conclusion=conclude(judged))
+
+    def _told(self, known: Known, best: Judged) -> tuple[Conclusion, FoundLaw | None]:
         """The conclusion, and the law of the best structure, if it has one."""
-        best = likeliest_side(known.judged)
         terms = terms_of(best.hypothesis)
         if lost_in(best.hypothesis) is not None:
             lost = lost_of(known.bench, best, known.held_out, self.settings, self.cores)

@@ -12,24 +12,26 @@ PAIR = Path(__file__).parents[1] / "data" / "bench" / "practice_01"
 
 
 @pytest.mark.parametrize(
-    ("where", "what", "lost"),
+    ("where", "what", "lost", "verdict"),
     [
         pytest.param(
             diagnosis,
             "visible_sizes",
             ("detectable_from",),
+            "none",
             marks=pytest.mark.long("takes a third of a minute more"),
         ),
         pytest.param(
             diagnosis,
             "locate",
             ("detectable_from", "locations"),
+            "none",
             marks=pytest.mark.long("takes a third of a minute more"),
         ),
-        (inquiry, "judge_structures", ()),
+        (inquiry, "judge_structures", (), "interrupted"),
     ],
 )
-def test_what_is_known_is_kept_and_written(tmp_path, monkeypatch, where, what, lost) -> None:
+def test_what_is_known_is_kept_and_written(tmp_path, monkeypatch, where, what, lost, verdict) -> None:
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
@@ -38,7 +40,7 @@ def test_what_is_known_is_kept_and_written(tmp_path, monkeypatch, where, what, l
     status = run(["diagnose", "joint_bench", *recordings, "--out", str(tmp_path)])
     report = json.loads((tmp_path / "report.json").read_text())
     assert status == 130
-    assert report["verdict"] == "none"
+    assert report["verdict"] == verdict
     assert report["fit"]["with_effects"]["holdout_over_noise"] < 1.1
     assert all(not report[part] for part in lost)
     assert "interrupted" in (tmp_path / "report.html").read_text()

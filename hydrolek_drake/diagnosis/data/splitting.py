@@ -18,8 +18,8 @@ HELD_BLOCKS = (2, 5)
 """... of which these are held out: one in the middle and the last."""
 
 SHORT_BLOCKS = 18
-"""A held-out recording that shows what the training data do not is cut into so many blocks, of which every third
-stays held out: short ones, so that what it shows is in both parts."""
+"""Held-out data are cut into so many blocks, of which every other one chooses and those between report. Where they show
+what the training data do not, two of three are fitted too: short ones, so that what they show is in every part."""
 
 
 def prepared(
@@ -75,17 +75,29 @@ def _held_blocks(experiment: Experiment) -> np.ndarray:
     return np.isin(block, HELD_BLOCKS)
 
 
-def _every_third(experiment: Experiment) -> np.ndarray:
-    """Every third of `SHORT_BLOCKS`. # (n,)."""
-    block = np.floor(SHORT_BLOCKS * np.arange(experiment.time.size) / experiment.time.size)
-    return block % 3 == 2
+def short_blocks(experiment: Experiment) -> np.ndarray:
+    """In which of `SHORT_BLOCKS` each sample that counts lies. # (n,)."""
+    so_far = np.cumsum(experiment.used) - 1
+    count = max(int(experiment.used.sum()), 1)
+    return np.asarray(np.floor(SHORT_BLOCKS * np.maximum(so_far, 0) / count).astype(int))
+
+
+def halves(held_out: Sequence[Experiment]) -> tuple[tuple[Experiment, ...], tuple[Experiment, ...]]:
+    """Held-out data in two parts: blocks by which structures are chosen, and those between, which only report.
+
+    What chose among many is no longer an independent test of the one that was chosen.
+    """
+    chosen = tuple(e.split(e.used & (short_blocks(e) % 2 == 0)) for e in held_out)
+    kept = tuple(e.split(e.used & (short_blocks(e) % 2 == 1)) for e in held_out)
+    return chosen, kept
 
 
 def mixed(
     training: Sequence[Experiment], held_out: Sequence[Experiment]
-) -> tuple[tuple[Experiment, ...], tuple[Experiment, ...]]:
-    """All recordings for training but for some blocks of those that were held out."""
-    blocks = [_every_third(e) for e in held_out]
-    fitted = [e.split(e.used & ~held) for e, held in zip(held_out, blocks, strict=True)]
-    kept = [e.split(e.used & held) for e, held in zip(held_out, blocks, strict=True)]
-    return (*training, *fitted), tuple(kept)
+) -> tuple[tuple[Experiment, ...], tuple[Experiment, ...], tuple[Experiment, ...]]:
+    """Two thirds of the held-out data for training too; of the rest, what chooses, and what reports as in `halves`."""
+    blocks = [short_blocks(e) for e in held_out]
+    fitted = [e.split(e.used & (b % 3 != 2)) for e, b in zip(held_out, blocks, strict=True)]
+    chosen = [e.split(e.used & (b % 6 == 2)) for e, b in zip(held_out, blocks, strict=True)]
+    kept = [e.split(e.used & (b % 6 == 5)) for e, b in zip(held_out, blocks, strict=True)]
+    return (*training, *fitted), tuple(chosen), tuple(kept)

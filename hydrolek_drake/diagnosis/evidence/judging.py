@@ -16,10 +16,12 @@ from typing import Any
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.evidence.compared import with_differences
 from hydrolek_drake.diagnosis.evidence.judged import SMALL, Judged, with_probabilities
 from hydrolek_drake.diagnosis.evidence.predictive import NEARBY, OUT_OF_REACH, pays, predictive, predicts
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
 from hydrolek_drake.diagnosis.fitting.race import Entrant, problem_with, race
+from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.lost_commands.search import windows_ahead
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
@@ -102,6 +104,39 @@ def _predicted(
         beyond = max(place.objective - judged[i].hypothesis.fit.objective, 0.0)
         judged[i] = replace(judged[i], chi_squared=beyond)
     return judged
+
+
+def left_of(
+    bench: Workbench,
+    judged: Sequence[Judged],
+    held_out: Sequence[Experiment],
+    settings: Settings,
+    cores: int,
+) -> tuple[Judged, ...]:
+    """The same structures with what they leave of other data than those by which they were judged.
+
+    Args:
+        bench: data and problems.
+        judged: structures, the most probable first.
+        held_out: data that nothing was fitted to, and by which nothing was chosen.
+        settings: of the search.
+        cores: that roll out at the same time.
+    """
+    hypotheses = [j.hypothesis for j in judged]
+    step = settings.last.coarse * bench.fine
+    stands = stands_ahead(bench, hypotheses, held_out, step, settings, cores)
+    requests = [
+        Request(problem_with(bench, effects, step, [experiment]), (unit,))
+        for own in stands
+        for experiment, (effects, unit) in zip(held_out, own, strict=True)
+    ]
+    answers = iter(residuals_at(requests, bench.pool, cores))
+    counted = sum(experiment.counted for experiment in held_out)
+    told = tuple(
+        replace(j, held_out=np.concatenate([next(answers)[0] for _ in held_out]), held_out_counted=counted)
+        for j in judged
+    )
+    return with_differences(told, held_out)
 
 
 PHASES = 12

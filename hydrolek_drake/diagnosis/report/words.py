@@ -1,8 +1,11 @@
 """A diagnosis in the words of an engineer."""
 
+import math
 from collections.abc import Sequence
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
+from hydrolek_drake.diagnosis.evidence.compared import UNRELIABLE
+from hydrolek_drake.diagnosis.evidence.judged import Judged
 from hydrolek_drake.diagnosis.intervals.of_laws import amplitude_intervals, frequency_interval
 from hydrolek_drake.diagnosis.laws.law import FoundLaw
 from hydrolek_drake.diagnosis.report.numbers import quantity, with_interval
@@ -80,6 +83,14 @@ def off_zero_sentences(diagnosis: Diagnosis) -> list[str]:
     return told
 
 
+def behind(judged: Judged) -> str:
+    """How far a structure is behind the most probable one on held-out data, with its standard error."""
+    if not math.isfinite(judged.behind_error) or judged.behind_error == 0.0:
+        return ""
+    doubt = " ?" if abs(judged.behind) < UNRELIABLE * judged.behind_error else ""
+    return f"{judged.behind:.3g} \u00b1 {judged.behind_error:.2g}{doubt}"
+
+
 def headline(diagnosis: Diagnosis) -> str:
     """The verdict in one sentence."""
     if diagnosis.verdict == "bad_data":
@@ -91,6 +102,15 @@ def headline(diagnosis: Diagnosis) -> str:
             f"Nothing is missing: the nominal model, with its own parameters fitted, predicts the held-out data "
             f"to {after} the noise."
         )
+    if diagnosis.verdict == "interrupted":
+        so_far = _listed([c.effect.title for c in best.hypothesis.effects]) or "the nominal model"
+        if diagnosis.law is not None:
+            so_far = f"a law at the stage {diagnosis.law.law.input.stage}"
+            after = _ratio(diagnosis.law.held_out_over_noise)
+        return (
+            f"Cut off before the search had ended: best so far is {so_far}, which leaves {after} the noise on "
+            f"held-out data (nominal model: {before}). More time may change it."
+        )
     names = _listed([c.effect.title for c in best.hypothesis.effects])
     stages = ", ".join(dict.fromkeys(c.effect.stage for c in best.hypothesis.effects))
     if diagnosis.verdict == "missing_physics":
@@ -101,11 +121,6 @@ def headline(diagnosis: Diagnosis) -> str:
         )
     if diagnosis.verdict == "ambiguous":
         groups = diagnosis.conclusion.groups if diagnosis.conclusion else ()
-        if not groups and diagnosis.reasons:
-            return (
-                f"Interrupted before a cause was found: the best model so far leaves {after} the noise on "
-                f"held-out data (nominal model: {before})."
-            )
         if not groups:
             return "Something small may be missing, but these data do not decide whether it is."
         group = " or ".join(groups[0])
