@@ -26,6 +26,8 @@ def terms_for(
 ) -> tuple[LawTerm | LostWindows, ...]:
     """What in no list may explain what a structure leaves: terms that promise most, and commands that got lost.
 
+    These are asked for beside the nominal model, since windows fit a little of whatever a structure leaves.
+
     Args:
         bench: data and problems.
         parent: the structure.
@@ -50,9 +52,10 @@ def terms_for(
         taken[term.input.probe] = taken.get(term.input.probe, 0) + 1
         (first if taken[term.input.probe] <= EACH else rest).append(term)
     terms = [*first, *rest][: max(OFFERED, len(first))]
+    if parent.effects:
+        return tuple(terms)
     command = next(each for each in _inputs(bench, joint, scales[joint]) if each.probe == "command")
-    known = next((c.windows(parent.values) for c in parent.effects if isinstance(c, LostWindows)), {})
-    lost = lost_seen(bench, parent, command, float(record["command"]["neutral"]), known, span, cores)
+    lost = lost_seen(bench, parent, command, float(record["command"]["neutral"]), {}, span, cores)
     return (*terms, lost) if lost is not None else tuple(terms)
 
 
