@@ -75,7 +75,7 @@ def _held_blocks(experiment: Experiment) -> np.ndarray:
     return np.isin(block, HELD_BLOCKS)
 
 
-def _short_blocks(experiment: Experiment) -> np.ndarray:
+def short_blocks(experiment: Experiment) -> np.ndarray:
     """In which of `SHORT_BLOCKS` each sample that counts lies. # (n,)."""
     so_far = np.cumsum(experiment.used) - 1
     count = max(int(experiment.used.sum()), 1)
@@ -87,8 +87,8 @@ def halves(held_out: Sequence[Experiment]) -> tuple[tuple[Experiment, ...], tupl
 
     What chose among many is no longer an independent test of the one that was chosen.
     """
-    chosen = tuple(e.split(e.used & (_short_blocks(e) % 2 == 0)) for e in held_out)
-    kept = tuple(e.split(e.used & (_short_blocks(e) % 2 == 1)) for e in held_out)
+    chosen = tuple(e.split(e.used & (short_blocks(e) % 2 == 0)) for e in held_out)
+    kept = tuple(e.split(e.used & (short_blocks(e) % 2 == 1)) for e in held_out)
     return chosen, kept
 
 
@@ -96,7 +96,7 @@ def mixed(
     training: Sequence[Experiment], held_out: Sequence[Experiment]
 ) -> tuple[tuple[Experiment, ...], tuple[Experiment, ...], tuple[Experiment, ...]]:
     """Two thirds of the held-out data for training too; of the rest, what chooses, and what reports as in `halves`."""
-    blocks = [_short_blocks(e) for e in held_out]
+    blocks = [short_blocks(e) for e in held_out]
     fitted = [e.split(e.used & (b % 3 != 2)) for e, b in zip(held_out, blocks, strict=True)]
     chosen = [e.split(e.used & (b % 6 == 2)) for e, b in zip(held_out, blocks, strict=True)]
     kept = [e.split(e.used & (b % 6 == 5)) for e, b in zip(held_out, blocks, strict=True)]

@@ -34,6 +34,8 @@ class Judged:
         probability: among all that were judged.
         chi_squared: r' (I + J S J')^-1 r; None for r' r.
         spread: log det (I + J S J').
+        behind: log-density of the held-out data less than that of the most probable (`compared`).
+        behind_error: standard error of that.
     """
 
     hypothesis: Hypothesis
@@ -42,6 +44,8 @@ class Judged:
     probability: float = math.nan
     chi_squared: float | None = None
     spread: float = 0.0
+    behind: float = 0.0
+    behind_error: float = math.nan
 
     @property
     def over_noise(self) -> float:

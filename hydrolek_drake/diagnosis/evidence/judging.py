@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.evidence.compared import with_differences
 from hydrolek_drake.diagnosis.evidence.judged import SMALL, Judged, with_probabilities
 from hydrolek_drake.diagnosis.evidence.predictive import NEARBY, OUT_OF_REACH, pays, predictive, predicts
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
@@ -131,10 +132,11 @@ def left_of(
     ]
     answers = iter(residuals_at(requests, bench.pool, cores))
     counted = sum(experiment.counted for experiment in held_out)
-    return tuple(
+    told = tuple(
         replace(j, held_out=np.concatenate([next(answers)[0] for _ in held_out]), held_out_counted=counted)
         for j in judged
     )
+    return with_differences(told, held_out)
 
 
 PHASES = 12

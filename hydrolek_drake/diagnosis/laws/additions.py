@@ -75,6 +75,11 @@ class LawTerm:
         return f"unlisted.{self.input.stage}"
 
     @property
+    def label(self) -> str:
+        """What tells it from others in tables."""
+        return f"{self.id}: {self.name}"
+
+    @property
     def name(self) -> str:
         """Of its form."""
         if self.term is None:

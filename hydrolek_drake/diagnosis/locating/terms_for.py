@@ -1,6 +1,6 @@
 """Terms of laws that may be added to a structure."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -26,13 +26,17 @@ def terms_for(
 ) -> tuple[LawTerm | LostWindows, ...]:
     """What in no list may explain what a structure leaves: terms that promise most, and commands that got lost.
 
+    These are asked for beside the nominal model, since windows fit a little of whatever a structure leaves.
+
     Args:
         bench: data and problems.
         parent: the structure.
         scales: natural scales of the joints.
         cores: that roll out at the same time.
     """
-    joint = next(iter(scales))
+    joint = _followed_worst(bench, parent, list(scales))
+    if len(scales) > 1:  # what the others do to it is an input, as an observer of each has measured it
+        bench = bench.with_training([e for e in bench.training if e.joint == joint])
     inputs = _inputs(bench, joint, scales[joint])
     has = {c.input.probe for c in parent.effects if isinstance(c, LawTerm)}
     inputs = tuple(each for each in inputs if not has or each.probe in has)
@@ -50,10 +54,22 @@ def terms_for(
         taken[term.input.probe] = taken.get(term.input.probe, 0) + 1
         (first if taken[term.input.probe] <= EACH else rest).append(term)
     terms = [*first, *rest][: max(OFFERED, len(first))]
+    if parent.effects or len(scales) > 1:
+        return tuple(terms)
     command = next(each for each in _inputs(bench, joint, scales[joint]) if each.probe == "command")
-    known = next((c.windows(parent.values) for c in parent.effects if isinstance(c, LostWindows)), {})
-    lost = lost_seen(bench, parent, command, float(record["command"]["neutral"]), known, span, cores)
+    lost = lost_seen(bench, parent, command, float(record["command"]["neutral"]), {}, span, cores)
     return (*terms, lost) if lost is not None else tuple(terms)
+
+
+def _followed_worst(bench: Workbench, parent: Hypothesis, joints: Sequence[str]) -> str:
+    """The joint whose recordings a structure follows worst, for their noise."""
+    ends = np.cumsum([0, *(len(e.channels) * e.time.size for e in bench.training)])
+    squares, counted = dict.fromkeys(joints, 0.0), dict.fromkeys(joints, 1)
+    for experiment, begin, end in zip(bench.training, ends[:-1], ends[1:], strict=True):
+        if experiment.joint in squares:
+            squares[experiment.joint] += float(np.sum(parent.fit.residuals[begin:end] ** 2))
+            counted[experiment.joint] += experiment.counted
+    return max(joints, key=lambda joint: squares[joint] / counted[joint])
 
 
 def estimates_for(

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.evidence.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
 from hydrolek_drake.diagnosis.fitting.race import Entrant, problem_with, race
@@ -34,7 +35,8 @@ def with_windows(
     """A structure with lost commands, more of them beside those that were fitted as long as some are seen.
 
     The structure has bent its numbers to make up for them, so that each fit also begins at the rig's own, with an
-    observer that remembers a lost command.
+    observer that remembers a lost command. Windows fit anything a little, so that only what they explain to the noise
+    counts.
 
     Args:
         bench: data and problems.
@@ -60,7 +62,7 @@ def with_windows(
             effects = (*parent.effects, needed)
             fits += race(bench, [Entrant(effects, values)], settings.free[-1:], cores)
             break
-    return fits
+    return [fit for fit in fits if fit.fit.over_noise <= EXPLAINED]
 
 
 def _without_windows(structure: Hypothesis) -> dict[str, float]:

@@ -69,6 +69,7 @@ class LostWindows:
     moments: ClassVar[tuple[Free, ...]] = ()
     stage: ClassVar[str] = "command"
     id: ClassVar[str] = "unlisted.command"
+    label: ClassVar[str] = "unlisted.command: lost commands"
 
     @property
     def path(self) -> str:

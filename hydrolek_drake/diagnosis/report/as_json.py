@@ -209,6 +209,10 @@ def _mean_noise(experiments: tuple[Experiment, ...], key: str) -> float:
     return float(np.sqrt(np.mean(np.square(levels))))
 
 
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
 def candidates_json(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     """The hypotheses that were held against held-out data, the most probable first."""
     return [
@@ -217,6 +221,8 @@ def candidates_json(diagnosis: Diagnosis) -> list[dict[str, Any]]:
             "probability": round(judged.probability, 6),
             "train_over_noise": judged.hypothesis.fit.over_noise,
             "holdout_over_noise": judged.over_noise,
+            "behind": _finite(judged.behind),
+            "behind_standard_error": _finite(judged.behind_error),
         }
         for judged in diagnosis.judged[:MOST_LISTED]
     ] + [

@@ -11,7 +11,7 @@ from hydrolek_drake.diagnosis.intervals.curvature import CONFIDENCE
 from hydrolek_drake.diagnosis.report.as_json import MOST_LISTED, detectable, effects_json, fit_json, models_of
 from hydrolek_drake.diagnosis.report.numbers import quantity, with_interval
 from hydrolek_drake.diagnosis.report.panels import columns, course_panel
-from hydrolek_drake.diagnosis.report.words import headline, off_zero_sentences
+from hydrolek_drake.diagnosis.report.words import behind, headline, off_zero_sentences
 from hydrolek_drake.identification.thinning import STEPS
 from hydrolek_drake.replay.confirmation import Confirmation
 from hydrolek_drake.replay.display import ratio, three_digits
@@ -206,14 +206,14 @@ def _candidates(diagnosis: Diagnosis) -> str:
     worst = max(j.over_noise for j in listed)
     rows = []
     for judged in listed:
-        name = " + ".join(c.id for c in judged.hypothesis.effects) or "nominal model"
         width = 220.0 * judged.over_noise / worst
         rows.append(
             (
-                html.escape(name),
+                html.escape(judged.hypothesis.label),
                 "given up" if math.isnan(judged.probability) else f"{judged.probability:.3f}",
                 ratio(judged.hypothesis.fit.over_noise),
                 ratio(judged.over_noise),
+                behind(judged),
                 f"<span class='bar' style='width:{max(width, 2):.0f}px'></span>",
             )
         )
@@ -224,9 +224,15 @@ def _candidates(diagnosis: Diagnosis) -> str:
     )
     among = (
         "<p class='other'>'Posterior': probability among these models. What is told of an effect is lower, by how "
-        "often such names were right on concealed machines, where the truth is known.</p>"
+        "often such names were right on concealed machines, where the truth is known. 'Behind': log-density of the "
+        "held-out data less than that of the most probable, with its standard error over blocks of the recordings; "
+        "of less than two standard errors these data alone do not tell.</p>"
     )
-    return _table(("model", "posterior", "fitted / noise", "held out / noise", ""), rows, (4,)) + among + told
+    return (
+        _table(("model", "posterior", "fitted / noise", "held out / noise", "behind", ""), rows, (5,))
+        + among
+        + told
+    )
 
 
 def _parameters(diagnosis: Diagnosis) -> str:

@@ -7,7 +7,7 @@ from rich.table import Table
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.report.as_json import effects_json, fit_json, models_of
-from hydrolek_drake.diagnosis.report.words import headline, off_zero_sentences
+from hydrolek_drake.diagnosis.report.words import behind, headline, off_zero_sentences
 from hydrolek_drake.replay.display import ratio
 
 SHOWN = 5
@@ -33,14 +33,14 @@ def summary(diagnosis: Diagnosis) -> Iterator[str | Table]:
         )
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
     table.add_column("model")
-    for title in ("posterior", "fitted / noise", "held out / noise"):
+    for title in ("posterior", "fitted / noise", "held out / noise", "behind"):
         table.add_column(title, justify="right", no_wrap=True)
     for judged in diagnosis.judged[:SHOWN]:
-        name = " + ".join(c.id for c in judged.hypothesis.effects) or "nominal model"
         table.add_row(
-            name,
+            escape(judged.hypothesis.label),
             f"{judged.probability:.3f}",
             ratio(judged.hypothesis.fit.over_noise),
             ratio(judged.over_noise),
+            behind(judged),
         )
     yield table

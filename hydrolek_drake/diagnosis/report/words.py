@@ -1,8 +1,11 @@
 """A diagnosis in the words of an engineer."""
 
+import math
 from collections.abc import Sequence
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
+from hydrolek_drake.diagnosis.evidence.compared import UNRELIABLE
+from hydrolek_drake.diagnosis.evidence.judged import Judged
 from hydrolek_drake.diagnosis.intervals.of_laws import amplitude_intervals, frequency_interval
 from hydrolek_drake.diagnosis.laws.law import FoundLaw
 from hydrolek_drake.diagnosis.report.numbers import quantity, with_interval
@@ -78,6 +81,14 @@ def off_zero_sentences(diagnosis: Diagnosis) -> list[str]:
             f"(95 %: {low} to {high}): {declared.meaning}."
         )
     return told
+
+
+def behind(judged: Judged) -> str:
+    """How far a structure is behind the most probable one on held-out data, with its standard error."""
+    if not math.isfinite(judged.behind_error) or judged.behind_error == 0.0:
+        return ""
+    doubt = " ?" if abs(judged.behind) < UNRELIABLE * judged.behind_error else ""
+    return f"{judged.behind:.3g} \u00b1 {judged.behind_error:.2g}{doubt}"
 
 
 def headline(diagnosis: Diagnosis) -> str:

@@ -52,7 +52,8 @@ def search_structures(
     _nominal(bench, found, settings, cores)
     done: set[tuple[frozenset[str], str]] = set()
     seen: dict[tuple[frozenset[str], str], Opening] = {}
-    for _ in range(settings.most_expansions):
+    expansions = 0
+    while expansions < settings.most_expansions:
         openings = []
         for parent, kind in _open(found, done, settings, laws=unlisted is not None):
             key = (parent.ids, kind)
@@ -62,10 +63,15 @@ def search_structures(
                     own = unlisted.offer(bench, parent)
                 seen[key] = opened(bench, parent, kind, own, found, settings, cores)
             openings.append(seen[key])
-        openings = [each for each in openings if _worth_while(each)]
         if not openings:
             break
+        hopeless = [each.key for each in openings if not _worth_while(each)]
+        done.update(hopeless)
+        openings = [each for each in openings if each.key not in done]
+        if not openings:
+            continue
         next_ = min(openings, key=lambda each: each.expected)
+        expansions += 1
         say(f"{next_.kind} beside {' + '.join(c.id for c in next_.parent.effects) or 'the nominal model'}")
         done.add(next_.key)
         enlarged(bench, next_, candidates, found, settings, cores)
@@ -79,7 +85,8 @@ def _open(
 ) -> list[tuple[Hypothesis, str]]:
     """Structures that may be enlarged, and by what.
 
-    The nominal model is enlarged by effects first, and the best one only once it leaves nothing above the noise.
+    Each is enlarged by effects first, since a law can imitate most of them, and only the best one once it leaves
+    nothing above the noise.
     """
     best = found.best
     if (frozenset(), EFFECTS) not in done:
@@ -96,9 +103,10 @@ def _open(
             beyond = count >= settings.most_additions or sizes[count] > settings.beam
             if beyond or (h.effects and cost(h) >= cost(found.baseline)):
                 continue
-            if all(isinstance(c, Candidate) for c in h.effects):
+            listed = all(isinstance(c, Candidate) for c in h.effects)
+            if listed and (h.ids, EFFECTS) not in done:
                 items.append((h, EFFECTS))
-            if laws:
+            elif laws:
                 items.append((h, LAWS))
     return [(h, kind) for h, kind in items if (h.ids, kind) not in done]
 

@@ -68,6 +68,11 @@ class Candidate:
         return f"{self.path}.{self.effect.size}"
 
     @property
+    def label(self) -> str:
+        """What tells it from others in tables."""
+        return self.id
+
+    @property
     def moments(self) -> tuple[Free, ...]:
         """Its parameters that say when something happens."""
         pairs = zip(self.free, self.effect.search.values(), strict=True)

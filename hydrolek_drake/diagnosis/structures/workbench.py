@@ -51,6 +51,11 @@ class Hypothesis:
         return tuple(c for c in self.effects if c is not effect)
 
     @property
+    def label(self) -> str:
+        """What tells it from others in tables."""
+        return " + ".join(c.label for c in self.effects) or "nominal model"
+
+    @property
     def extra(self) -> int:
         """Parameters that the nominal model does not have."""
         return sum(len(candidate.free) for candidate in self.effects)

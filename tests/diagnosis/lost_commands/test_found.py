@@ -46,6 +46,7 @@ def test_commands_that_got_lost_are_found_in_both_recordings(
     assert enlarged_rig(bench, answer.conclusion.best.hypothesis, found).laws == {}  # the machine has no law
 
 
+@pytest.mark.long("takes half a minute: loops over lanes with laws are compiled")
 def test_a_machine_with_friction_has_lost_nothing(answer_of) -> None:
     friction = {"joints.joint.effects.cylinder.coulomb_friction.coulomb_N": 600.0}
     answer = answer_of(friction, FEW, largest_V=5.0, pressure_noise_Pa=None)
