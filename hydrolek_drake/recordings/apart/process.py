@@ -23,7 +23,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings.apart.child import REFUSED
 from hydrolek_drake.recordings.table import Column
 
-LONGEST_S = 5.0
+LONGEST_S = 2.0
 BYTES_PER_S = 2e6
 """What reading may take once its package is loaded; it takes a tenth of a second, and another second for each
 10 to 100 MB."""
