@@ -31,9 +31,16 @@ def problem_of(
 class ProblemTogether(Problem):
     """Weighted residuals of joints that move together, of which all are rolled out at once."""
 
-    def __init__(self, *given: Any, **named: Any) -> None:
-        """Prepare; what is given is that of `Problem`."""
+    def __init__(self, *given: Any, known: dict[Any, OneRecording] | None = None, **named: Any) -> None:
+        """Prepare.
+
+        Args:
+            given: as of `Problem`.
+            known: what problems of the same parameters have found of which joints do not move, and that is found here.
+            named: as of `Problem`.
+        """
         super().__init__(*given, **named)
+        self._known_to_move: dict[Any, OneRecording] = {} if known is None else known
         rig = self.parameters.rig
         self._recordings = [OneRecording(rig, group) for group in recordings_of(self.experiments)]
         self._all_move = True
@@ -53,7 +60,7 @@ class ProblemTogether(Problem):
         self.evaluations += len(units)
         places = [self.parameters.records(unit) for unit in units]
         if self._all_move and places:
-            self._recordings = [recording.without_still(places[0]) for recording in self._recordings]
+            self._recordings = [self._moving(recording, places[0]) for recording in self._recordings]
             self._all_move = False
         parts: list[list[np.ndarray | None]] = [[] for _ in units]
         for i, recording in enumerate(self._recordings):
@@ -69,6 +76,14 @@ class ProblemTogether(Problem):
             for found, part in zip(parts, known, strict=True):
                 found.append(part)
         return [self.bounded([part for part in found if part is not None]) for found in parts]
+
+    def _moving(self, recording: OneRecording, records: np.ndarray) -> OneRecording:
+        """A recording without joints that do not move."""
+        times, experiments = recording.times, recording.group
+        key = (self.parameters.paths, *((e.name, e.joint) for e in experiments), float(times[-1]), times.size)
+        if key not in self._known_to_move:
+            self._known_to_move[key] = recording.without_still(records)
+        return self._known_to_move[key].of(experiments)
 
     def _known_of(self, i: int, records: np.ndarray) -> np.ndarray | None:
         """Residuals of a recording at the anchor, if the records of all joints that could move are those of there."""

@@ -1,5 +1,6 @@
 """A recording of joints that move together, to be rolled out with all of them at once."""
 
+import copy
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -111,6 +112,12 @@ class OneRecording:
             or np.any(done.signals["drawn"][:, i])
         ]
         return OneRecording(self._rig, self.group, kept)
+
+    def of(self, group: Sequence[Experiment]) -> "OneRecording":
+        """The same joints, for experiments of the same recording that are weighed otherwise."""
+        other = copy.copy(self)
+        other.group = tuple(group)
+        return other
 
     def signals_of(self, experiment: Experiment, done: Together) -> Signals:
         """What one of the joints did, at its own samples, which are among the times that were asked for."""

@@ -186,7 +186,8 @@ def stands_ahead(
     stands: list[list[tuple[tuple[Any, ...], np.ndarray]]] = []
     for h in hypotheses:
         own = []
-        for experiment in held_out:
+        for part in held_out:
+            experiment = part.split(np.ones_like(part.used))  # a lost command moves all that comes after it
             lost = windows_ahead(bench, h, experiment, step, settings, cores)
             effects: tuple[Any, ...] = tuple(
                 lost if lost is not None and isinstance(c, LostWindows) else c for c in h.effects

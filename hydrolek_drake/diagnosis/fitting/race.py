@@ -87,7 +87,7 @@ def race(
         bench.evaluations += sum(p.evaluations for p in problems.values())
         runners = [replace(r, place=place) for r, place in zip(runners, places, strict=True)]
         if rung is not rungs[0]:
-            runners = _beside(bench, runners, cores)
+            runners = tried_elsewhere(bench, runners, cores)
         seen(runners, rung)
         runners = sorted(runners, key=lambda r: r.place.objective)
         runners = _best_of_each(runners, 2 if rung is not rungs[-1] else 1)[: rung.keep]
@@ -98,7 +98,7 @@ STRIDES = (0.25, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 1.02, 1.05, 1.1, 1.25, 1.5, 2.0
 MOMENTS = 16
 
 
-def _beside(bench: Workbench, runners: Sequence[Runner], cores: int) -> list[Runner]:
+def tried_elsewhere(bench: Workbench, runners: Sequence[Runner], cores: int) -> list[Runner]:
     """The same with what has no slope tried elsewhere, and fitted on where that helped."""
     now = list(runners)
     most = max((len(r.effects) for r in runners), default=0)

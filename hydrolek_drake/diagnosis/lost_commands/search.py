@@ -8,7 +8,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.evidence.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
-from hydrolek_drake.diagnosis.fitting.race import Entrant, problem_with, race
+from hydrolek_drake.diagnosis.fitting.race import Entrant, Runner, problem_with, race, tried_elsewhere
 from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.lost_commands.seen import GAIN, REMEMBERS_S, lost_seen
@@ -97,13 +97,16 @@ def _seen_beside(
     known: dict[str, np.ndarray],
     experiments: tuple[Experiment, ...],
     cores: int,
+    *,
+    as_fitted: bool = False,
 ) -> LostWindows | None:
     """Windows that free rollouts ask for beside those of a structure; None for none."""
     now = replace(lost, seen=known)
     effects: tuple[Any, ...] = tuple(now if isinstance(c, LostWindows) else c for c in structure.effects)
     there = replace(structure, effects=effects, values={**structure.values, **now.begun()})
     own = bench.with_training(experiments)
-    return lost_seen(own, there, lost.input, lost.neutral, known, lost.span, cores)
+    values = there.values if as_fitted else None
+    return lost_seen(own, there, lost.input, lost.neutral, known, lost.span, cores, values)
 
 
 def windows_ahead(
@@ -135,13 +138,16 @@ def windows_ahead(
     rest = _without_windows(structure)
     now = replace(lost, seen={which: NONE})
     for _ in range(settings.lost_rounds):
-        more = _seen_beside(bench, structure, now, dict(now.seen), (experiment,), cores)
+        more = _seen_beside(bench, structure, now, dict(now.seen), (experiment,), cores, as_fitted=True)
         if more is None:
             break
         effects: tuple[Any, ...] = tuple(more if c is lost else c for c in structure.effects)
         problem = problem_with(bench, effects, step, [experiment])
         moving = np.array([".lost." in path for path in problem.parameters.paths])
-        [place] = descend([Place(problem, moving, problem.parameters.unit(rest))], 12, bench.pool, cores)
+        begun = Place(problem, moving, problem.parameters.unit(rest))
+        [led] = descend([begun], 12, bench.pool, cores)
+        [runner] = tried_elsewhere(bench, [Runner(effects, led)], cores)
+        place = runner.place
         windows = more.windows(problem.parameters.values(place.unit))
         now = replace(more, seen={which: joined(windows[which])})
     return now

@@ -44,6 +44,7 @@ def lost_seen(
     known: Mapping[str, Windows],
     span: Span,
     cores: int,
+    values: dict[str, float] | None = None,
 ) -> LostWindows | None:
     """Windows that explain most of a slow observer's innovations, beside those that are known.
 
@@ -58,12 +59,13 @@ def lost_seen(
         known: recording -> windows that the structure has.
         span: what laws of the joint are told in.
         cores: that roll out at the same time.
+        values: full path -> where the structure's parameters stand; None for where innovations are small.
 
     Returns:
         All windows; None where there are none beyond the known ones, or more of a recording would be lost than can be.
     """
-    values = near(bench, structure, REMEMBERS_S, cores)
-    [unknown] = unknown_inputs(bench, structure, values, [command], REMEMBERS_S, cores).unknowns
+    around = values or near(bench, structure, REMEMBERS_S, cores)
+    [unknown] = unknown_inputs(bench, structure, around, [command], REMEMBERS_S, cores).unknowns
     experiments = bench.training
     firsts = [0, *(np.flatnonzero(np.diff(unknown.times) < 0.0) + 1), unknown.times.size]
     missing = np.concatenate(

@@ -5,6 +5,8 @@ import threading
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor, wait
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +17,8 @@ from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.problem_together import ProblemTogether
+from hydrolek_drake.identification.recorded_together import OneRecording
 from hydrolek_drake.rigs import Rig
 
 SPREAD = 1.0 / math.sqrt(12.0)
@@ -95,6 +99,7 @@ class Workbench:
         self.pool = pool
         self._stopped = threading.Event()
         self.evaluations = 0
+        self._moving: dict[Any, OneRecording] = {}
         self._sets: dict[frozenset[Free], ParameterSet] = {}
 
     def with_training(self, training: Sequence[Experiment]) -> "Workbench":
@@ -154,6 +159,8 @@ class Workbench:
         prior[: len(self.nominal)] = SPREAD
         if kind is Problem and isinstance(parameters, WithWindows):
             kind = LostProblem
+        if kind is ProblemTogether:
+            kind = partial(ProblemTogether, known=self._moving)  # type: ignore[assignment]
         return kind(
             parameters,
             experiments or self.training,
