@@ -88,7 +88,10 @@ class Unknown:
         values, vectors = np.linalg.eigh(self.information)
         values = np.maximum(values, 0.0)
         turned = vectors.T @ self.pull
-        top = max(float(values[-1]), np.finfo(float).tiny)
+        nothing = Estimate(self, np.zeros_like(self.pull), np.zeros_like(self.pull), 0.0)
+        top = float(values[-1])
+        if not top > 0.0:  # a part that a recording stands for
+            return nothing
         best: tuple[float, float] = (0.0, 0.0)
         for variance in np.geomspace(1e-4, 1e6, 41) / top:
             gain = float(np.sum(turned**2 / (values + 1.0 / variance))) - float(
@@ -98,7 +101,7 @@ class Unknown:
                 best = (gain, variance)
         gain, variance = best
         if variance == 0.0:
-            return Estimate(self, np.zeros_like(self.pull), np.zeros_like(self.pull), 0.0)
+            return nothing
         course = -vectors @ (turned / (values + 1.0 / variance))
         deviation = np.sqrt(np.sum(vectors**2 / (values + 1.0 / variance), axis=1))
         return Estimate(self, course * self.input.scale, deviation * self.input.scale, gain)

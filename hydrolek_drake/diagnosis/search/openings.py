@@ -185,13 +185,17 @@ def _steps(rungs: Sequence[Rung], fine: bool) -> tuple[Rung, ...]:
 
 
 def _lessened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
-    """Backward elimination: the best structure without each of its additions, from where it led."""
+    """Backward elimination: the best structure without each of its additions, from where it led, and by continuation."""
     best = found.best
     entrants = [
         Entrant(best.without(c), {k: v for k, v in best.values.items() if not k.startswith(c.path + ".")})
         for c in best.effects
     ]
-    for each in race(bench, entrants, settings.free[-1:], cores) if entrants else ():
+    fitted = race(bench, entrants, settings.free[-1:], cores) if entrants else []
+    if len(entrants) > 1:  # fewer are structures that were fitted so before
+        own = [Entrant(each.effects, of_additions(each.values)) for each in entrants]
+        fitted += race(bench, own, _steps(settings.continued, best.fit.over_noise < FAR), cores)
+    for each in fitted:
         found.keep(each)
 
 
