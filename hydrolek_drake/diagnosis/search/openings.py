@@ -185,7 +185,7 @@ def _steps(rungs: Sequence[Rung], fine: bool) -> tuple[Rung, ...]:
 
 
 def _lessened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
-    """Backward elimination: the best structure without each of its additions, from where it led, and by continuation."""
+    """Backward elimination: the best structure without each addition, from where it led, and by continuation."""
     best = found.best
     entrants = [
         Entrant(best.without(c), {k: v for k, v in best.values.items() if not k.startswith(c.path + ".")})
