@@ -85,11 +85,11 @@ def _open(
 ) -> list[tuple[Hypothesis, str]]:
     """Structures that may be enlarged, and by what.
 
-    Each is enlarged by effects first, since a law can imitate most of them, and only the best one once it leaves
-    nothing above the noise.
+    A search that goes on from another one's structures begins at the best of these. Each is enlarged by effects first,
+    since a law can imitate most of them, and only the best one once it leaves nothing above the noise.
     """
     best = found.best
-    if (frozenset(), EFFECTS) not in done:
+    if (frozenset(), EFFECTS) not in done and not found.seeds:
         return [(found.baseline, EFFECTS)]
     if best.fit.over_noise <= ABOVE_NOISE:
         lawful = not all(isinstance(c, Candidate) for c in best.effects)
