@@ -66,8 +66,15 @@ class ParameterSet:
     in each parameter that follows it (`same_as`).
     """
 
-    def __init__(self, rig: Rig, free: Sequence[Free]) -> None:
+    def __init__(
+        self, rig: Rig, free: Sequence[Free], known: dict[Free, tuple[np.ndarray, np.ndarray]] | None = None
+    ) -> None:
         """Find where each parameter stands.
+
+        Args:
+            rig: the machine.
+            free: what is searched.
+            known: where parameters of this rig stand as far as it was found before, and that is found here.
 
         Raises:
             InputError: no such parameter, or one that does not reach the compiled physics.
@@ -76,10 +83,11 @@ class ParameterSet:
         self.free = tuple(free)
         self._base = rig.records()
         vectors = flat(self._base)
-        self._places: list[tuple[np.ndarray, np.ndarray]] = []
+        places = {} if known is None else known
         for parameter in self.free:
-            place = _places(rig, vectors, parameter)
-            self._places.append(place)
+            if parameter not in places:
+                places[parameter] = _places(rig, vectors, parameter)
+        self._places = [places[parameter] for parameter in self.free]
 
     def __len__(self) -> int:
         return len(self.free)

@@ -190,15 +190,22 @@ class LawTerm:
 class WithTerms(ParameterSet):
     """A rig's joint records as a function of searched parameters, those of terms of laws among them."""
 
-    def __init__(self, rig: Rig, free: Sequence[Free], terms: Sequence[LawTerm]) -> None:
+    def __init__(
+        self,
+        rig: Rig,
+        free: Sequence[Free],
+        terms: Sequence[LawTerm],
+        known: dict[Free, tuple[np.ndarray, np.ndarray]] | None = None,
+    ) -> None:
         """Find where each parameter stands.
 
         Args:
             rig: the machine.
             free: of the rig.
             terms: whose own parameters follow these.
+            known: as of `ParameterSet`.
         """
-        super().__init__(rig, free)
+        super().__init__(rig, free, known)
         self._of_rig = len(self.free)
         self.terms = tuple(terms)
         self.free = (*self.free, *(each for term in terms for each in term.free))

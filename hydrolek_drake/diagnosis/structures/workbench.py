@@ -99,6 +99,7 @@ class Workbench:
         self.pool = pool
         self._stopped = threading.Event()
         self.evaluations = 0
+        self._places: dict[Free, tuple[np.ndarray, np.ndarray]] = {}
         self._moving: dict[Any, OneRecording] = {}
         self._sets: dict[frozenset[Free], ParameterSet] = {}
 
@@ -138,9 +139,9 @@ class Workbench:
             lost = [c for c in effects if isinstance(c, LostWindows)]
             of_rig = [p for c in effects if not isinstance(c, LawTerm | LostWindows) for p in c.free]
             found = (
-                WithTerms(self.rig, [*self.nominal, *of_rig], terms)
+                WithTerms(self.rig, [*self.nominal, *of_rig], terms, self._places)
                 if terms
-                else ParameterSet(self.rig, [*self.nominal, *of_rig])
+                else ParameterSet(self.rig, [*self.nominal, *of_rig], self._places)
             )
             self._sets[key] = WithWindows(found, lost) if lost else found
         return self._sets[key]
