@@ -68,6 +68,8 @@ def _write_residuals(diagnosis: Diagnosis, folder: Path) -> None:
             without, enlarged = before(diagnosis, experiment), after(diagnosis, experiment)
             signals: dict[str, np.ndarray] = {f"{experiment.joint}.command": experiment.command_at_samples}
             units = {f"{experiment.joint}.command": "V"}
+            counts = f"{experiment.joint}.counts"  # in the errors that are told: of held-out data some blocks chose
+            signals[counts], units[counts] = experiment.used.astype(float), "1"
             for channel in experiment.channels:
                 told = {
                     "measured": channel.measured,
