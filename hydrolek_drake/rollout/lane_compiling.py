@@ -97,7 +97,8 @@ def _begin(
 
 def main() -> None:
     """Compile the loop for the joint whose record, and the law whose terms, are on standard input."""
-    from hydrolek_drake.rollout.lanes import roll_out_lanes
+    from hydrolek_drake.rollout.lane_kinds import kind_of
+    from hydrolek_drake.rollout.lanes import one_table
     from hydrolek_drake.rollout.run import Run
     from hydrolek_drake.rollout.together_lanes import compile_for
 
@@ -112,10 +113,10 @@ def main() -> None:
     step = 1e-3
     times = np.array([0.0, step])
     probes = (step, np.zeros((2, len(PROBES)))) if probed else None
-    run = Run(
-        joint, times, np.zeros(2), times, step, spool_steps, probes=probes, law=law if len(law) else None
-    )
-    roll_out_lanes([run], at_once=True)
+    every = law if len(law) else None  # that of the joint's own record is among them
+    kind = kind_of(joint, spool_steps, every, bool(probed))
+    one_table(kind, [Run(joint, times, np.zeros(2), times, step, spool_steps, probes=probes)], [every])
+    compiled(kind)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.physics.law import LAW, OTHERS, PLACES, SPEEDS, TIMES
+from hydrolek_drake.physics.law import LAW, OTHERS, PLACES, SPEEDS, TERM_NAMES, TIMES
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.physics.records import flat, position_of
 from hydrolek_drake.rigs import load_rig
@@ -19,7 +19,7 @@ from hydrolek_drake.rollout.lane_kinds import kind_of
 from hydrolek_drake.rollout.lane_view import LANES
 from hydrolek_drake.rollout.lanes import roll_out_lanes
 from hydrolek_drake.rollout.rest import rest_state_at_reading
-from hydrolek_drake.rollout.rollout import roll_out
+from hydrolek_drake.rollout.rollout import roll_out, with_own
 from hydrolek_drake.rollout.run import Run
 
 SIZES = json.loads((Path(__file__).parents[2] / "scripts" / "agreement_effects.json").read_text())
@@ -343,6 +343,20 @@ def test_until_a_loop_is_compiled_machines_go_one_by_one_and_nobody_waits(monkey
     assert not any(asked) and len(begun) == 1  # after 240 of them; not again while that runs
     (tmp_path / kind.name).touch()  # as the other process does when it is done
     assert lane_compiling.ready(kind, records[:1], None, 60, 1)
+
+
+@pytest.mark.long("a quarter of a minute: a process compiles a loop")
+def test_the_process_compiles_the_loop_that_was_asked_for(tmp_path):
+    """A law may stand in the record of its joint already."""
+    rig = load_rig("joint_bench")
+    records = rig.records()[:1].copy()
+    records["law"][TERM_NAMES[0]] = _law(np.random.default_rng(8), 1)
+    law = with_own(None, records)
+    kind = kind_of(records, 1, law)
+    mark = lane_compiling._mark(kind)
+    mark.unlink(missing_ok=True)
+    assert lane_compiling._begin(records, law, 1).wait(300) == 0
+    assert mark.exists()
 
 
 class _Running:

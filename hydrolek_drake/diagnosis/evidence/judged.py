@@ -1,8 +1,9 @@
 """Hypotheses held against data that nothing was fitted to, and how probable that makes each."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -36,6 +37,7 @@ class Judged:
         spread: log det (I + J S J').
         behind: log-density of the held-out data less than that of the most probable (`compared`).
         behind_error: standard error of that.
+        stands: recording (`windows.recording_of`) -> additions and place in the unit cube there (`nuisance`).
     """
 
     hypothesis: Hypothesis
@@ -46,6 +48,7 @@ class Judged:
     spread: float = 0.0
     behind: float = 0.0
     behind_error: float = math.nan
+    stands: Mapping[str, tuple[tuple[Any, ...], np.ndarray]] = field(default_factory=dict)
 
     @property
     def over_noise(self) -> float:

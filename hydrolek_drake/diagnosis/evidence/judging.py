@@ -12,19 +12,17 @@ alone stands for the first term.
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.compared import with_differences
 from hydrolek_drake.diagnosis.evidence.judged import SMALL, Judged, with_probabilities
+from hydrolek_drake.diagnosis.evidence.nuisance import own_of_recordings, with_stands
 from hydrolek_drake.diagnosis.evidence.predictive import NEARBY, OUT_OF_REACH, pays, predictive, predicts
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
 from hydrolek_drake.diagnosis.fitting.race import Entrant, problem_with, race
 from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
-from hydrolek_drake.diagnosis.laws.additions import LawTerm
-from hydrolek_drake.diagnosis.lost_commands.search import windows_ahead
-from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
+from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.search.tried import Tried
@@ -76,31 +74,35 @@ def _predicted(
 ) -> list[Judged]:
     """Structures with the density of the held-out data."""
     counted = sum(experiment.counted for experiment in held_out)
-    stands = stands_ahead(bench, hypotheses, held_out, step, settings, cores)
+    begun = [
+        with_stands(bench, Judged(h, np.zeros(0), counted), held_out, settings, cores) for h in hypotheses
+    ]
     places = []
-    for own in stands:
-        for experiment, (effects, unit) in zip(held_out, own, strict=True):
+    for own in begun:
+        for experiment in held_out:
+            effects, unit = own.stands[recording_of(experiment)]
             problem = problem_with(bench, effects, step, [experiment])
             places.append(Place(problem, bench.movable(effects, problem.parameters), unit, exact=True))
     told = iter(with_slopes(places, bench.pool, cores))
     judged, far = [], []
-    for h in hypotheses:
+    for own in begun:
+        h = own.hypothesis
         some = [next(told) for _ in held_out]
         residuals = np.concatenate([place.residuals for place in some])
         slopes = np.concatenate([_of_the_machine(place, h) for place in some])
         chi_squared, spread = predictive(residuals, slopes, h.fit)
-        one = Judged(h, residuals, counted, chi_squared=chi_squared, spread=spread)
+        one = replace(own, held_out=residuals, chi_squared=chi_squared, spread=spread)
         is_far = one.over_noise > SMALL or float(residuals @ residuals) - chi_squared > NEARBY
-        far.append(is_far and not _own_of_recordings(h).any())
+        far.append(is_far and not own_of_recordings(h).any())
         judged.append(one)
     chosen = [i for i, is_far in enumerate(far) if is_far]
     both = [*bench.training, *held_out]
-    begun = []
+    again = []
     for i in chosen:
         h = judged[i].hypothesis
         problem = problem_with(bench, h.effects, step, both)
-        begun.append(Place(problem, bench.movable(h.effects, problem.parameters), h.fit.unit))
-    for i, place in zip(chosen, descend(begun, 6, bench.pool, cores, stop=bench.alive), strict=True):
+        again.append(Place(problem, bench.movable(h.effects, problem.parameters), h.fit.unit))
+    for i, place in zip(chosen, descend(again, 6, bench.pool, cores, stop=bench.alive), strict=True):
         beyond = max(place.objective - judged[i].hypothesis.fit.objective, 0.0)
         judged[i] = replace(judged[i], chi_squared=beyond)
     return judged
@@ -122,14 +124,13 @@ def left_of(
         settings: of the search.
         cores: that roll out at the same time.
     """
-    hypotheses = [j.hypothesis for j in judged]
     step = settings.last.coarse * bench.fine
-    stands = stands_ahead(bench, hypotheses, held_out, step, settings, cores)
-    requests = [
-        Request(problem_with(bench, effects, step, [experiment]), (unit,))
-        for own in stands
-        for experiment, (effects, unit) in zip(held_out, own, strict=True)
-    ]
+    judged = [with_stands(bench, j, held_out, settings, cores) for j in judged]
+    requests = []
+    for own in judged:
+        for experiment in held_out:
+            effects, unit = own.stands[recording_of(experiment)]
+            requests.append(Request(problem_with(bench, effects, step, [experiment]), (unit,)))
     answers = iter(residuals_at(requests, bench.pool, cores))
     counted = sum(experiment.counted for experiment in held_out)
     told = tuple(
@@ -139,90 +140,13 @@ def left_of(
     return with_differences(told, held_out)
 
 
-PHASES = 12
-"""Where a periodic law may stand when a recording begins is first tried at so many places."""
-
-
-def _phases(hypothesis: Hypothesis) -> np.ndarray:
-    """Which parameters say where a periodic law stands when a recording begins. # (n,) truth values."""
-    periodic = [c for c in hypothesis.effects if isinstance(c, LawTerm) and c.term is None]
-    paths = {path for c in periodic for path in (c.size_path, f"{c.path}.cosine")}
-    return np.array([path in paths for path in hypothesis.values])
-
-
-def _own_of_recordings(hypothesis: Hypothesis) -> np.ndarray:
-    """Which parameters are no property of the machine: phases, and when commands got lost. # (n,) truth values."""
-    lost = np.array([".lost." in path for path in hypothesis.values])
-    return _phases(hypothesis) | lost
-
-
 def _of_the_machine(place: Place, hypothesis: Hypothesis) -> np.ndarray:
     """Slopes of held-out residuals; zero for parameters that were fitted to each recording. # (values, n)."""
     assert place.slopes is not None
     columns = {path: i for i, path in enumerate(place.problem.parameters.paths)}
-    own = _own_of_recordings(hypothesis)
+    own = own_of_recordings(hypothesis)
     slopes = np.zeros((len(place.slopes), own.size))
     for i, path in enumerate(hypothesis.values):
         if not own[i]:
             slopes[:, i] = place.slopes[:, columns[path]]
     return slopes
-
-
-def stands_ahead(
-    bench: Workbench,
-    hypotheses: Sequence[Hypothesis],
-    held_out: Sequence[Experiment],
-    step: float,
-    settings: Settings,
-    cores: int,
-) -> list[list[tuple[tuple[Any, ...], np.ndarray]]]:
-    """Where each structure stands in each held-out recording: as fitted, but for what is no property of the machine.
-
-    Such are where a disturbance stands in its cycle when a recording begins, and when commands got lost.
-
-    Returns:
-        Additions and places in the unit cube of each structure, one for each recording.
-    """
-    stands: list[list[tuple[tuple[Any, ...], np.ndarray]]] = []
-    for h in hypotheses:
-        own = []
-        for part in held_out:
-            experiment = part.split(np.ones_like(part.used))  # a lost command moves all that comes after it
-            lost = windows_ahead(bench, h, experiment, step, settings, cores)
-            effects: tuple[Any, ...] = tuple(
-                lost if lost is not None and isinstance(c, LostWindows) else c for c in h.effects
-            )
-            parameters = bench.parameters(effects)
-            rest = {path: value for path, value in h.values.items() if ".lost." not in path}
-            unit = parameters.unit(rest)
-            phases = _phases(h)
-            if phases.any():
-                unit = _in_phase(bench, effects, unit, experiment, step, cores)
-            own.append((effects, unit))
-        stands.append(own)
-    return stands
-
-
-def _in_phase(
-    bench: Workbench,
-    effects: tuple[Any, ...],
-    unit: np.ndarray,
-    experiment: Experiment,
-    step: float,
-    cores: int,
-) -> np.ndarray:
-    """Where a structure with a periodic law stands in a recording, its phase fitted to it. # (n,)."""
-    problem = problem_with(bench, effects, step, [experiment])
-    paths = list(problem.parameters.paths)
-    term = next(c for c in effects if isinstance(c, LawTerm) and c.term is None)
-    sine, cosine = paths.index(term.size_path), paths.index(f"{term.path}.cosine")
-    moving = np.isin(np.arange(len(paths)), (sine, cosine))
-    amplitude = np.hypot(unit[sine] - 0.5, unit[cosine] - 0.5)
-    begun = []
-    for angle in 2.0 * np.pi * np.arange(PHASES) / PHASES:
-        turned = unit.copy()
-        turned[sine], turned[cosine] = 0.5 + amplitude * np.cos(angle), 0.5 + amplitude * np.sin(angle)
-        begun.append(Place(problem, moving, turned))
-    first = sorted(descend(begun, 0, bench.pool, cores), key=lambda place: place.objective)[:2]
-    ended = descend(first, 6, bench.pool, cores, stop=bench.alive)
-    return min(ended, key=lambda place: place.objective).unit

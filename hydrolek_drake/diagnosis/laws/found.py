@@ -6,12 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.evidence.judging import stands_ahead
 from hydrolek_drake.diagnosis.evidence.noise import NOISE_KNOWN
+from hydrolek_drake.diagnosis.evidence.nuisance import with_stands
 from hydrolek_drake.diagnosis.intervals.curvature import intervals_of
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.laws.law import FRICTIONS, SCAN_S, FoundLaw, Law
 from hydrolek_drake.diagnosis.laws.terms import Term
+from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
 from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -62,7 +63,8 @@ def law_of(
     rest = [i for i in range(len(paths)) if i not in order]
     parameters = bench.parameters(h.effects)
     ahead = []
-    for effects, unit in stands_ahead(bench, [h], held_out, h.step, settings, cores)[0]:
+    stands = with_stands(bench, judged, held_out, settings, cores).stands
+    for effects, unit in (stands[recording_of(experiment)] for experiment in held_out):
         values = bench.parameters(effects).values(unit)
         ahead.append(np.array([values[paths[i]] for i in order]))
     experiment = next(e for e in bench.training if e.joint == first.joint)

@@ -8,7 +8,13 @@ from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.laws.inputs import Input, inputs_of
 from hydrolek_drake.diagnosis.laws.terms import Span, span_of
 from hydrolek_drake.diagnosis.locating.law_forms import STEADY, terms_seen
-from hydrolek_drake.diagnosis.locating.unknown_input import OBSERVER_S, Estimate, near, unknown_inputs
+from hydrolek_drake.diagnosis.locating.unknown_input import (
+    OBSERVER_S,
+    Estimate,
+    Slightly,
+    near,
+    unknown_inputs,
+)
 from hydrolek_drake.diagnosis.lost_commands.seen import lost_seen
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
@@ -41,7 +47,7 @@ def terms_for(
     has = {c.input.probe for c in parent.effects if isinstance(c, LawTerm)}
     inputs = tuple(each for each in inputs if not has or each.probe in has)
     values = near(bench, parent, OBSERVER_S, cores)
-    seen = unknown_inputs(bench, parent, values, inputs, OBSERVER_S, cores)
+    seen = unknown_inputs(bench, parent, values, [Slightly(i) for i in inputs], OBSERVER_S, cores)
     parameters = bench.parameters(parent.effects)
     record = parameters.records(parameters.unit(values))[bench.training[0].index]
     span = _span(bench, seen.signals, record, joint)
@@ -84,7 +90,7 @@ def estimates_for(
         scales: its natural scales.
         cores: that roll out at the same time.
     """
-    inputs = tuple(i for i in _inputs(bench, joint, scales) if i.probe not in STEADY)
+    inputs = [Slightly(i) for i in _inputs(bench, joint, scales) if i.probe not in STEADY]
     values = near(bench, nominal, OBSERVER_S, cores)
     seen = unknown_inputs(bench, nominal, values, inputs, OBSERVER_S, cores)
     return tuple(sorted((u.estimated() for u in seen.unknowns), key=lambda e: -e.evidence))

@@ -17,6 +17,7 @@ import math
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from typing import ClassVar, Protocol
 
 import numpy as np
 from scipy.sparse import csc_matrix
@@ -33,6 +34,7 @@ from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rollout.lane_view import LANES
 from hydrolek_drake.rollout.lanes import roll_out_lanes
 from hydrolek_drake.rollout.rollout import Signals
+from hydrolek_drake.rollout.run import Run
 
 SPACING_S = 0.05
 """Between knots [s]: a joint hardly follows what is faster."""
@@ -48,6 +50,54 @@ AMPLITUDE = 1e-3
 """Of a trial, in scales of the input: small enough to be linear."""
 
 
+class Trial(Protocol):
+    """How an input is moved at knots.
+
+    Attributes:
+        share: of the input's unit that is tried.
+        spacing_s: between knots [s].
+    """
+
+    share: ClassVar[float]
+    spacing_s: ClassVar[float]
+
+    @property
+    def input(self) -> Input:
+        """Where it enters, and as what."""
+        ...
+
+    def run(
+        self, experiment: Experiment, records: np.ndarray, step: float, pull: float | None, moved: np.ndarray
+    ) -> Run:
+        """The rollout of a recording in which it is moved.
+
+        Args:
+            experiment: the recording.
+            records: of the joints.
+            step: of the integration [s].
+            pull: time constant of the observer [s]; None for a free rollout.
+            moved: at which knots. # (k,) truth values
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class Slightly:
+    """An input that is moved so little that all answers to it are linear; its unit is its scale."""
+
+    input: Input
+    share: ClassVar[float] = AMPLITUDE
+    spacing_s: ClassVar[float] = SPACING_S
+
+    def run(
+        self, experiment: Experiment, records: np.ndarray, step: float, pull: float | None, moved: np.ndarray
+    ) -> Run:
+        """See `Trial`."""
+        rows = np.zeros((moved.size, len(PROBES)))
+        rows[moved, PROBES.index(self.input.probe)] = AMPLITUDE * self.input.scale
+        return experiment.run(records, step, (SPACING_S, rows), pull)
+
+
 @dataclass(frozen=True)
 class Unknown:
     """An unknown input and what the innovations tell of it.
@@ -55,7 +105,7 @@ class Unknown:
     Attributes:
         input: where it enters, and as what.
         times: knots of each recording one after the other [s]. # (k,)
-        information: N of the module, in scales of the input. # (k, k)
+        information: N of the module, in units of the trial. # (k, k)
         pull: A' r. # (k,)
         left: r' r of what the structure's own parameters do not undo.
     """
@@ -168,7 +218,7 @@ def unknown_inputs(
     bench: Workbench,
     parent: Hypothesis,
     values: dict[str, float],
-    inputs: Sequence[Input],
+    trials: Sequence[Trial],
     observer_s: float,
     cores: int,
 ) -> Seen:
@@ -178,7 +228,7 @@ def unknown_inputs(
         bench: data and problems.
         parent: the structure.
         values: full path -> where its parameters stand.
-        inputs: of the joint.
+        trials: inputs of the joint, as they are moved.
         observer_s: time constant of the observer [s]; infinite for free rollouts, of which each knot takes one.
         cores: that roll out at the same time.
     """
@@ -197,10 +247,10 @@ def unknown_inputs(
     here = _rolled([e.run(records, step, pull_time=pulled) for e in arrived], bench.pool)
     at_rest = [e.residuals(each) for e, each in zip(arrived, here, strict=True)]
     unknowns = []
-    for given in inputs:
+    for trial in trials:
         parts, times = [], []
         for experiment, still in zip(arrived, at_rest, strict=True):
-            columns, knots = _response(bench.pool, experiment, records, step, observer_s, given, still)
+            columns, knots = _response(bench.pool, experiment, records, step, observer_s, trial, still)
             parts.append(columns)
             times.append(knots)
         rows = np.cumsum([0, *(part.shape[0] for part in parts)])
@@ -215,7 +265,7 @@ def unknown_inputs(
             inner[:, own] = (part.T @ basis[first : first + part.shape[0]]).T
             at += part.shape[1]
         information -= inner.T @ inner
-        unknowns.append(Unknown(given, np.concatenate(times), information, pull, float(rest @ rest)))
+        unknowns.append(Unknown(trial.input, np.concatenate(times), information, pull, float(rest @ rest)))
     return Seen(tuple(unknowns), tuple(here))
 
 
@@ -231,26 +281,24 @@ def _response(
     records: np.ndarray,
     step: float,
     observer_s: float,
-    given: Input,
+    trial: Trial,
     still: np.ndarray,
 ) -> tuple[csc_matrix, np.ndarray]:
-    """How the innovations of a recording answer to each knot, in scales of the input, and the knots' times."""
-    time = experiment.time
-    count = int(np.ceil((time[-1] - time[0]) / SPACING_S)) + 1
-    apart = count + 1 if math.isinf(observer_s) else int(np.ceil(FORGOTTEN * observer_s / SPACING_S)) + 2
+    """How the innovations of a recording answer to each knot, in units of the trial, and the knots' times."""
+    time, spacing = experiment.time, trial.spacing_s
+    count = int(np.ceil((time[-1] - time[0]) / spacing)) + 1
+    apart = count + 1 if math.isinf(observer_s) else int(np.ceil(FORGOTTEN * observer_s / spacing)) + 2
     pull = None if math.isinf(observer_s) else observer_s
-    place = PROBES.index(given.probe)
-    runs = []
-    for first in range(min(apart, count)):
-        rows = np.zeros((count, len(PROBES)))
-        rows[first::apart, place] = AMPLITUDE * given.scale
-        runs.append(experiment.run(records, step, (SPACING_S, rows), pull))
+    runs = [
+        trial.run(experiment, records, step, pull, np.arange(count) % apart == first)
+        for first in range(min(apart, count))
+    ]
     answers = _rolled(runs, pool)
     channels, samples = len(experiment.channels), time.size
-    knot_of_sample = (time - time[0]) / SPACING_S
+    knot_of_sample = (time - time[0]) / spacing
     data, row_indices, pointers = [], [], [0]
     changes = [
-        np.nan_to_num((experiment.residuals(signals) - still) / AMPLITUDE).reshape(channels, samples)
+        np.nan_to_num((experiment.residuals(signals) - still) / trial.share).reshape(channels, samples)
         for signals in answers
     ]
     for knot in range(count):
@@ -264,4 +312,4 @@ def _response(
         (np.concatenate(data), np.concatenate(row_indices), np.array(pointers)),
         shape=(channels * samples, count),
     )
-    return matrix, time[0] + SPACING_S * np.arange(count)
+    return matrix, time[0] + spacing * np.arange(count)

@@ -7,12 +7,19 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged
+from hydrolek_drake.diagnosis.evidence.nuisance import with_stands
 from hydrolek_drake.diagnosis.intervals.curvature import intervals_of
 from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.laws.law import FoundLaw, Law
 from hydrolek_drake.diagnosis.laws.terms import Term
-from hydrolek_drake.diagnosis.lost_commands.search import lost_in, windows_ahead
-from hydrolek_drake.diagnosis.lost_commands.windows import LONGEST_S, Windows, arrivals, recording_of
+from hydrolek_drake.diagnosis.lost_commands.search import lost_in
+from hydrolek_drake.diagnosis.lost_commands.windows import (
+    LONGEST_S,
+    LostWindows,
+    Windows,
+    arrivals,
+    recording_of,
+)
 from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -89,12 +96,9 @@ def lost_of(
     lost = lost_in(h)
     assert lost is not None
     every = lost.windows(h.values)
-    for experiment in held_out:
-        which = recording_of(experiment)
-        if which not in every:
-            ahead = windows_ahead(bench, h, experiment, h.step, settings, cores)
-            assert ahead is not None
-            every[which] = ahead.seen[which]
+    for effects, unit in with_stands(bench, judged, held_out, settings, cores).stands.values():
+        ahead = next(c for c in effects if isinstance(c, LostWindows))
+        every |= ahead.windows(bench.parameters(effects).values(unit))
     parameters = bench.parameters(h.effects)
     records = parameters.records(h.fit.unit)
     first = next(e for e in bench.training if e.joint == lost.joint)

@@ -8,7 +8,14 @@ import numpy as np
 from hydrolek_drake.diagnosis.evidence.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
-from hydrolek_drake.diagnosis.fitting.race import Entrant, Runner, problem_with, race, tried_elsewhere
+from hydrolek_drake.diagnosis.fitting.race import (
+    Entrant,
+    Runner,
+    hypothesis_of,
+    problem_with,
+    race,
+    tried_elsewhere,
+)
 from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.lost_commands.seen import GAIN, REMEMBERS_S, lost_seen
@@ -52,15 +59,15 @@ def with_windows(
         effects: tuple[Any, ...] = (*parent.effects, now)
         begun = [Entrant(effects, own), Entrant(effects, values)]
         fitted = race(bench, begun, rungs, cores)[0]
-        needed = _needed(bench, fitted, now, cores)
+        fitted, needed = _needed(bench, fitted, now, settings, cores)
         fits.append(fitted)
         trace(f"    windows {list(map(len, needed.seen.values()))}: {fitted.fit.over_noise:.4f}")
-        known = needed.begun()
-        more = _seen_beside(bench, fitted, needed, needed.windows(known), bench.training, cores)
+        more = None
+        if fitted.fit.over_noise > AT_NOISE:
+            known = needed.windows(needed.begun())
+            more = _seen_beside(bench, fitted, needed, known, bench.training, cores)
         now, values = more or needed, _without_windows(fitted)
-        if more is None or fitted.fit.over_noise <= AT_NOISE:
-            effects = (*parent.effects, needed)
-            fits += race(bench, [Entrant(effects, values)], settings.free[-1:], cores)
+        if more is None:
             break
     return [fit for fit in fits if fit.fit.over_noise <= EXPLAINED]
 
@@ -70,24 +77,61 @@ def _without_windows(structure: Hypothesis) -> dict[str, float]:
     return {path: value for path, value in structure.values.items() if ".lost." not in path}
 
 
-def _needed(bench: Workbench, best: Hypothesis, lost: LostWindows, cores: int) -> LostWindows:
-    """Windows as fitted, without those that explain no more than chance does."""
+def _needed(
+    bench: Workbench, best: Hypothesis, lost: LostWindows, settings: Settings, cores: int
+) -> tuple[Hypothesis, LostWindows]:
+    """A structure without windows that explain no more than chance does, and its windows as fitted.
+
+    First those go that the rest as it stands can do without, then, the least needed first, those that it can do
+    without once it is fitted again (backward elimination).
+    """
     now = replace(lost, seen=lost.windows(best.values))
-    rest = _without_windows(best)
-    trials = [(recording, number) for recording, w in now.seen.items() for number in range(len(w))]
+    rises, at = _rises(bench, best, now, cores), 0
+    for recording, windows in lost.windows(best.values).items():
+        needed = rises[at : at + len(windows)] > _by_chance(best)
+        at += len(windows)
+        now = replace(now, seen={**now.seen, recording: joined(windows[needed])})
+    most = best.fit.chi_squared + _by_chance(best)
+    while trials := [_exchanged(best, now.without(*which)) for which in _each(now)]:
+        problems = [problem_with(bench, effects, best.step, bench.training) for effects in trials]
+        values = _without_windows(best)
+        begun = [
+            Place(p, bench.movable(e, p.parameters), p.parameters.unit(values))
+            for p, e in zip(problems, trials, strict=True)
+        ]
+        ended = descend(begun, settings.free[-1].rounds, bench.pool, cores, stop=bench.alive)
+        place, effects = min(zip(ended, trials, strict=True), key=lambda each: each[0].objective)
+        if place.objective > most:
+            break
+        best = hypothesis_of(effects, place, best.step)
+        now = next(c for c in effects if isinstance(c, LostWindows))
+        now = replace(now, seen={r: joined(w) for r, w in now.windows(best.values).items()})
+    return best, now
+
+
+def _each(lost: LostWindows) -> list[tuple[str, int]]:
+    """Recording and number of each window."""
+    return [(recording, number) for recording, w in lost.seen.items() for number in range(len(w))]
+
+
+def _exchanged(structure: Hypothesis, other: LostWindows) -> tuple[Any, ...]:
+    """Additions of a structure with other windows."""
+    return tuple(other if isinstance(c, LostWindows) else c for c in structure.effects)
+
+
+def _by_chance(structure: Hypothesis) -> float:
+    """Fall of the squares that a window may promise by chance."""
+    return GAIN * max(structure.fit.chi_squared / max(structure.fit.counted, 1), 1.0)
+
+
+def _rises(bench: Workbench, best: Hypothesis, now: LostWindows, cores: int) -> np.ndarray:
+    """By how much the squares rise without each window, with all else as it stands. # (k,)."""
     requests = []
-    for recording, number in trials:
-        effects: tuple[Any, ...] = tuple(
-            now.without(recording, number) if c is lost else c for c in best.effects
-        )
-        problem = problem_with(bench, effects, best.step, bench.training)
-        requests.append(Request(problem, (problem.parameters.unit(rest),)))
+    for which in _each(now):
+        problem = problem_with(bench, _exchanged(best, now.without(*which)), best.step, bench.training)
+        requests.append(Request(problem, (problem.parameters.unit(_without_windows(best)),)))
     answers = residuals_at(requests, bench.pool, cores)
-    most = best.fit.chi_squared + GAIN * max(best.fit.chi_squared / max(best.fit.counted, 1), 1.0)
-    kept = {recording: np.ones(len(w), dtype=bool) for recording, w in now.seen.items()}
-    for (recording, number), (residuals,) in zip(trials, answers, strict=True):
-        kept[recording][number] = float(residuals @ residuals) > most
-    return replace(now, seen={recording: joined(w[kept[recording]]) for recording, w in now.seen.items()})
+    return np.array([float(r @ r) for (r,) in answers]) - best.fit.chi_squared
 
 
 def _seen_beside(
@@ -102,7 +146,7 @@ def _seen_beside(
 ) -> LostWindows | None:
     """Windows that free rollouts ask for beside those of a structure; None for none."""
     now = replace(lost, seen=known)
-    effects: tuple[Any, ...] = tuple(now if isinstance(c, LostWindows) else c for c in structure.effects)
+    effects = _exchanged(structure, now)
     there = replace(structure, effects=effects, values={**structure.values, **now.begun()})
     own = bench.with_training(experiments)
     values = there.values if as_fitted else None
@@ -150,4 +194,8 @@ def windows_ahead(
         place = runner.place
         windows = more.windows(problem.parameters.values(place.unit))
         now = replace(more, seen={which: joined(windows[which])})
+        left = place.objective / max(experiment.counted, 1)
+        trace(f"    windows ahead {now.seen[which].round(3).tolist()}: {left**0.5:.4f}")
+        if left**0.5 <= AT_NOISE:
+            break
     return now

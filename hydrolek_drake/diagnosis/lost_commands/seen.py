@@ -1,12 +1,14 @@
 """Windows in which commands may have got lost, read from the unknown input that is added to the command."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.laws.terms import Span
-from hydrolek_drake.diagnosis.locating.unknown_input import SPACING_S, Unknown, near, unknown_inputs
+from hydrolek_drake.diagnosis.locating.unknown_input import Unknown, near, unknown_inputs
 from hydrolek_drake.diagnosis.lost_commands.windows import (
     LONGEST_S,
     NONE,
@@ -20,9 +22,13 @@ from hydrolek_drake.diagnosis.lost_commands.windows import (
 )
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.rollout.run import Run
 
-WINDOWS = (0, 1, 2, 4)
-"""Spacings of the knots that a window spans beyond the two slopes at its ends: from 0.05 to 0.25 s."""
+KNOTS_S = 0.02
+"""Between knots [s]: about one sample of a controller."""
+
+WIDEST = 15
+"""A window is tried over so many spacings of knots at most."""
 
 GAIN = 25.0
 """Fall of the squares, over what is left of each value on average, that a window must promise: five standard
@@ -34,6 +40,24 @@ good: a fast observer forgets it before it can be told from noise."""
 
 WHOLE = 1.2
 """Multiple of a command that may be missing: there is no more in it to be lost but for the observer's own error."""
+
+
+@dataclass(frozen=True)
+class Lost:
+    """A command that is lost from a knot to the next: the valve answers to all of it, which no small input tells."""
+
+    input: Input
+    neutral: float
+    share: ClassVar[float] = 1.0
+    spacing_s: ClassVar[float] = KNOTS_S
+
+    def run(
+        self, experiment: Experiment, records: np.ndarray, step: float, pull: float | None, moved: np.ndarray
+    ) -> Run:
+        """See `unknown_input.Trial`."""
+        begins = experiment.time[0] + KNOTS_S * np.flatnonzero(moved)
+        windows = np.stack([begins, begins + KNOTS_S], axis=1)
+        return experiment.without_command(windows, self.neutral).run(records, step, pull_time=pull)
 
 
 def lost_seen(
@@ -65,25 +89,20 @@ def lost_seen(
         All windows; None where there are none beyond the known ones, or more of a recording would be lost than can be.
     """
     around = values or near(bench, structure, REMEMBERS_S, cores)
-    [unknown] = unknown_inputs(bench, structure, around, [command], REMEMBERS_S, cores).unknowns
+    trials = [Lost(command, neutral)]
+    [unknown] = unknown_inputs(bench, structure, around, trials, REMEMBERS_S, cores).unknowns
     experiments = bench.training
     firsts = [0, *(np.flatnonzero(np.diff(unknown.times) < 0.0) + 1), unknown.times.size]
-    missing = np.concatenate(
-        [
-            neutral - _command_at(experiment, unknown.times[a:b])
-            for experiment, a, b in zip(experiments, firsts[:-1], firsts[1:], strict=True)
-        ]
-    )
     counted = sum(e.counted for e in experiments)
-    chosen, taken = _picked(unknown, missing / command.scale, counted)
+    chosen, taken = _picked(unknown, counted)
     share = min(taken / max(unknown.left - counted, 1.0), 1.0)
     seen = {}
     for experiment, first, last in zip(experiments, firsts[:-1], firsts[1:], strict=True):
         own = []
         for knot, spacings, multiple in chosen:
             if first <= knot < last:
-                length = min(multiple * (spacings + 1) * SPACING_S, LONGEST_S)
-                middle = float(unknown.times[knot]) + 0.5 * spacings * SPACING_S
+                length = min(multiple * spacings * KNOTS_S, LONGEST_S)
+                middle = float(unknown.times[knot]) + 0.5 * spacings * KNOTS_S
                 own.append((middle - 0.5 * length, middle + 0.5 * length))
         before = known.get(recording_of(experiment), NONE)
         seen[recording_of(experiment)] = joined(in_order(before, np.array(sorted(own)).reshape(-1, 2)))
@@ -94,25 +113,21 @@ def lost_seen(
     return LostWindows(experiments[0].joint, command, neutral, seen, span, share)
 
 
-def _picked(
-    unknown: Unknown, missing: np.ndarray, counted: int
-) -> tuple[list[tuple[int, int, float]], float]:
-    """Windows that promise most: first knot, spacings, and how much of the command they take; and what all promise."""
-    size = missing.size
-    knots = np.arange(size)[:, None]
-    courses = np.concatenate(
-        [
-            np.where((knots >= knots.T) & (knots <= knots.T + length), missing[:, None], 0.0)
-            for length in WINDOWS
-        ],
-        axis=1,
-    )
-    changes = unknown.information @ courses
-    powers = np.maximum(np.einsum("ik,ik->k", courses, changes), np.finfo(float).tiny)
+def _picked(unknown: Unknown, counted: int) -> tuple[list[tuple[int, int, float]], float]:
+    """Windows that promise most: first knot, spacings, and which share of them is lost; and what all promise."""
+    size = unknown.times.size
+    firsts, spacings = (grid.ravel() for grid in np.meshgrid(np.arange(size), np.arange(1, WIDEST + 1)))
+    inside = firsts + spacings <= size
+    firsts, spacings = firsts[inside], spacings[inside]
+    ends = firsts + spacings
+    sums = np.pad(unknown.information.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
+    powers = sums[ends, ends] - sums[firsts, ends] - sums[ends, firsts] + sums[firsts, firsts]
+    powers = np.maximum(powers, np.finfo(float).tiny)
     pull, left = unknown.pull.copy(), unknown.left
     chosen: dict[int, float] = {}
     for _ in range(size):
-        along = -(courses.T @ pull)
+        sum_of_pull = np.concatenate([[0.0], pull.cumsum()])
+        along = sum_of_pull[firsts] - sum_of_pull[ends]
         multiples = np.clip(along / powers, 0.0, WHOLE)
         gains = multiples * (2.0 * along - multiples * powers)
         gains[list(chosen)] = 0.0
@@ -120,18 +135,12 @@ def _picked(
         if gains[best] < GAIN * max(left / max(counted, 1), 1.0):
             break
         chosen[best] = float(multiples[best])
-        pull = pull + changes[:, best] * multiples[best]
+        own = slice(firsts[best], ends[best])
+        pull = pull + unknown.information[:, own].sum(axis=1) * multiples[best]
         left -= float(gains[best])
-    shortest = SHORTEST_S / SPACING_S
     windows = [
-        (which % size, WINDOWS[which // size], multiple)
+        (int(firsts[which]), int(spacings[which]), multiple)
         for which, multiple in chosen.items()
-        if multiple > shortest
+        if multiple * KNOTS_S > SHORTEST_S
     ]
     return windows, unknown.left - left
-
-
-def _command_at(experiment: Experiment, times: np.ndarray) -> np.ndarray:
-    """The command in force at some times [V]."""
-    held = np.searchsorted(experiment.command_times, times, side="right") - 1
-    return np.asarray(experiment.command[np.maximum(held, 0)])

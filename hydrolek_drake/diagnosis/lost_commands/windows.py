@@ -29,7 +29,7 @@ MOVES_S = 0.3
 SHORTEST_S = 1e-3
 """Shorter windows are no time that a rollout resolves."""
 
-TOUCHING_S = 0.01
+TOUCHING_S = 0.02
 """Windows that lie no farther apart than about one sample of a controller are one."""
 
 MOST_SHARE = 0.1
