@@ -4,8 +4,9 @@ Jamieson and Talwalkar, Non-stochastic best arm identification and hyperparamete
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -22,6 +23,28 @@ from hydrolek_drake.identification.problem_together import ProblemTogether
 EDGE = 1e-6
 
 
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Where a structure stands that is enlarged: its slopes lead the fits of all that begin there.
+
+    Attributes:
+        effects: of the structure.
+        values: full path -> value; what is not named is at the rig's own.
+    """
+
+    effects: tuple[Candidate, ...]
+    values: dict[str, float]
+
+    def with_addition(self, addition: Any, values: Mapping[str, float]) -> "Entrant":
+        """The structure with one addition.
+
+        Args:
+            addition: an effect or a term of a law.
+            values: full path -> value of its own parameters.
+        """
+        return Entrant((*self.effects, addition), {**self.values, **values}, self)
+
+
 @dataclass(frozen=True)
 class Entrant:
     """A structure and where its fit begins.
@@ -29,12 +52,12 @@ class Entrant:
     Attributes:
         effects: what is added to the nominal model.
         values: full path -> start; what is not named starts at the rig's own value.
-        parent: a structure whose fit ended where this one begins, and whose slopes lead it at first; None for none.
+        start: whose slopes lead it at first; None for its own.
     """
 
     effects: tuple[Candidate, ...]
     values: dict[str, float]
-    parent: Hypothesis | None = None
+    start: Start | None = None
 
 
 @dataclass(frozen=True)
@@ -81,7 +104,7 @@ def race(
             rung.rounds,
             bench.pool,
             cores,
-            share=1e-4 if last else 3e-3,
+            share=1e-4 if last else 5e-4,
             stop=bench.alive,
         )
         bench.evaluations += sum(p.evaluations for p in problems.values())
@@ -137,19 +160,20 @@ def _ways(runner: Runner, number: int) -> list[Along]:
 def _led(
     bench: Workbench, entrants: Sequence[Entrant], begun: Sequence[Place], rung: Rung, cores: int
 ) -> list[Place]:
-    """The same places with the slopes of their parents, which are as good as their own near where these ended."""
-    parents = {e.parent.ids: e.parent for e in entrants if e.parent is not None}
-    places = {}
-    for key, parent in parents.items():
-        problem = problem_of(bench, parent.effects, rung)
-        place = Place(problem, bench.movable(parent.effects, problem.parameters), parent.fit.unit)
-        places[key] = with_slopes([place], bench.pool, cores)[0]
+    """The same places with the slopes where they start, which are nearly their own."""
+    starts = list(dict.fromkeys(e.start for e in entrants if e.start is not None))
+    places = []
+    for start in starts:
+        problem = problem_of(bench, start.effects, rung)
+        moving = bench.movable(start.effects, problem.parameters)
+        places.append(Place(problem, moving, _inside(problem.parameters.unit(start.values), moving)))
+    known_at = dict(zip(starts, with_slopes(places, bench.pool, cores), strict=True))
     led = []
     for entrant, place in zip(entrants, begun, strict=True):
-        if entrant.parent is None:
+        if entrant.start is None:
             led.append(place)
             continue
-        known = places[entrant.parent.ids]
+        known = known_at[entrant.start]
         assert known.slopes is not None
         slopes = np.full((len(known.slopes), place.unit.size), np.nan)
         paths = list(place.problem.parameters.paths)
@@ -158,6 +182,11 @@ def _led(
                 slopes[:, paths.index(path)] = known.slopes[:, column]
         led.append(replace(place, slopes=slopes))
     return led
+
+
+def _inside(unit: np.ndarray, moving: np.ndarray) -> np.ndarray:
+    """A place a little within the ranges, from where steps to both sides can be made."""
+    return np.where(moving, np.clip(unit, EDGE, 1.0 - EDGE), unit)
 
 
 def _best_of_each(runners: Sequence[Runner], count: int) -> list[Runner]:
@@ -201,9 +230,9 @@ def problem_with(
 def _begun(bench: Workbench, entrant: Entrant) -> Runner:
     problem = problem_with(bench, entrant.effects, bench.fine, bench.training)
     moving = bench.movable(entrant.effects, problem.parameters)
-    unit = problem.parameters.unit(entrant.values)
-    unit[moving] = np.clip(unit[moving], EDGE, 1.0 - EDGE)
-    return Runner(entrant.effects, Place(problem, moving, unit))
+    return Runner(
+        entrant.effects, Place(problem, moving, _inside(problem.parameters.unit(entrant.values), moving))
+    )
 
 
 def hypothesis_of(effects: tuple[Candidate, ...], place: Place, step: float) -> Hypothesis:

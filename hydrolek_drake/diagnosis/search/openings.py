@@ -9,7 +9,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
-from hydrolek_drake.diagnosis.fitting.race import Entrant, Runner, problem_of, race
+from hydrolek_drake.diagnosis.fitting.race import Entrant, Runner, Start, problem_of, race
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.lost_commands.search import with_windows
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
@@ -144,8 +144,9 @@ def enlarged(
     parent = opening.parent
     needed = gain_needed(parent.fit)
     near = parent.fit.over_noise <= ABOVE_NOISE
+    fitted, own = Start(parent.effects, parent.values), Start(parent.effects, opening.sizes)
     free = [
-        Entrant((*parent.effects, p.candidate), {**parent.values, **start}, parent)
+        fitted.with_addition(p.candidate, start)
         for number, p in enumerate(opening.free[: settings.entrants])
         if not near or p.gain > PROMISING * needed
         for start in p.starts[: settings.starts if number < settings.doubled else 1]
@@ -160,9 +161,10 @@ def enlarged(
     reached = min([parent, *ended], key=lambda h: h.fit.objective).fit.over_noise
     if reached > AT_NOISE and opening.pulled:
         entrants = [
-            Entrant((*parent.effects, p.candidate), {**opening.sizes, **start})
+            begun.with_addition(p.candidate, start)
             for p in opening.pulled[: settings.entrants]
             for start in p.starts[:1]
+            for begun in (own, fitted)
         ]
         ended += race(bench, entrants, _steps(settings.continued, fine), cores, _traced("observed"))
     for each in ended:
@@ -187,6 +189,9 @@ def _steps(rungs: Sequence[Rung], fine: bool) -> tuple[Rung, ...]:
 def _lessened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
     """Backward elimination: the best structure without each addition, from where it led, and by continuation."""
     best = found.best
+    if best is found.lessened:
+        return
+    found.lessened = best
     entrants = [
         Entrant(best.without(c), {k: v for k, v in best.values.items() if not k.startswith(c.path + ".")})
         for c in best.effects

@@ -40,26 +40,26 @@ class Settings:
     """So many of them from more than one start."""
 
     free: tuple[Rung, ...] = (
-        Rung(math.inf, 2.0, 20.0, 4, 8),
-        Rung(math.inf, 2.0, math.inf, 4, 4),
-        Rung(math.inf, 1.0, math.inf, 8, 3),
+        Rung(math.inf, 2.0, 20.0, 5, 8),
+        Rung(math.inf, 2.0, math.inf, 12, 4),
+        Rung(math.inf, 1.0, math.inf, 32, 3),
     )
     """A race of free rollouts, from where the structure before it led."""
 
     continued: tuple[Rung, ...] = (
-        Rung(0.1, 2.0, 20.0, 3, 10),
-        Rung(0.5, 2.0, math.inf, 3, 6),
-        Rung(3.0, 2.0, math.inf, 4, 4),
-        Rung(math.inf, 1.0, math.inf, 8, 3),
+        Rung(0.1, 2.0, 20.0, 4, 12),
+        Rung(0.5, 2.0, math.inf, 8, 8),
+        Rung(3.0, 2.0, math.inf, 12, 4),
+        Rung(math.inf, 1.0, math.inf, 32, 3),
     )
     """A race by continuation, from the rig's own numbers: prediction errors of an observer forget, so that they have
     few local minima (Ljung, System Identification, 1999, chapter 7); free rollouts see what is slow."""
 
     nominal: tuple[Rung, ...] = (
-        Rung(0.1, 2.0, math.inf, 4, 4),
-        Rung(0.5, 2.0, math.inf, 4, 4),
-        Rung(3.0, 1.0, math.inf, 6, 4),
-        Rung(math.inf, 1.0, math.inf, 10, 1),
+        Rung(0.1, 2.0, math.inf, 8, 4),
+        Rung(0.5, 2.0, math.inf, 8, 4),
+        Rung(3.0, 1.0, math.inf, 12, 4),
+        Rung(math.inf, 1.0, math.inf, 32, 1),
     )
     """The nominal model by continuation, to the end."""
 

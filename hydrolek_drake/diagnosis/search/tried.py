@@ -18,6 +18,7 @@ class Tried:
         weighed_at: what the structure left, over the noise, by which the data are weighed.
         costs: of the best structure after each round.
         seeds: structures fitted to other data, from where fits begin too.
+        lessened: the structure that was fitted without each of its additions last.
     """
 
     hypotheses: dict[frozenset[str], Hypothesis] = field(default_factory=dict)
@@ -26,6 +27,7 @@ class Tried:
     weighed_at: float = 0.0
     costs: list[float] = field(default_factory=list)
     seeds: list[Hypothesis] = field(default_factory=list)
+    lessened: Hypothesis | None = None
 
     def keep(self, hypothesis: Hypothesis) -> None:
         """Remember it if it is the best fit of its structure."""
