@@ -18,7 +18,7 @@ from hydrolek_drake.diagnosis.search.promise import Promise, promises_at
 from hydrolek_drake.diagnosis.search.settings import Rung, Settings
 from hydrolek_drake.diagnosis.search.tracing import trace
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.structures.candidates import Candidate, redundant, widenings
+from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, redundant, widenings
 from hydrolek_drake.diagnosis.structures.ranges import widened
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
@@ -173,7 +173,7 @@ def enlarged(
         for each in with_windows(bench, parent, opening.lost, settings, cores):
             found.keep(each)
     _widened(bench, found, settings, cores)
-    _lessened(bench, found, settings, cores)
+    _lessened(bench, found, candidates, settings, cores)
 
 
 def _place(bench: Workbench, structure: Hypothesis, rung: Rung, unit: np.ndarray) -> Place:
@@ -186,8 +186,13 @@ def _steps(rungs: Sequence[Rung], fine: bool) -> tuple[Rung, ...]:
     return tuple(replace(rung, coarse=1.0) for rung in rungs) if fine else tuple(rungs)
 
 
-def _lessened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
-    """Backward elimination: the best structure without each addition, from where it led, and by continuation."""
+def _lessened(
+    bench: Workbench, found: Tried, candidates: Sequence[Candidate], settings: Settings, cores: int
+) -> None:
+    """Backward elimination: the best structure without each addition, and with a special case in its place.
+
+    Each is fitted from where the best structure led, and by continuation.
+    """
     best = found.best
     if best is found.lessened:
         return
@@ -196,8 +201,16 @@ def _lessened(bench: Workbench, found: Tried, settings: Settings, cores: int) ->
         Entrant(best.without(c), {k: v for k, v in best.values.items() if not k.startswith(c.path + ".")})
         for c in best.effects
     ]
-    fitted = race(bench, entrants, settings.free[-1:], cores) if entrants else []
-    if len(entrants) > 1:  # fewer are structures that were fitted so before
+    entrants += [
+        Entrant(
+            effects, {**{k: v for k, v in best.values.items() if not k.startswith(c.path + ".")}, **start}
+        )
+        for c, special, effects in narrowings(best.effects, candidates)
+        for start in special.starts[:2]
+    ]
+    rung = replace(settings.free[-1], keep=len(entrants))
+    fitted = race(bench, entrants, (rung,), cores) if entrants else []
+    if len(best.effects) > 1:  # fewer are structures that were fitted so before
         own = [Entrant(each.effects, of_additions(each.values)) for each in entrants]
         fitted += race(bench, own, _steps(settings.continued, best.fit.over_noise < FAR), cores)
     for each in fitted:

@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
@@ -154,15 +154,30 @@ def _candidate(effect: Effect, rig: Rig, joint: str, scales: Scales) -> Candidat
     )
 
 
-def widenings(
-    effects: Sequence[Candidate], candidates: Sequence[Candidate]
-) -> list[tuple[Candidate, Candidate, tuple[Candidate, ...]]]:
-    """Each effect that another one contains, that other one, and the effects with it in its place at the end."""
+Exchange = tuple[Candidate, Candidate, tuple[Candidate, ...]]
+"""An effect, the one in its place, and all effects with that one at the end."""
+
+
+def widenings(effects: Sequence[Candidate], candidates: Sequence[Candidate]) -> list[Exchange]:
+    """Each effect that another one contains, with that other one in its place."""
+    return _exchanges(effects, candidates, lambda own, other: own.is_special_case_of(other))
+
+
+def narrowings(effects: Sequence[Candidate], candidates: Sequence[Candidate]) -> list[Exchange]:
+    """Each effect that contains another one, with that special case in its place."""
+    return _exchanges(effects, candidates, lambda own, other: other.is_special_case_of(own))
+
+
+def _exchanges(
+    effects: Sequence[Candidate],
+    candidates: Sequence[Candidate],
+    may: Callable[[Candidate, Candidate], bool],
+) -> list[Exchange]:
     return [
-        (effect, wider, (*(other for other in effects if other is not effect), wider))
+        (effect, other, (*(rest for rest in effects if rest is not effect), other))
         for effect in effects
-        for wider in candidates
-        if effect.is_special_case_of(wider)
+        for other in candidates
+        if may(effect, other)
     ]
 
 
