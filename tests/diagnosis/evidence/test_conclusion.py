@@ -62,6 +62,12 @@ def test_what_no_effect_explains_is_unlisted(effect) -> None:
     )
 
 
+def test_a_nominal_model_that_does_not_predict_is_not_called_complete() -> None:
+    """The noise is known to 1 to 2 %: what is left far above it on data that nothing was chosen by is something."""
+    assert conclude(with_probabilities([_judged((), 0.99, ahead=1.05)])).verdict == "none"
+    assert conclude(with_probabilities([_judged((), 0.99, ahead=1.2)])).verdict == "unlisted_physics"
+
+
 def test_what_does_not_predict_better_is_not_named(effect) -> None:
     """However much better it fits the training data: improvement counts on held-out data."""
     leak, gap = effect["cylinder.cross_port_leakage"], effect["linkage.backlash"]
