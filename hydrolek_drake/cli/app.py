@@ -55,6 +55,12 @@ COMMANDS: dict[str, CommandEntry] = {
     "rig": CommandEntry(
         "hydrolek_drake.cli.rig", "rig", "a new rig from a data sheet, or what is implausible about one"
     ),
+    "export": CommandEntry(
+        "hydrolek_drake.cli.export", "export", "a rig's model as an FMU, for other programs' simulations"
+    ),
+    "fmu": CommandEntry(
+        "hydrolek_drake.cli.fmu", "fmu", "other programs' FMUs in place of a machine: show, or record one"
+    ),
     "ik": CommandEntry("hydrolek_drake.cli.ik", "ik", "joint angles for a target, or what prevents it"),
     "stand": CommandEntry(
         "hydrolek_drake.cli.stand", "stand", "where to stand so that a pipe can be grasped and cut"

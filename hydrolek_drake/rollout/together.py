@@ -113,6 +113,7 @@ class RunTogether:
             self.links,
             scratch(len(self.links)),
             *(self.recorded or (1.0, None)),
+            0.0,
             told,
         )
         return self.told(told, done)

@@ -164,6 +164,7 @@ def integrate_together(
     scratch: np.ndarray,
     spacing: float,
     recorded: np.ndarray | None,
+    since: float,
     out: np.ndarray,
 ) -> int:
     """Integrate joints through their commands and write their signals at `times`.
@@ -177,16 +178,17 @@ def integrate_together(
         matrices: those of `room`.
         command_times: when commands change [s], shape (m,).
         command_values: held from then on [V], shape (m, n); neutral before the first one has arrived.
-        times: when to write [s], shape (k,); the integration starts at the first, when the machine is switched on.
+        times: when to write [s], shape (k,); the integration starts at the first.
         longest_step: [s].
         spool_steps: spool steps within one step.
         laws: rows of `law.LAW` of all joints, joint after joint, or None.
         first: which of them is a joint's first one, and their number at the end, shape (n + 1,).
         links: of the arms that the joints turn, in their order, or without rows.
         scratch: of `serial_arm`, for as many.
-        spacing: of the samples of what was recorded, from the first of `times` on [s].
+        spacing: of the samples of what was recorded, from switching on [s].
         recorded: what drives joints in place of a part of them, `PROBES` at the places of `driven.INPUTS`, shape
             (n, samples, 15); None for nothing.
+        since: time since switching on at the first of `times` [s].
         out: `TOLD`, shape (k, n, 9).
 
     Returns:
@@ -198,8 +200,8 @@ def integrate_together(
     for i in range(n):
         r[i, ROD] = load.reflected_rod_inertia(joints[i])
         delays[i] = command.transport_delay(joints[i])
-    on = times[0]
-    t = on
+    t = times[0]
+    on = t - since
     for row in range(len(times)):
         target = times[row]
         for i in range(n):
