@@ -17,7 +17,9 @@ def export(
         typer.Option(help="a joint that is commanded, again for more; all of the rig by default"),
     ] = None,
     fmi: Annotated[int, typer.Option(help="version of FMI: 2 or 3")] = 2,
-    step: Annotated[float, typer.Option(help="communication step that is suggested to simulators [s]")] = 0.01,
+    step: Annotated[
+        float, typer.Option(help="communication step that is suggested to simulators [s]")
+    ] = 0.01,
     stop: Annotated[float, typer.Option(help="when simulators end unless told otherwise [s]")] = 10.0,
     set_: SetOption = None,
 ) -> None:

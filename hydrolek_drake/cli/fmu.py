@@ -27,11 +27,8 @@ def show(
     inputs, outputs = wired(unit, {}, {})
     known = {wire.variable: wire.key for wire in (*inputs, *outputs)}
     output = console()
-    output.print(
-        f"{unit.name}: FMI {unit.fmi}, by {unit.tool or 'an unknown tool'}, for {', '.join(unit.platforms) or 'no platform'}",
-        markup=False,
-        soft_wrap=True,
-    )
+    by, platforms = unit.tool or "an unknown tool", ", ".join(unit.platforms) or "no platform"
+    output.print(_plain(f"{unit.name}: FMI {unit.fmi}, by {by}, for {platforms}"), soft_wrap=True)
     table = Table("variable", "unit", "kind", "start", "signal", "meaning")
     for each in unit.variables.values():
         if each.number and each.causality in ("input", "output", "parameter"):
@@ -133,7 +130,7 @@ def _plain(text: str) -> str:
     """Text of a stranger for a table cell: printable, and no markup."""
     from rich.markup import escape
 
-    return escape("".join(c if c.isprintable() else " " for c in text)[:80])
+    return escape("".join(c if c.isprintable() else " " for c in text)[:120])
 
 
 def _pairs(option: str, given: list[str] | None, example: str) -> dict[str, str]:

@@ -8,8 +8,11 @@ import contextlib
 import json
 import resource
 import sys
+import zipfile
+from collections import deque
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -28,7 +31,8 @@ MEMORY, WRITTEN = 16_000_000_000, 4_000_000_000
 """Bytes of addresses, and of each file that it writes: units may hold whole simulators."""
 
 _FLOATS = ("Real", "Float32", "Float64")
-_FIRST = 3
+_ERROR = 3
+"""The least status of FMI that is a failure."""
 
 
 class Refused(Exception):
@@ -62,8 +66,6 @@ def _refuse(folder: Path, why: str) -> None:
 
 def _described(unit: str) -> Any:
     """What the unit says about itself, if it can take a machine's place."""
-    import zipfile
-
     from fmpy import read_model_description
 
     if not zipfile.is_zipfile(unit):
@@ -71,12 +73,14 @@ def _described(unit: str) -> Any:
     with zipfile.ZipFile(unit) as archive:
         if "modelDescription.xml" not in archive.namelist():
             raise Refused("it is no FMU: there is no modelDescription.xml in it")
-    description = read_model_description(unit, validate=False)
-    version = description.fmiVersion
+        version = ElementTree.fromstring(archive.read("modelDescription.xml")).get("fmiVersion", "")
     if not version.startswith(("2.", "3.")):
         raise Refused(f"it is of FMI {version}; 2 and 3 are read")
+    description = read_model_description(unit, validate=False)
     if description.coSimulation is None:
-        raise Refused("it is for model exchange only; export it for co-simulation, which brings its own solver")
+        raise Refused(
+            "it is for model exchange only; export it for co-simulation, which brings its own solver"
+        )
     return description
 
 
@@ -118,11 +122,15 @@ def _play(asked: dict[str, Any], description: Any, folder: Path) -> None:
     series["time"] = step * np.arange(len(commands))
     for place, name in enumerate(names):
         series[name] = commands[:, place]
-    complaints: list[str] = []
+    complaints: deque[str] = deque(maxlen=1)
 
-    def log(environment: Any, instance: Any, status: int, category: Any, message: Any) -> None:
-        if status >= _FIRST and message:
-            complaints.append(message.decode(errors="replace") if isinstance(message, bytes) else str(message))
+    def log(*told: Any) -> None:
+        """Takes environment, instance (FMI 2 only), status, category, message."""
+        status, message = told[-3], told[-1]
+        if status >= _ERROR and message:
+            complaints.append(
+                message.decode(errors="replace") if isinstance(message, bytes) else str(message)
+            )
 
     try:
         done = simulate_fmu(
@@ -137,6 +145,7 @@ def _play(asked: dict[str, Any], description: Any, folder: Path) -> None:
             output=asked["outputs"],
             remote_platform=None,
             logger=log,
+            debug_logging=True,
         )
     except Exception as error:
         told = [line for each in complaints for line in each.splitlines() if line.strip()]

@@ -3,7 +3,14 @@
 from functools import partial
 from typing import Any
 
-from pythonfmu3 import DefaultExperiment, Fmi3Causality, Fmi3Initial, Fmi3SlaveBase, Fmi3StepResult, Fmi3Variability
+from pythonfmu3 import (
+    DefaultExperiment,
+    Fmi3Causality,
+    Fmi3Initial,
+    Fmi3SlaveBase,
+    Fmi3StepResult,
+    Fmi3Variability,
+)
 from pythonfmu3.cosimulation import CoSimulation
 from pythonfmu3.unit import Unit
 from pythonfmu3.variables import Float64

@@ -84,7 +84,11 @@ def read_unit(path: Path) -> Unit:
     platforms = tuple(told.pop("platforms"))
     step = told.pop("step_size")
     return Unit(
-        path, step_size=None if step is None else float(step), platforms=platforms, variables=variables, **told
+        path,
+        step_size=None if step is None else float(step),
+        platforms=platforms,
+        variables=variables,
+        **told,
     )
 
 

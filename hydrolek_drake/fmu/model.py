@@ -106,7 +106,5 @@ class Model:
 
     def _tell(self) -> None:
         self._told = {
-            joint: machine.signals[i]
-            for machine in self._machines
-            for i, joint in enumerate(machine.joints)
+            joint: machine.signals[i] for machine in self._machines for i, joint in enumerate(machine.joints)
         }

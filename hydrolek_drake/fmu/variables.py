@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from hydrolek_drake.replay.readings import SUPPLY_KEY, position_key
 from hydrolek_drake.rigs import Rig
 
 INPUT, OUTPUT, PARAMETER = "input", "output", "parameter"
@@ -45,7 +44,9 @@ def variables_of(rig: Rig, joints: Sequence[str]) -> list[Variable]:
     hydraulic = [joint for joint in joints if rig.variant(joint, "cylinder") != "electric_motor"]
     if hydraulic:
         found.append(
-            Variable(SUPPLY_KEY, "Pa", OUTPUT, hydraulic[0], "supply_pressure", "pressure at the valves")
+            Variable(
+                "supply.pressure", "Pa", OUTPUT, hydraulic[0], "supply_pressure", "pressure at the valves"
+            )
         )
     return found
 
@@ -59,7 +60,7 @@ def _of_joint(rig: Rig, joint: str) -> list[Variable]:
         Variable(
             f"{joint}.initial_{place}", position, PARAMETER, joint, "", "where it rests at first, in balance"
         ),
-        Variable(position_key(rig, joint), position, OUTPUT, joint, "reading", "what its sensor reads"),
+        Variable(f"{joint}.{place}", position, OUTPUT, joint, "reading", "what its sensor reads"),
         Variable(f"{joint}.true_{place}", position, OUTPUT, joint, "position", "where it is"),
         Variable(f"{joint}.{speed}", rate, OUTPUT, joint, "velocity", "how fast it moves"),
     ]

@@ -76,10 +76,9 @@ def listed(unit: Unit, causality: str) -> str:
 def _wire(variable: Shown, target: str | None) -> Wire | None:
     if not variable.number or target == IGNORE:
         return None
-    names = (variable.name,) if target is None else (target,)
-    if target is None:
-        names = names_with_unit(names, variable.unit.replace("N.m", "N m"))[::-1]
-    for name in names:
+    stated = variable.unit.replace("N.m", "N m")
+    named = names_with_unit((variable.name,), stated)[::-1] if target is None else (target,)
+    for name in named:
         try:
             understood = parse_column(name)
         except InputError:

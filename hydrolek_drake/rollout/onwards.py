@@ -1,7 +1,7 @@
 """A machine stepped onwards from where it is, for whoever gives its commands bit by bit: the same compiled rollout.
 
-Steps of the integration end where a call ends and where a delayed command arrives, as they end in a rollout at the times
-that are asked for; so calls from row to row of a rollout give its numbers.
+Steps of the integration end where a call ends and where a delayed command arrives, as they end in a rollout at the
+times that are asked for; so calls from row to row of a rollout give its numbers.
 """
 
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ class _Commands:
         self._values: list[np.ndarray] = []
 
     def add(self, time: float, volts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Commands that count from a time [s] on, with one given then [V]: their times, # (m,), and values. # (m, n)."""
+        """Times and values of commands that count from a time [s] on, with one given then [V]. # (m,), (m, n)."""
         if not self._values or not np.array_equal(self._values[-1], volts):
             self._times.append(time)
             self._values.append(volts.copy())
