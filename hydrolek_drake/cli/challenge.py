@@ -35,6 +35,13 @@ def challenge(
             help="summary.json of the same command elsewhere: what is scored there is not run again"
         ),
     ] = None,
+    plants: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="no machines are drawn: FMUs of this list, and what each conceals, take their place (docs/fmu.md)",
+        ),
+    ] = None,
     out: Annotated[Path, typer.Option(metavar="DIR", help="folder for cases and results")] = Path(
         "out/challenge"
     ),
@@ -66,24 +73,35 @@ def challenge(
     if kind not in (known := [name for name, _ in KINDS]) and kind != "all":
         raise InputError(f"--kind {kind}: no such cases; choose {', '.join([*known, 'all'])}")
     output = console()
-    drawn_of = rig_names(rig)
-    prepare_folder(out)
-    rigs = {name: load_rig(name, {}) for name in dict.fromkeys(drawn_of)}
-    kinds = KINDS if kind == "all" else ((kind, 1.0),)
-    sample = f"{cases}_{seed}" if rig == BENCH else f"{rig}_{cases}_{seed}"
-    sample = sample if kind == "all" else f"{kind}_{sample}"
-    kept = out / f"labels_{sample}.json"
-    if kept.exists():
-        read_kept(kept, "the list of machines drawn before")
-        labels = kept.read_text()
+    foreign: dict[str, Any] = {}
+    rigs: dict[str, Any] = {}
+    if plants is not None:
+        from hydrolek_drake.challenge.plants import read_plants, record_plant
+
+        foreign = read_plants(plants)
+        prepare_folder(out)
+        labels = json.dumps([plant.label for plant in foreign.values()], sort_keys=True, indent=1)
+        sample = f"{plants.stem}_{digest(labels)[:12]}"
+        write_whole(out / f"labels_{sample}.json", labels)
     else:
-        drawn_so_far = out / f"labels_{sample}"
-        prepare_folder(drawn_so_far)
-        with progress("starting") as tell, ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
-            machines = [rigs[name] for name in drawn_of]
-            labels = labels_of(draw_cases(machines, cases, seed, kinds, drawn_so_far, pool, tell))
-        write_whole(kept, labels)
-        shutil.rmtree(drawn_so_far)
+        drawn_of = rig_names(rig)
+        prepare_folder(out)
+        rigs = {name: load_rig(name, {}) for name in dict.fromkeys(drawn_of)}
+        kinds = KINDS if kind == "all" else ((kind, 1.0),)
+        sample = f"{cases}_{seed}" if rig == BENCH else f"{rig}_{cases}_{seed}"
+        sample = sample if kind == "all" else f"{kind}_{sample}"
+        kept = out / f"labels_{sample}.json"
+        if kept.exists():
+            read_kept(kept, "the list of machines drawn before")
+            labels = kept.read_text()
+        else:
+            drawn_so_far = out / f"labels_{sample}"
+            prepare_folder(drawn_so_far)
+            with progress("starting") as tell, ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
+                machines = [rigs[name] for name in drawn_of]
+                labels = labels_of(draw_cases(machines, cases, seed, kinds, drawn_so_far, pool, tell))
+            write_whole(kept, labels)
+            shutil.rmtree(drawn_so_far)
     sha256 = digest(labels)
     output.print(f"sha256 of the labels: {sha256}")
     told: list[dict[str, Any]] = json.loads(labels)[:first]
@@ -98,9 +116,14 @@ def challenge(
                 folder = out / f"{label['name']}_{sample}"
                 report = folder / "report.json"
                 if not report.exists():
-                    case = read_case(label)
-                    machine = rigs[case.rig]
-                    record(machine, case, folder)
+                    if foreign:
+                        plant = foreign[label["name"]]
+                        machine = plant.rig
+                        record_plant(plant, folder)
+                    else:
+                        case = read_case(label)
+                        machine = rigs[case.rig]
+                        record(machine, case, folder)
                     recordings = [
                         read_recording(folder / f"{side}.csv", machine.columns)
                         for side in ("train", "holdout")
