@@ -36,7 +36,7 @@ from hydrolek_drake.rollout.lanes import roll_out_lanes
 from hydrolek_drake.rollout.rollout import Signals
 from hydrolek_drake.rollout.run import Run
 
-SPACING_S = 0.05
+KNOTS_S = 0.05
 """Between knots [s]: a joint hardly follows what is faster."""
 
 OBSERVER_S = 0.3
@@ -87,7 +87,7 @@ class Slightly:
 
     input: Input
     share: ClassVar[float] = AMPLITUDE
-    spacing_s: ClassVar[float] = SPACING_S
+    spacing_s: ClassVar[float] = KNOTS_S
 
     def run(
         self, experiment: Experiment, records: np.ndarray, step: float, pull: float | None, moved: np.ndarray
@@ -95,7 +95,7 @@ class Slightly:
         """See `Trial`."""
         rows = np.zeros((moved.size, len(PROBES)))
         rows[moved, PROBES.index(self.input.probe)] = AMPLITUDE * self.input.scale
-        return experiment.run(records, step, (SPACING_S, rows), pull)
+        return experiment.run(records, step, (KNOTS_S, rows), pull)
 
 
 @dataclass(frozen=True)
