@@ -199,7 +199,9 @@ FITTED = 3
 
 
 def near(bench: Workbench, structure: Hypothesis, observer_s: float, cores: int) -> dict[str, float]:
-    """Full path -> value of a structure's parameters where an observer's innovations are small, from the rig's own.
+    """Full path -> value of a structure's parameters where an observer's innovations are small.
+
+    A structure that lacks something has bent its numbers, and the rig's own may be far off: the fit begins at both.
 
     Args:
         bench: data and problems.
@@ -209,9 +211,13 @@ def near(bench: Workbench, structure: Hypothesis, observer_s: float, cores: int)
     """
     problem = bench.problem(structure.effects, 2.0 * bench.fine, bench.training, observer_s)
     moving = bench.movable(structure.effects, problem.parameters)
-    begun = problem.parameters.unit(of_additions(structure.values))
-    place = Place(problem, moving, np.clip(begun, 1e-6, 1.0 - 1e-6))
-    return problem.parameters.values(descend([place], FITTED, bench.pool, cores)[0].unit)
+    starts = [
+        problem.parameters.unit(of_additions(structure.values)),
+        problem.parameters.unit(structure.values),
+    ]
+    begun = [Place(problem, moving, np.clip(start, 1e-6, 1.0 - 1e-6)) for start in starts]
+    ended = descend(begun, FITTED, bench.pool, cores)
+    return problem.parameters.values(min(ended, key=lambda place: place.objective).unit)
 
 
 def unknown_inputs(
