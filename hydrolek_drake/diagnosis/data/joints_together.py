@@ -17,7 +17,7 @@ from hydrolek_drake.identification.recorded_together import OneRecording, record
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.together import Together
 
-SPACING_S = 1e-3
+MOTION_STEP_S = 1e-3
 """Of the samples of what the joints do [s]: a tenth of the period of the fastest shaking of an arm."""
 
 
@@ -39,7 +39,7 @@ def felt_together(rig: Rig, experiments: Sequence[Experiment]) -> list[Experimen
 def _felt(rig: Rig, group: Sequence[Experiment]) -> list[Experiment]:
     """The joints of one recording, beside each other."""
     begin, end = min(float(e.time[0]) for e in group), max(float(e.time[-1]) for e in group)
-    times = begin + SPACING_S * np.arange(int((end - begin) / SPACING_S + 1e-6) + 2)
+    times = begin + MOTION_STEP_S * np.arange(int((end - begin) / MOTION_STEP_S + 1e-6) + 2)
     records = rig.records()
     done = OneRecording(rig, group).roll_out(records, times)
     if done.diverged is not None:
@@ -47,10 +47,10 @@ def _felt(rig: Rig, group: Sequence[Experiment]) -> list[Experiment]:
     motions, flows = {}, {}
     for i, joint in enumerate(done.joints):
         position, velocity = done.signals["position"][:, i], done.signals["velocity"][:, i]
-        motions[joint] = (position, velocity, np.gradient(velocity, SPACING_S))
+        motions[joint] = (position, velocity, np.gradient(velocity, MOTION_STEP_S))
         flows[joint] = done.signals["drawn"][:, i]
     firsts = {e.joint: float(e.time[0]) - begin for e in group}
-    probes = probes_of(rig, motions, flows, SPACING_S, firsts)
+    probes = probes_of(rig, motions, flows, MOTION_STEP_S, firsts)
     felt = [replace(e, others=probes[e.joint]) for e in group]
     return [replace(e, others_error=_apart(e, records, done)) for e in felt]
 

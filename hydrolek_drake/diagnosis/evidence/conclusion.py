@@ -19,8 +19,11 @@ The noise is known to 1 to 2 %, and a listed effect that is named wrongly leaves
 """
 
 EXPLAINED_AHEAD = 1.5
-"""The same on held-out data for a structure with additions, where these numbers' own uncertainty adds to the noise. That
-nothing is missing is said of a nominal model only if it predicts held-out data as well as it must explain the others."""
+"""The same on held-out data for a structure with additions, where these numbers' own uncertainty adds to the noise.
+
+That nothing is missing is said of a nominal model only if it predicts held-out data as well as it must explain the
+others.
+"""
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 
-MOST = 8
+MOST_JUDGED = 8
 """At most so many structures are judged."""
 
 
@@ -61,7 +61,7 @@ def _contenders(found: Tried) -> list[Hypothesis]:
     near = [h for h in ranked if 0.5 * (cost(h) - cost(best)) < max(OUT_OF_REACH, 0.05 * best.fit.objective)]
     lesser = [h for h in ranked if h.ids < best.ids and len(h.ids) == len(best.ids) - 1]
     unique = {h.ids: h for h in (best, found.baseline, *lesser, *near)}
-    return list(unique.values())[:MOST]
+    return list(unique.values())[:MOST_JUDGED]
 
 
 def _predicted(

@@ -17,9 +17,6 @@ from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Wo
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
 
-FINER = 0.5
-"""Last fits use this fraction of the rig's own step, so that the step's error cannot decide."""
-
 NEARBY = 100.0
 """If uncertain parameters account for more than this of the held-out squared residuals, they have to move so far that
 the first order may not hold: r' (I + J S J')^-1 r is then what both data leave, fitted together, beyond what the

@@ -6,10 +6,8 @@ change of the residuals is its part across the columns of J.
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.search.settings import AT_BOUND
 from hydrolek_drake.identification.least_squares import Fit
-
-AT_BOUND = 1e-3
-"""A fitted parameter this close to an end of its range (in ranges) cannot move on."""
 
 
 class Across:

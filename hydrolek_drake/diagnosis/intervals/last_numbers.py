@@ -14,8 +14,8 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.data.joints_together import felt_together
 from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.evidence.predictive import FINER
 from hydrolek_drake.diagnosis.intervals.curvature import CONFIDENCE, Interval, covariance_of, intervals_of
+from hydrolek_drake.diagnosis.search.settings import LAST_STEP
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
@@ -50,7 +50,7 @@ class LastNumbers:
         """
         self._bench = bench
         self._begun = hypothesis
-        self._step = bench.fine if bench.together else min(hypothesis.step, FINER * bench.fine)
+        self._step = bench.fine if bench.together else min(hypothesis.step, LAST_STEP * bench.fine)
         self.problem = self._problem(bench.training)
         self._moving = bench.movable(hypothesis.effects, self.problem.parameters)
         self._descent = SecantDescent(

@@ -15,7 +15,7 @@ from hydrolek_drake.identification.parameter_set import Free
 GRID = 120
 """So many moments are tried over the range: four a second of a recording of half a minute, less than a move takes."""
 
-FINER = 12
+CLOSER = 12
 """So many times closer together about the fitted one."""
 
 
@@ -29,7 +29,7 @@ def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis) -> dict[str, 
     for free in moments_of(hypothesis.effects):
         value, apart = hypothesis.values[free.path], (free.upper - free.lower) / GRID
         tried = np.linspace(free.lower, free.upper, GRID + 1)
-        near = np.clip(value + apart * np.linspace(-2.0, 2.0, 4 * FINER + 1), free.lower, free.upper)
+        near = np.clip(value + apart * np.linspace(-2.0, 2.0, 4 * CLOSER + 1), free.lower, free.upper)
         moments = np.unique([*tried, *near, value])
         errors = _errors(bench, hypothesis, free, moments)
         unlike = chi2.ppf(CONFIDENCE, 1) * max(1.0, hypothesis.fit.over_noise) ** 2

@@ -13,21 +13,13 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.laws.terms import Span, Term, law_record
+from hydrolek_drake.diagnosis.search.settings import AT_BOUND, WIDER
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.physics.law import PLACED, TERM_NAMES
 from hydrolek_drake.rigs import Rig
 
-WIDEST = 4.0
-"""What acts near a place reaches so many times as far as where its fit begins at most, and as much less at least."""
-
 SIZES = (0.3, 0.1, 0.03, 0.003)
 """Amplitudes at which a term is tried, in scales of its input."""
-
-WIDER = 4.0
-"""A range of amplitudes that proves too narrow is widened so many times."""
-
-AT_BOUND = 1e-3
-"""An amplitude this close to the end of its range, as a share of it, cannot move on."""
 
 BREADTH_HZ = 0.06
 """Half of the range in which the frequency of a periodic term is fitted about where it was seen."""
@@ -111,7 +103,7 @@ class LawTerm:
             ranges = {
                 "centre": Free(f"{self.path}.centre", -1.0, 1.0),
                 "reach": Free(
-                    f"{self.path}.reach", self.term.reach / WIDEST, self.term.reach * WIDEST, log=True
+                    f"{self.path}.reach", self.term.reach / WIDER, self.term.reach * WIDER, log=True
                 ),
             }
             found += [ranges[name] for name in PLACED.get(self.term.place, ())]

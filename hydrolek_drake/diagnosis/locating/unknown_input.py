@@ -36,7 +36,7 @@ from hydrolek_drake.rollout.lanes import roll_out_lanes
 from hydrolek_drake.rollout.rollout import Signals
 from hydrolek_drake.rollout.run import Run
 
-SPACING_S = 0.05
+KNOTS_S = 0.05
 """Between knots [s]: a joint hardly follows what is faster."""
 
 OBSERVER_S = 0.3
@@ -87,7 +87,7 @@ class Slightly:
 
     input: Input
     share: ClassVar[float] = AMPLITUDE
-    spacing_s: ClassVar[float] = SPACING_S
+    spacing_s: ClassVar[float] = KNOTS_S
 
     def run(
         self, experiment: Experiment, records: np.ndarray, step: float, pull: float | None, moved: np.ndarray
@@ -95,7 +95,7 @@ class Slightly:
         """See `Trial`."""
         rows = np.zeros((moved.size, len(PROBES)))
         rows[moved, PROBES.index(self.input.probe)] = AMPLITUDE * self.input.scale
-        return experiment.run(records, step, (SPACING_S, rows), pull)
+        return experiment.run(records, step, (KNOTS_S, rows), pull)
 
 
 @dataclass(frozen=True)
@@ -199,7 +199,9 @@ FITTED = 3
 
 
 def near(bench: Workbench, structure: Hypothesis, observer_s: float, cores: int) -> dict[str, float]:
-    """Full path -> value of a structure's parameters where an observer's innovations are small, from the rig's own.
+    """Full path -> value of a structure's parameters where an observer's innovations are small.
+
+    A structure that lacks something has bent its numbers, and the rig's own may be far off: the fit begins at both.
 
     Args:
         bench: data and problems.
@@ -209,9 +211,13 @@ def near(bench: Workbench, structure: Hypothesis, observer_s: float, cores: int)
     """
     problem = bench.problem(structure.effects, 2.0 * bench.fine, bench.training, observer_s)
     moving = bench.movable(structure.effects, problem.parameters)
-    begun = problem.parameters.unit(of_additions(structure.values))
-    place = Place(problem, moving, np.clip(begun, 1e-6, 1.0 - 1e-6))
-    return problem.parameters.values(descend([place], FITTED, bench.pool, cores)[0].unit)
+    starts = [
+        problem.parameters.unit(of_additions(structure.values)),
+        problem.parameters.unit(structure.values),
+    ]
+    begun = [Place(problem, moving, np.clip(start, 1e-6, 1.0 - 1e-6)) for start in starts]
+    ended = descend(begun, FITTED, bench.pool, cores)
+    return problem.parameters.values(min(ended, key=lambda place: place.objective).unit)
 
 
 def unknown_inputs(

@@ -24,10 +24,10 @@ from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.rollout.run import Run
 
-KNOTS_S = 0.02
+WINDOW_KNOTS_S = 0.02
 """Between knots [s]: about one sample of a controller."""
 
-WIDEST = 15
+MOST_KNOTS = 15
 """A window is tried over so many spacings of knots at most."""
 
 GAIN = 25.0
@@ -49,14 +49,14 @@ class Lost:
     input: Input
     neutral: float
     share: ClassVar[float] = 1.0
-    spacing_s: ClassVar[float] = KNOTS_S
+    spacing_s: ClassVar[float] = WINDOW_KNOTS_S
 
     def run(
         self, experiment: Experiment, records: np.ndarray, step: float, pull: float | None, moved: np.ndarray
     ) -> Run:
         """See `unknown_input.Trial`."""
-        begins = experiment.time[0] + KNOTS_S * np.flatnonzero(moved)
-        windows = np.stack([begins, begins + KNOTS_S], axis=1)
+        begins = experiment.time[0] + WINDOW_KNOTS_S * np.flatnonzero(moved)
+        windows = np.stack([begins, begins + WINDOW_KNOTS_S], axis=1)
         return experiment.without_command(windows, self.neutral).run(records, step, pull_time=pull)
 
 
@@ -101,8 +101,8 @@ def lost_seen(
         own = []
         for knot, spacings, multiple in chosen:
             if first <= knot < last:
-                length = min(multiple * spacings * KNOTS_S, LONGEST_S)
-                middle = float(unknown.times[knot]) + 0.5 * spacings * KNOTS_S
+                length = min(multiple * spacings * WINDOW_KNOTS_S, LONGEST_S)
+                middle = float(unknown.times[knot]) + 0.5 * spacings * WINDOW_KNOTS_S
                 own.append((middle - 0.5 * length, middle + 0.5 * length))
         before = known.get(recording_of(experiment), NONE)
         seen[recording_of(experiment)] = joined(in_order(before, np.array(sorted(own)).reshape(-1, 2)))
@@ -116,7 +116,7 @@ def lost_seen(
 def _picked(unknown: Unknown, counted: int) -> tuple[list[tuple[int, int, float]], float]:
     """Windows that promise most: first knot, spacings, and which share of them is lost; and what all promise."""
     size = unknown.times.size
-    firsts, spacings = (grid.ravel() for grid in np.meshgrid(np.arange(size), np.arange(1, WIDEST + 1)))
+    firsts, spacings = (grid.ravel() for grid in np.meshgrid(np.arange(size), np.arange(1, MOST_KNOTS + 1)))
     inside = firsts + spacings <= size
     firsts, spacings = firsts[inside], spacings[inside]
     ends = firsts + spacings
@@ -141,6 +141,6 @@ def _picked(unknown: Unknown, counted: int) -> tuple[list[tuple[int, int, float]
     windows = [
         (int(firsts[which]), int(spacings[which]), multiple)
         for which, multiple in chosen.items()
-        if multiple * KNOTS_S > SHORTEST_S
+        if multiple * WINDOW_KNOTS_S > SHORTEST_S
     ]
     return windows, unknown.left - left

@@ -127,7 +127,7 @@ def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> 
     starts = [Entrant((), {}), Entrant((), centre)]
     led = race(bench, starts, settings.nominal, cores)
     last = settings.nominal[-1]
-    best = race(bench, [Entrant((), led[0].values), *starts], (last,), cores)[0]
+    best = race(bench, [Entrant((), led[0].values), *starts], (settings.free[1], last), cores)[0]
     bench.training = tuple(weighted_by(bench, best, bench.training))
     best = race(bench, [Entrant((), best.values)], (last,), cores)[0]
     trace(f"nominal {best.fit.over_noise:.4f}")

@@ -3,6 +3,16 @@
 import math
 from dataclasses import dataclass
 
+LAST_STEP = 0.5
+"""Last fits use this fraction of the rig's own step, so that the step's error cannot decide."""
+
+AT_BOUND = 1e-3
+"""A fitted parameter this close to an end of its range (in ranges) cannot move on."""
+
+WIDER = 4.0
+"""A range that proves too narrow is widened so many times; a law that acts near a place reaches so much farther or less
+far than where its fit begins."""
+
 
 @dataclass(frozen=True)
 class Rung:
@@ -63,7 +73,7 @@ class Settings:
     )
     """The nominal model by continuation, to the end."""
 
-    last: Rung = Rung(math.inf, 0.5, math.inf, 4, 8)
+    last: Rung = Rung(math.inf, LAST_STEP, math.inf, 4, 8)
     """The last fits, with half of the rig's own step, so that the error of the integration cannot decide."""
 
     nearer: float = 0.8

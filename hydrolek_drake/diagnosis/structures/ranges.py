@@ -9,13 +9,10 @@ friction fades, at either end.
 from collections.abc import Mapping
 from dataclasses import replace
 
-from hydrolek_drake.diagnosis.fitting.projection import AT_BOUND
+from hydrolek_drake.diagnosis.search.settings import AT_BOUND, WIDER
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 from hydrolek_drake.identification.parameter_set import Free
-
-WIDER = 4.0
-"""A range that proves too narrow is widened so many times."""
 
 
 def ended(hypothesis: Hypothesis, candidate: Candidate) -> list[Free]:

@@ -8,8 +8,9 @@ import pytest
 from hydrolek_drake.diagnosis.intervals.curvature import Interval
 from hydrolek_drake.diagnosis.report.numbers import quantity
 from hydrolek_drake.diagnosis.report.words import effect_sentence
+from hydrolek_drake.diagnosis.search.settings import WIDER
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
-from hydrolek_drake.diagnosis.structures.ranges import WIDER, ended, widened
+from hydrolek_drake.diagnosis.structures.ranges import ended, widened
 from hydrolek_drake.identification.natural_scales import natural_scales
 
 AIR = "effects.fluid.entrained_air.air_fraction"
