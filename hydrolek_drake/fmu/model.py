@@ -99,10 +99,17 @@ class Model:
         for machine in self._machines:
             if abs(machine.time - time) > _OFF * step:
                 raise ValueError(f"the step begins at {time:g} s, but the model is at {machine.time:g} s")
-            volts = np.array([self._values[f"{joint}.command"] for joint in machine.joints])
+            volts = np.array([self._volts(joint) for joint in machine.joints])
             if time + step > machine.time:
                 machine.advance(volts, time + step)
         self._tell()
+
+    def _volts(self, joint: str) -> float:
+        """Command of a joint [V]; joints of an arm that nobody commands give way on their oil."""
+        name = f"{joint}.command"
+        return (
+            self._values[name] if name in self._values else self._rig.value(f"joints.{joint}.command.neutral")
+        )
 
     def _tell(self) -> None:
         self._told = {

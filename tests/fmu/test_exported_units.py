@@ -12,6 +12,7 @@ from hydrolek_drake.cli.app import run
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.fmu.exporting import export
 from hydrolek_drake.fmu.foreign import play, read_unit
+from hydrolek_drake.fmu.model import Model, resources
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.rollout.rollout import Signals
@@ -94,6 +95,20 @@ def test_joints_that_share_an_arm_are_one_unit(two_joints: Rig, tmp_path: Path) 
     for i, name in enumerate(names):
         wanted = rolled.signals["reading"][:, i]
         assert np.abs(done[name] - wanted).max() <= ROUNDING * np.ptp(wanted)
+
+
+def test_joints_of_an_arm_that_nobody_commands_give_way(tmp_path: Path) -> None:
+    rig = load_rig("hydrolek", {})
+    for name, content in resources(rig, ["right_j2", "right_j3"], "", SAMPLE, 1.0).items():
+        (tmp_path / name).write_text(content)
+    model = Model(tmp_path)
+    model.begin(0.0)
+    assert {each.joint for each in model.variables.values()} == {"right_j2", "right_j3"}
+    begun = model.value("right_j3.angle")
+    model.put("right_j3.command", 4.0)
+    for k in range(30):
+        model.step(SAMPLE * k, SAMPLE)
+    assert 1e-3 < abs(model.value("right_j3.angle") - begun) < 1.0
 
 
 def test_the_unit_holds_the_rig_with_what_was_set(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
