@@ -234,6 +234,7 @@ def test_a_drawing_goes_on_where_it_ended(tmp_path) -> None:
     assert labels_of([again[2]]) == labels_of(draw_cases(rigs, 4, 5, healthy)[2:3])
 
 
+@pytest.mark.long("a fifth of a minute")
 def test_what_an_effect_shows_is_counted_beside_the_others() -> None:
     build = build_of(load_rig(BENCH, {}))
     drift = {"sensor.drift": {"rate_rad_per_min": 0.02}}

@@ -44,6 +44,7 @@ def _rms_deg(values: np.ndarray) -> float:
     return float(np.degrees(np.sqrt(np.mean(values**2))))
 
 
+@pytest.mark.long("a quarter of a minute")
 @pytest.mark.parametrize("rig", RIGS)
 def test_every_kind_changes_what_the_machine_does(rig: str) -> None:
     build = _build(rig)

@@ -24,6 +24,8 @@ pytest.importorskip("pythonfmu3", reason="needs the extra fmu")
 
 from fmpy.validation import validate_fmu
 
+pytestmark = pytest.mark.long("two minutes: each unit is a process that loads all anew")
+
 SAMPLE = 0.01
 ROUNDING = 1e-9
 """Share of a signal's range."""

@@ -15,6 +15,8 @@ from hydrolek_drake.rigs import Rig
 
 pytest.importorskip("fmpy", reason="needs the extra fmu")
 
+pytestmark = pytest.mark.long("two minutes: each unit is a process that loads all anew")
+
 MAPPED = ("--map", "voltage=slide.command_V", "--map", "stroke_mm=slide.position_mm")
 
 

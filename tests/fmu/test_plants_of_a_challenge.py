@@ -13,6 +13,8 @@ from hydrolek_drake.recordings.writing import write_recording
 
 pytest.importorskip("fmpy", reason="needs the extra fmu")
 
+pytestmark = pytest.mark.long("two minutes: each unit is a process that loads all anew")
+
 NAMES = "map: {voltage: joint.command_V, stroke_mm: joint.angle_mrad, bar: joint.pressure_a_bar}"
 
 

@@ -117,6 +117,7 @@ def test_rig_s_step_is_fine_enough_with_each_effect_on(bench, effect):
     assert error <= 0.02
 
 
+@pytest.mark.long("a quarter of a minute: loops are compiled")
 @pytest.mark.parametrize("effect", [e for e in EFFECTS if _on_a_pump(e)])
 def test_rig_s_step_is_fine_enough_with_each_effect_of_a_pump_on(effect):
     parameters = {f"effects.{effect}.{name}": value for name, value in SIZES[effect].items()}

@@ -250,6 +250,7 @@ def _side_by_side(count):
         _alike(one, run.outcome())
 
 
+@pytest.mark.long("a third of a minute: loops are compiled")
 @pytest.mark.long("a third of a minute for each count: a loop is compiled")
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_laws_of_different_factors_side_by_side(count):
@@ -293,6 +294,7 @@ def _probed(rig, law=None):
         _alike(one, run.outcome())
 
 
+@pytest.mark.long("a loop is compiled")
 def test_each_lane_has_its_own_inputs_from_outside_also_where_it_is_pulled():
     _probed(load_rig("joint_bench"))
 

@@ -10,7 +10,7 @@ from hydrolek_drake.diagnosis.laws.inputs import inputs_of
 from hydrolek_drake.diagnosis.laws.law import FRICTIONS
 from hydrolek_drake.diagnosis.laws.terms import TERMS, law_record, span_of
 from hydrolek_drake.diagnosis.locating.law_forms import terms_seen
-from hydrolek_drake.diagnosis.locating.unknown_input import unknown_inputs
+from hydrolek_drake.diagnosis.locating.unknown_input import Slightly, unknown_inputs
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -31,7 +31,8 @@ def seen_of(bench, recorded, fitted):
             workbench.training = tuple(weighted_by(workbench, nominal, training))
             scales = natural_scales(bench, "joint", training)
             inputs = inputs_of(scales, bench.value("supply.pressure"), 10.0, "rad")
-            wanted = [i for i in inputs if i.probe in ("command", "supply", "cylinder", "load", "sensor")]
+            probes = ("command", "supply", "cylinder", "load", "sensor")
+            wanted = [Slightly(i) for i in inputs if i.probe in probes]
             seen = unknown_inputs(workbench, nominal, nominal.values, wanted, OBSERVER_S, 2)
         record = bench.records()[0]
         return seen, record, span_of(seen.signals, record, 12.0, "rad")

@@ -36,6 +36,7 @@ def test_a_machine_that_lacks_nothing_is_told_so(answer_of) -> None:
     assert answer.conclusion.best.over_noise < 1.1
 
 
+@pytest.mark.long("a quarter of a minute")
 def test_a_machine_far_from_the_rigs_numbers_lacks_nothing_either(answer_of) -> None:
     answer = answer_of(FAR_OFF, FEW, laws=False, own={}, pressure_noise_Pa=None)
     assert answer.conclusion.verdict == "none"
@@ -65,6 +66,7 @@ def test_of_an_effect_and_its_special_case_the_one_that_is_there_is_named(answer
             assert best.hypothesis.values[path] == pytest.approx(value, rel=0.2), path
 
 
+@pytest.mark.long("a quarter of a minute")
 @pytest.mark.parametrize("share", [0.01, 0.15])
 def test_a_play_is_found_whether_small_or_a_good_part_of_the_travel(
     bench, recorded, answer_of, share
@@ -92,6 +94,7 @@ def test_three_effects_at_once_are_found(answer_of) -> None:
         assert best.hypothesis.values[path] == pytest.approx(value, rel=0.1), path
 
 
+@pytest.mark.long("a quarter of a minute")
 def test_more_of_an_effect_than_a_worn_machine_has_is_found_alone(answer_of) -> None:
     """1.6 times what its range ends at."""
     path = "joints.joint.effects.fluid.entrained_air.air_fraction"
