@@ -80,7 +80,6 @@ def test_joints_on_one_pump_move_as_in_the_diagram(on_a_pump) -> None:
     np.testing.assert_array_equal(pressure[:, 0], pressure[:, 1])
 
 
-@pytest.mark.long("a fifth of a minute: loops are compiled")
 @pytest.mark.long("a quarter of a minute: loops with laws are compiled")
 def test_laws_of_two_joints_act_as_in_the_diagram(two_joints) -> None:
     span = Span(Reach(1.0, 1.0, 0.0, 0.3, "rad"), None, 1.0, 1.0, 1.0)

@@ -250,7 +250,6 @@ def _side_by_side(count):
         _alike(one, run.outcome())
 
 
-@pytest.mark.long("a third of a minute: loops are compiled")
 @pytest.mark.long("a third of a minute for each count: a loop is compiled")
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_laws_of_different_factors_side_by_side(count):
