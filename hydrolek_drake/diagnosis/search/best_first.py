@@ -125,9 +125,9 @@ def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> 
     """The nominal model by continuation, from the rig's own numbers and from the middle of their ranges."""
     centre = {free.path: free.from_unit(0.5) for free in bench.nominal}
     starts = [Entrant((), {}), Entrant((), centre)]
-    *observed, last = settings.nominal
-    led = race(bench, starts, observed, cores)
-    best = race(bench, [Entrant((), led[0].values), *starts], (settings.free[1], last), cores)[0]
+    led = race(bench, starts, settings.nominal, cores)
+    last = settings.nominal[-1]
+    best = race(bench, [Entrant((), led[0].values), *starts], (last,), cores)[0]
     bench.training = tuple(weighted_by(bench, best, bench.training))
     best = race(bench, [Entrant((), best.values)], (last,), cores)[0]
     trace(f"nominal {best.fit.over_noise:.4f}")

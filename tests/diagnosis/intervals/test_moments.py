@@ -14,6 +14,7 @@ PAYLOAD = "joints.joint.effects.load.payload"
 PICKED_UP = {"mass_kg": 8.0, "time_s": 5.3}
 
 
+@pytest.mark.long("some seconds")
 def test_a_load_is_found_with_the_moment_at_which_it_was_picked_up(answer_of) -> None:
     planted = {f"{PAYLOAD}.{name}": value for name, value in PICKED_UP.items()}
     answer = answer_of(planted, ("load.payload", "cylinder.coulomb_friction"), laws=False, largest_V=5.0)
