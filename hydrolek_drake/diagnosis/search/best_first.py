@@ -122,21 +122,40 @@ def _worth_while(opening: Opening) -> bool:
 
 
 def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
-    """The nominal model by continuation, from the rig's own numbers and from the middle of their ranges."""
-    centre = {free.path: free.from_unit(0.5) for free in bench.nominal}
-    starts = [Entrant((), {}), Entrant((), centre)]
-    led = race(bench, starts, settings.nominal, cores)
-    last = settings.nominal[-1]
-    best = race(bench, [Entrant((), led[0].values), *starts], (last,), cores)[0]
-    bench.training = tuple(weighted_by(bench, best, bench.training))
-    best = race(bench, [Entrant((), best.values)], (last,), cores)[0]
+    """The nominal model from the rig's own numbers, and where that leaves more than noise by continuation too.
+
+    Nothing is below the noise, so that a fit that reaches it needs no other starts unless an addition is named beside
+    it (`openings`).
+    """
+    own = Entrant((), {})
+    data = bench.training
+    direct = race(bench, [own], settings.free, cores)[0]
+    best = _as_weighed(bench, direct, settings, cores)
+    if best.fit.over_noise > ABOVE_NOISE:
+        found.nominal_continued = True
+        bench.training = data
+        centre = Entrant((), {free.path: free.from_unit(0.5) for free in bench.nominal})
+        led = race(bench, [own, centre], settings.nominal, cores)[0]
+        begun = [Entrant((), led.values), Entrant((), direct.values), centre]
+        best = _as_weighed(bench, race(bench, begun, settings.nominal[-1:], cores)[0], settings, cores)
     trace(f"nominal {best.fit.over_noise:.4f}")
     found.keep(best)
     found.weighed_at = best.fit.over_noise
     if found.seeds:
-        rung = replace(last, keep=len(found.seeds))
+        rung = replace(settings.nominal[-1], keep=len(found.seeds))
         for each in race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (rung,), cores):
             found.keep(each)
+
+
+def _as_weighed(bench: Workbench, structure: Hypothesis, settings: Settings, cores: int) -> Hypothesis:
+    """A structure fitted on, the data weighed by it; what is below the noise then was weighed by a worse fit."""
+    now = structure
+    for _ in range(3):
+        bench.training = tuple(weighted_by(bench, now, bench.training))
+        now = race(bench, [Entrant(now.effects, now.values)], settings.nominal[-1:], cores)[0]
+        if now.fit.over_noise > 1.0 / ABOVE_NOISE:
+            break
+    return now
 
 
 def _weigh(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:

@@ -22,6 +22,9 @@ from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings
 from hydrolek_drake.diagnosis.structures.ranges import widened
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
+TELLING = 2.0
+"""What additions change is told by rollouts with steps so many times the rig's own, on both sides of a difference."""
+
 
 @dataclass(frozen=True)
 class Opening:
@@ -84,10 +87,9 @@ def opened(
     sizes = of_additions(parent.values)
     if not own:
         return Opening(parent, kind, (), (), (), sizes, math.inf)
-    coarse = (1.0 if parent.fit.over_noise < FAR else 2.0) * bench.fine
     exact = Rung(math.inf, 1.0, math.inf, 0, 1)
     place = descend([_place(bench, parent, exact, parent.fit.unit)], 0, bench.pool, cores)[0]
-    free = promises_at(bench, place, parent.effects, own, coarse, settings, cores)
+    free = promises_at(bench, place, parent.effects, own, TELLING * bench.fine, settings, cores)
     if kind == "effects":
         found.left = free
     pulled: list[Promise] = []
@@ -210,7 +212,7 @@ def _lessened(
     ]
     rung = replace(settings.free[-1], keep=len(entrants))
     fitted = race(bench, entrants, (rung,), cores) if entrants else []
-    if len(best.effects) > 1:  # fewer are structures that were fitted so before
+    if len(best.effects) > 1 or not found.nominal_continued:  # others were fitted so before
         own = [Entrant(each.effects, of_additions(each.values)) for each in entrants]
         fitted += race(bench, own, _steps(settings.continued, best.fit.over_noise < FAR), cores)
     for each in fitted:

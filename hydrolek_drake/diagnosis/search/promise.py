@@ -76,22 +76,26 @@ def promises_at(
     for candidate, start in tried:
         parameters = problems[candidate.size_path].parameters
         units[candidate.size_path].append(parameters.unit({**values, **start}))
+    here_as_tried = problem_with(
+        bench, effects, step, here_problem.experiments, here_problem.pull_time or math.inf
+    )
     answers = residuals_at(
         [
-            Request(here_problem, (place.unit,)),
+            Request(here_as_tried, (place.unit,)),
             *(Request(problems[c.size_path], tuple(units[c.size_path])) for c in candidates),
         ],
         bench.pool,
         cores,
     )
-    here = np.concatenate([answers[0][0], fit.off_prior])
-    left = across(here)
+    here = answers[0][0]
+    left = across(np.concatenate([fit.residuals, fit.off_prior]))
+    unchanged = np.zeros_like(fit.off_prior)
     promises = []
     for candidate, found in zip(candidates, answers[1:], strict=True):
         starts = _tried(candidate, settings)
         rated = []
         for start, moved in zip(starts, found, strict=True):
-            change = across(np.concatenate([moved, fit.off_prior]) - here)
+            change = across(np.concatenate([moved - here, unchanged]))
             gain = gain_of(change, left)
             power = float(change @ change)
             multiple = np.sqrt(gain / power) if power > 0.0 else 0.0
