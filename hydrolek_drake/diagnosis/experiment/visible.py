@@ -15,6 +15,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.fitting.projection import Across
 from hydrolek_drake.diagnosis.search.gains import VISIBLE, gain_needed
 from hydrolek_drake.diagnosis.search.promise import Promise
+from hydrolek_drake.diagnosis.search.settings import TELLING
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects import EFFECTS
@@ -69,7 +70,7 @@ def _visible_size(bench: Workbench, hypothesis: Hypothesis, promise: Promise, ac
     """That of one effect; NaN if none in its range is seen."""
     candidate = promise.candidate
     path = candidate.size_path
-    problem = bench.problem((*hypothesis.effects, candidate), bench.fine)
+    problem = bench.problem((*hypothesis.effects, candidate), TELLING * bench.fine)
     start = promise.starts[0]
     sign = math.copysign(1.0, start[path])
     alone = {**hypothesis.values, **start, **_without_special_cases(candidate)}

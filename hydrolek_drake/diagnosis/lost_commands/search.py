@@ -52,7 +52,7 @@ def with_windows(
         settings: of the search.
         cores: that roll out at the same time.
     """
-    rungs = tuple(rung for rung in settings.continued if rung.observer_s >= REMEMBERS_S)
+    rungs = (*(rung for rung in settings.continued if rung.observer_s >= REMEMBERS_S), settings.again)
     own, now, fits = of_additions(parent.values), lost, []
     values = parent.values
     for _ in range(settings.lost_rounds):
@@ -99,7 +99,7 @@ def _needed(
             Place(p, bench.movable(e, p.parameters), p.parameters.unit(values))
             for p, e in zip(problems, trials, strict=True)
         ]
-        ended = descend(begun, settings.free[-1].rounds, bench.pool, cores, stop=bench.alive)
+        ended = descend(begun, settings.again.rounds, bench.pool, cores, stop=bench.alive)
         place, effects = min(zip(ended, trials, strict=True), key=lambda each: each[0].objective)
         if place.objective > most:
             break

@@ -54,14 +54,18 @@ def search_structures(
     seen: dict[tuple[frozenset[str], str], Opening] = {}
     expansions = 0
     while expansions < settings.most_expansions:
-        openings = []
-        for parent, kind in _open(found, done, settings, laws=unlisted is not None):
+        openings: list[Opening] = []
+        wanted = _open(found, done, settings, laws=unlisted is not None)
+        for parent, kind in sorted(wanted, key=lambda each: each[1] == LAWS):
             key = (parent.ids, kind)
+            if kind == LAWS and any(o.at_noise and _worth_while(o) for o in openings):
+                continue  # a law could promise no more
             if key not in seen or seen[key].parent is not parent:
                 own: Sequence[Any] = candidates
                 if kind == LAWS and unlisted is not None:
                     own = unlisted.offer(bench, parent)
-                seen[key] = opened(bench, parent, kind, own, found, settings, cores)
+                alone = len(wanted) == 1
+                seen[key] = opened(bench, parent, kind, own, found, settings, cores, alone=alone)
             openings.append(seen[key])
         if not openings:
             break
@@ -74,7 +78,8 @@ def search_structures(
         expansions += 1
         say(f"{next_.kind} beside {' + '.join(c.id for c in next_.parent.effects) or 'the nominal model'}")
         done.add(next_.key)
-        enlarged(bench, next_, candidates, found, settings, cores)
+        if enlarged(bench, next_, candidates, found, settings, cores):
+            done.discard(next_.key)
         _weigh(bench, found, settings, cores)
         if found.rounds_without_gain(settings.patience):
             break
@@ -122,27 +127,18 @@ def _worth_while(opening: Opening) -> bool:
 
 
 def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
-    """The nominal model from the rig's own numbers, and where that leaves more than noise by continuation too.
+    """The nominal model by free rollouts from the rig's own numbers.
 
-    Nothing is below the noise, so that a fit that reaches it needs no other starts unless an addition is named beside
-    it (`openings`).
+    Nothing is below the noise, so that a fit that reaches it needs no other starts; where no addition to it does either
+    it is fitted by continuation (`openings`).
     """
-    own = Entrant((), {})
-    data = bench.training
-    direct = race(bench, [own], settings.free, cores)[0]
+    direct = race(bench, [Entrant((), {})], (*settings.free, *settings.ended), cores)[0]
     best = _as_weighed(bench, direct, settings, cores)
-    if best.fit.over_noise > ABOVE_NOISE:
-        found.nominal_continued = True
-        bench.training = data
-        centre = Entrant((), {free.path: free.from_unit(0.5) for free in bench.nominal})
-        led = race(bench, [own, centre], settings.nominal, cores)[0]
-        begun = [Entrant((), led.values), Entrant((), direct.values), centre]
-        best = _as_weighed(bench, race(bench, begun, settings.nominal[-1:], cores)[0], settings, cores)
     trace(f"nominal {best.fit.over_noise:.4f}")
     found.keep(best)
     found.weighed_at = best.fit.over_noise
     if found.seeds:
-        rung = replace(settings.nominal[-1], keep=len(found.seeds))
+        rung = replace(settings.again, keep=len(found.seeds))
         for each in race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (rung,), cores):
             found.keep(each)
 
@@ -152,7 +148,7 @@ def _as_weighed(bench: Workbench, structure: Hypothesis, settings: Settings, cor
     now = structure
     for _ in range(3):
         bench.training = tuple(weighted_by(bench, now, bench.training))
-        now = race(bench, [Entrant(now.effects, now.values)], settings.nominal[-1:], cores)[0]
+        now = race(bench, [Entrant(now.effects, now.values)], (settings.again,), cores)[0]
         if now.fit.over_noise > 1.0 / ABOVE_NOISE:
             break
     return now
@@ -167,7 +163,7 @@ def _weigh(bench: Workbench, found: Tried, settings: Settings, cores: int) -> No
     ranked = sorted(found.hypotheses.values(), key=lambda h: h.fit.objective)
     near = [h for h in ranked if h.fit.objective < 4.0 * best.fit.objective][:6]
     chosen = {h.ids: h for h in (found.baseline, *near)}
-    rung = replace(settings.free[-1], keep=len(chosen))
+    rung = replace(settings.again, keep=len(chosen))
     again = race(bench, [Entrant(h.effects, h.values) for h in chosen.values()], (rung,), cores)
     found.given_up.update(found.hypotheses)
     found.hypotheses.clear()
