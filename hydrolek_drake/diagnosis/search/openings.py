@@ -255,7 +255,7 @@ def _lessened(
     Each is fitted from where the best structure led, and by continuation.
     """
     best = found.best
-    if best is found.lessened:
+    if best is found.lessened or not best.effects:
         return
     found.lessened = best
     entrants = [
@@ -270,7 +270,7 @@ def _lessened(
         for start in special.starts[:2]
     ]
     rung = replace(settings.again, keep=len(entrants))
-    fitted = race(bench, entrants, (rung,), cores) if entrants else []
+    fitted = race(bench, entrants, (rung,), cores)
     near = not found.nominal_continued and found.baseline.fit.over_noise < FAR
     if len(best.effects) > 1 or near:  # others were fitted so before, or are beyond doubt
         own = [Entrant(each.effects, of_additions(each.values)) for each in entrants]
