@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, FAR
+from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.line_search import Along, searched_along
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
 from hydrolek_drake.diagnosis.search.settings import Rung
@@ -248,7 +248,7 @@ def _distinct(runners: Sequence[Runner], count: int) -> list[Runner]:
 def _in_reach(runners: Sequence[Runner]) -> list[Runner]:
     """Those that may still come to where the best one is: nothing is below the noise."""
     best = runners[0].place
-    if best.objective > ABOVE_NOISE**2 * best.problem.counted:
+    if best.objective > AT_NOISE**2 * best.problem.counted:
         return list(runners)
     return [r for r in runners if r.place.objective <= FAR**2 * best.objective]
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 from typing import Any, Protocol
 
 from hydrolek_drake.diagnosis.data.weighing import weighted_by
-from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE
+from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
-from hydrolek_drake.diagnosis.search.openings import Opening, enlarged, opened
+from hydrolek_drake.diagnosis.search.openings import Opening, continued_nominal, enlarged, opened
 from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.search.tracing import trace
 from hydrolek_drake.diagnosis.search.tried import Tried
@@ -96,7 +96,7 @@ def _open(
     best = found.best
     if (frozenset(), EFFECTS) not in done and not found.seeds:
         return [(found.baseline, EFFECTS)]
-    if best.fit.over_noise <= ABOVE_NOISE:
+    if best.fit.over_noise <= AT_NOISE:
         lawful = not all(isinstance(c, Candidate) for c in best.effects)
         items = [(best, LAWS if lawful else EFFECTS)]
     else:
@@ -121,7 +121,7 @@ def _worth_while(opening: Opening) -> bool:
     fit = opening.parent.fit
     if not opening.own:
         return False
-    return fit.over_noise > ABOVE_NOISE or opening.promising >= PROMISING * opening.own[0].cost * gain_needed(
+    return fit.over_noise > AT_NOISE or opening.promising >= PROMISING * opening.own[0].cost * gain_needed(
         fit
     )
 
@@ -129,12 +129,17 @@ def _worth_while(opening: Opening) -> bool:
 def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
     """The nominal model by free rollouts from the rig's own numbers.
 
-    Nothing is below the noise, so that a fit that reaches it needs no other starts; where no addition to it does either
-    it is fitted by continuation (`openings`).
+    Nothing is below the noise, so that a fit that reaches it needs no other starts. Where one is near it, so that
+    what is missing is small beside what a wrong local minimum leaves, it is fitted by continuation too; where it is
+    far, only if no addition to it reaches the noise (`openings`).
     """
-    direct = race(bench, [Entrant((), {})], (*settings.free, *settings.ended), cores)[0]
-    best = _as_weighed(bench, direct, settings, cores)
+    known = next((h.values for h in found.seeds if not h.effects), {})
+    rungs = (settings.again,) if known else (*settings.free, *settings.ended)
+    best = _as_weighed(bench, race(bench, [Entrant((), known)], rungs, cores)[0], settings, cores)
     trace(f"nominal {best.fit.over_noise:.4f}")
+    if not known and AT_NOISE < best.fit.over_noise < FAR:
+        better = continued_nominal(bench, best, found, settings, cores)
+        best = best if better is None else _as_weighed(bench, better, settings, cores)
     found.keep(best)
     found.weighed_at = best.fit.over_noise
     if found.seeds:
@@ -149,7 +154,7 @@ def _as_weighed(bench: Workbench, structure: Hypothesis, settings: Settings, cor
     for _ in range(3):
         bench.training = tuple(weighted_by(bench, now, bench.training))
         now = race(bench, [Entrant(now.effects, now.values)], (settings.again,), cores)[0]
-        if now.fit.over_noise > 1.0 / ABOVE_NOISE:
+        if now.fit.over_noise > 1.0 / AT_NOISE:
             break
     return now
 

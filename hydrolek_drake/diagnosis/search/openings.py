@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, AT_NOISE, FAR
+from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
 from hydrolek_drake.diagnosis.fitting.race import (
     Entrant,
@@ -105,7 +105,7 @@ def opened(
         found.left = free
     pulled: list[Promise] = []
     shares = [_share(free[0].gain, parent.fit.objective, parent.fit.counted)]
-    if parent.fit.over_noise > ABOVE_NOISE and not alone:
+    if parent.fit.over_noise > AT_NOISE and not alone:
         pulled, share = _observed(bench, parent, own, settings, cores)
         shares.append(share)
         if lost is not None:
@@ -123,7 +123,7 @@ def opened(
         + "; pulled "
         + ", ".join(f"{p.candidate.id} {p.gain:.0f}" for p in pulled[:4])
     )
-    at_noise = left <= ABOVE_NOISE**2 * count
+    at_noise = left <= AT_NOISE**2 * count
     return Opening(parent, kind, own, tuple(free), tuple(pulled), sizes, expected, at_noise, lost)
 
 
@@ -156,7 +156,7 @@ def enlarged(
     """
     parent = opening.parent
     needed = gain_needed(parent.fit)
-    near = parent.fit.over_noise <= ABOVE_NOISE
+    near = parent.fit.over_noise <= AT_NOISE
     fitted, own = Start(parent.effects, parent.values), Start(parent.effects, opening.sizes)
     free = [
         fitted.with_addition(p.candidate, start)
@@ -173,9 +173,11 @@ def enlarged(
     heats = _steps(settings.free, fine)
     runners = run(bench, entered(bench, free, heats[0], cores), heats, cores, _traced("free")) if free else []
     better = None
-    if min((_over_noise(r) for r in runners), default=math.inf) > ABOVE_NOISE < parent.fit.over_noise:
+    if min((_over_noise(r) for r in runners), default=math.inf) > AT_NOISE < parent.fit.over_noise:
         if not parent.effects and not found.nominal_continued:
             better = continued_nominal(bench, parent, found, settings, cores)
+            if better is not None:
+                found.keep(better)
         pulled = opening.pulled or _observed(bench, parent, opening.own, settings, cores)[0]
         entrants = [
             begun.with_addition(p.candidate, start)
@@ -194,7 +196,7 @@ def enlarged(
             found.keep(each)
     _widened(bench, found, settings, cores)
     _lessened(bench, found, candidates, settings, cores)
-    return better is not None and found.best.fit.over_noise > ABOVE_NOISE
+    return better is not None
 
 
 def _over_noise(runner: Runner) -> float:
@@ -209,7 +211,7 @@ def continued_nominal(
     Args:
         bench: data and problems.
         direct: as free rollouts led it.
-        found: receives the fit.
+        found: remembers that it was done.
         settings: of the search.
         cores: that roll out at the same time.
 
@@ -221,7 +223,6 @@ def continued_nominal(
     led = race(bench, [Entrant((), {}), centre], settings.nominal, cores)[0]
     fitted = race(bench, [Entrant((), led.values), centre], (settings.again,), cores)[0]
     trace(f"    nominal {direct.fit.over_noise:.4f}, continued {fitted.fit.over_noise:.4f}")
-    found.keep(fitted)
     return fitted if direct.fit.objective - fitted.fit.objective > gain_needed(direct.fit) else None
 
 
