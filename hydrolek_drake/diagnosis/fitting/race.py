@@ -6,7 +6,6 @@ Jamieson and Talwalkar, Non-stochastic best arm identification and hyperparamete
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.line_search import Along, searched_along
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
 from hydrolek_drake.diagnosis.search.settings import Rung
-from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
@@ -33,10 +32,10 @@ class Start:
         values: full path -> value; what is not named is at the rig's own.
     """
 
-    effects: tuple[Candidate, ...]
+    effects: tuple[Addition, ...]
     values: dict[str, float]
 
-    def with_addition(self, addition: Any, values: Mapping[str, float]) -> "Entrant":
+    def with_addition(self, addition: Addition, values: Mapping[str, float]) -> "Entrant":
         """The structure with one addition.
 
         Args:
@@ -56,7 +55,7 @@ class Entrant:
         start: whose slopes lead it at first; None for its own.
     """
 
-    effects: tuple[Candidate, ...]
+    effects: tuple[Addition, ...]
     values: dict[str, float]
     start: Start | None = None
 
@@ -65,7 +64,7 @@ class Entrant:
 class Runner:
     """A structure on its way."""
 
-    effects: tuple[Candidate, ...]
+    effects: tuple[Addition, ...]
     place: Place
 
     @property
@@ -184,7 +183,8 @@ def _ways(runner: Runner, number: int) -> list[Along]:
     paths = list(runner.place.problem.parameters.paths)
     ways = []
     if candidate.sudden:
-        free, index = candidate.size, paths.index(candidate.size_path)
+        index = paths.index(candidate.size_path)
+        free = runner.place.problem.parameters.free[index]
         value = free.from_unit(float(runner.place.unit[index]))
         places = np.clip([free.to_unit(value * stride) for stride in STRIDES], EDGE, 1.0 - EDGE)
         ways.append(Along(index, places))
@@ -253,7 +253,7 @@ def _in_reach(runners: Sequence[Runner]) -> list[Runner]:
     return [r for r in runners if r.place.objective <= FAR**2 * best.objective]
 
 
-def problem_of(bench: Workbench, effects: tuple[Candidate, ...], rung: Rung) -> Problem:
+def problem_of(bench: Workbench, effects: tuple[Addition, ...], rung: Rung) -> Problem:
     """Residuals of a structure on a rung."""
     data = bench.training if math.isinf(rung.seconds) else [e.until(rung.seconds) for e in bench.training]
     return problem_with(bench, effects, rung.coarse * bench.fine, data, rung.observer_s)
@@ -261,7 +261,7 @@ def problem_of(bench: Workbench, effects: tuple[Candidate, ...], rung: Rung) -> 
 
 def problem_with(
     bench: Workbench,
-    effects: tuple[Candidate, ...],
+    effects: tuple[Addition, ...],
     step: float,
     experiments: Sequence[Experiment],
     observer_s: float = math.inf,
@@ -288,7 +288,7 @@ def _begun(bench: Workbench, entrant: Entrant) -> Runner:
     )
 
 
-def hypothesis_of(effects: tuple[Candidate, ...], place: Place, step: float) -> Hypothesis:
+def hypothesis_of(effects: tuple[Addition, ...], place: Place, step: float) -> Hypothesis:
     """A fit as the rest of the diagnosis takes it."""
     problem, unit, residuals, moving = place.problem, place.unit, place.residuals, place.moving
     assert residuals is not None

@@ -2,17 +2,19 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Protocol
 
 from hydrolek_drake.diagnosis.data.weighing import weighted_by
 from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
+from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.search.openings import Opening, continued_nominal, enlarged, opened
 from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.search.tracing import trace
 from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
@@ -23,7 +25,7 @@ EFFECTS, LAWS = "effects", "laws"
 class Unlisted(Protocol):
     """Physics in no list that may be beside a structure."""
 
-    def offer(self, bench: Workbench, parent: Hypothesis) -> Sequence[Any]:
+    def offer(self, bench: Workbench, parent: Hypothesis) -> Sequence[Sized | LostWindows]:
         """Terms of laws and lost commands that may explain what a structure leaves."""
         ...
 
@@ -61,7 +63,7 @@ def search_structures(
             if kind == LAWS and any(o.at_noise and _worth_while(o) for o in openings):
                 continue  # a law could promise no more
             if key not in seen or seen[key].parent is not parent:
-                own: Sequence[Any] = candidates
+                own: Sequence[Sized | LostWindows] = candidates
                 if kind == LAWS and unlisted is not None:
                     own = unlisted.offer(bench, parent)
                 alone = len(wanted) == 1

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -27,8 +26,8 @@ from hydrolek_drake.diagnosis.search.promise import Promise, promises_at
 from hydrolek_drake.diagnosis.search.settings import TELLING, Rung, Settings
 from hydrolek_drake.diagnosis.search.tracing import trace
 from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.structures.addition import Addition, Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, redundant, widenings
-from hydrolek_drake.diagnosis.structures.ranges import widened
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
 
@@ -50,7 +49,7 @@ class Opening:
 
     parent: Hypothesis
     kind: str
-    own: tuple[Any, ...]
+    own: tuple[Sized, ...]
     free: tuple[Promise, ...]
     pulled: tuple[Promise, ...]
     sizes: dict[str, float]
@@ -73,7 +72,7 @@ def opened(
     bench: Workbench,
     parent: Hypothesis,
     kind: str,
-    additions: Sequence[Any],
+    additions: Sequence[Sized | LostWindows],
     found: Tried,
     settings: Settings,
     cores: int,
@@ -93,8 +92,8 @@ def opened(
         alone: whether it is enlarged whatever others promise.
     """
     lost = next((c for c in additions if isinstance(c, LostWindows)), None)
-    additions = [c for c in additions if c is not lost]
-    own = tuple(c for c in additions if c.size_path not in parent.ids and not redundant(parent.effects, c))
+    sized = [c for c in additions if not isinstance(c, LostWindows)]
+    own = tuple(c for c in sized if c.size_path not in parent.ids and not redundant(parent.effects, c))
     sizes = of_additions(parent.values)
     if not own:
         return Opening(parent, kind, (), (), (), sizes, math.inf)
@@ -227,7 +226,7 @@ def continued_nominal(
 
 
 def _observed(
-    bench: Workbench, parent: Hypothesis, own: Sequence[Any], settings: Settings, cores: int
+    bench: Workbench, parent: Hypothesis, own: Sequence[Sized], settings: Settings, cores: int
 ) -> tuple[list[Promise], float]:
     """What additions promise to an observer around the rig's own numbers, and the share that the best one takes."""
     first = settings.continued[0]
@@ -285,15 +284,13 @@ def _lessened(
 def _widened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
     """The best structure with wider ranges, where a number of what it adds lies at an end of one (`ranges`)."""
     best = found.best
-    wide: tuple[Any, ...] = tuple(
-        widened(c, best.values) if isinstance(c, Candidate) else c.widened(best.values) for c in best.effects
-    )
+    wide = tuple(c.widened(best.values) for c in best.effects)
     if any(a.free != b.free for a, b in zip(wide, best.effects, strict=True)):
         for each in race(bench, [Entrant(wide, best.values)], (settings.again,), cores):
             found.keep(each)
 
 
-def _names(effects: Sequence[Candidate]) -> str:
+def _names(effects: Sequence[Addition]) -> str:
     return "+".join(c.id for c in effects) or "nominal"
 
 

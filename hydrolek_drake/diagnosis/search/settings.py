@@ -14,6 +14,9 @@ WIDER = 4.0
 far than where its fit begins."""
 
 
+SIZES = (1.0, 0.1, 0.01)
+"""Sizes at which an effect is tried, as multiples of where its search begins."""
+
 TELLING = 2.0
 """What an addition changes is told by rollouts with steps so many times the rig's own on both sides of a difference."""
 
@@ -44,9 +47,6 @@ class Rung:
 @dataclass(frozen=True)
 class Settings:
     """Constants of the search."""
-
-    sizes: tuple[float, ...] = (1.0, 0.1, 0.01)
-    """Sizes at which an addition is tried, as multiples of where its search begins."""
 
     starts: int = 2
     """So many places of each addition are fitted from on each way."""
