@@ -1,7 +1,9 @@
 """`hydrolek diagnose`: locate the mismatch, name the missing physics, model it, show the fit improve."""
 
+import contextlib
 import math
 import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,6 +14,8 @@ from hydrolek_drake.cli.settings import ConfirmOption, SetOption
 from hydrolek_drake.errors import InputError
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from hydrolek_drake.replay.confirmation import Confirmation
 
 
@@ -32,6 +36,10 @@ def diagnose(
     workers: Annotated[
         int | None, typer.Option(help="threads; as many as there are cores by default")
     ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="roll out on an existing Dask cluster, such as tcp://host:8786"),
+    ] = None,
     at_most: Annotated[
         float | None,
         typer.Option(metavar="MINUTES", help="end the search then, with what is known by that time"),
@@ -50,13 +58,13 @@ def diagnose(
 
     if workers is not None and workers < 1:
         raise InputError(f"--workers {workers}: at least 1 is needed")
+    if workers is not None and cluster is not None:
+        raise InputError("--workers is for threads here, --cluster for other computers; give one of them")
     if at_most is not None and not 0.0 < at_most < math.inf:
         raise InputError(f"--at-most {at_most:g}: minutes must be more than 0")
     refuse_twice([*recordings, *(holdout or [])], "; held-out data must be other data")
     output = console()
     loaded, (train, held) = rig_and_recordings(rig, set_, recordings, holdout)
-
-    from concurrent.futures import ThreadPoolExecutor
 
     from hydrolek_drake.diagnosis.answer import INTERRUPTED
     from hydrolek_drake.diagnosis.diagnosis import diagnose as run_diagnosis
@@ -67,8 +75,7 @@ def diagnose(
 
     if out is not None:
         prepare_folder(out)
-    count = workers or os.cpu_count() or 1
-    with progress("starting") as tell, ThreadPoolExecutor(count) as pool:
+    with progress("starting") as tell, _pool(workers, cluster) as (pool, count):
         tell("checking ...")
         tell_what_looks_wrong(loaded, [*train, *held], output)
 
@@ -101,3 +108,19 @@ def diagnose(
         output.print(f"\nreport: {page}", markup=False, soft_wrap=True)
     if INTERRUPTED in done.reasons and not limit.reached:
         raise KeyboardInterrupt
+
+
+@contextlib.contextmanager
+def _pool(workers: int | None, cluster: str | None) -> "Iterator[tuple[Executor, int]]":
+    """Threads that roll out here or on a cluster, and how many."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    if cluster is not None:
+        from hydrolek_drake.identification.search.cluster_pool import ClusterPool
+
+        with ClusterPool(cluster) as pool:
+            yield pool, pool.cores
+        return
+    count = workers or os.cpu_count() or 1
+    with ThreadPoolExecutor(count) as threads:
+        yield threads, count

@@ -196,7 +196,7 @@ def _diagnosed(
         intervals={
             **intervals,
             **(law.intervals if law is not None else {}),
-            **intervals_of_moments(bench, best),
+            **intervals_of_moments(bench, best, cores),
         },
         law=law,
         proposal=proposal,

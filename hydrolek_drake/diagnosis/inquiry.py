@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from hydrolek_drake.diagnosis.answer import BY_BOTH, INTERRUPTED, Answer, Known
 from hydrolek_drake.diagnosis.data.splitting import halves, mixed
@@ -12,12 +11,14 @@ from hydrolek_drake.diagnosis.evidence.judged import Judged
 from hydrolek_drake.diagnosis.evidence.judging import judge_structures, left_of
 from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, MORE_AHEAD
 from hydrolek_drake.diagnosis.evidence.predictive import judge_as_fitted
+from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.laws.found import law_of, likeliest_side, terms_of
 from hydrolek_drake.diagnosis.laws.law import FoundLaw
 from hydrolek_drake.diagnosis.locating.terms_for import estimates_for, terms_for
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.lost_commands.found import lost_of
 from hydrolek_drake.diagnosis.lost_commands.search import lost_in
+from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.best_first import search_structures
 from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.search.tried import Tried
@@ -154,7 +155,7 @@ class _Unlisted:
     scales: Mapping[str, Scales]
     cores: int
 
-    def offer(self, bench: Workbench, parent: Hypothesis) -> Sequence[Any]:
+    def offer(self, bench: Workbench, parent: Hypothesis) -> Sequence[LawTerm | LostWindows]:
         return terms_for(bench, parent, self.scales, self.cores)
 
 

@@ -54,8 +54,8 @@ _of_this_thread = threading.local()
 
 
 @contextlib.contextmanager
-def together_with(tables: Shared) -> Iterator[None]:
-    """Within it this thread's machines are rolled out with those of others (`pool`)."""
+def together_with(tables: Shared | None) -> Iterator[None]:
+    """Within it this thread's machines are rolled out with those of others (`pool`); None for by itself."""
     before = sharing()
     _of_this_thread.tables = tables
     try:

@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.kinematics.frames import in_frame
+from hydrolek_drake.teleop import camera_thread
 from hydrolek_drake.teleop.access import page_address
+from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.console.server import Console
 from hydrolek_drake.teleop.plan import plan_task
 from hydrolek_drake.teleop.session import OperatorSession
@@ -40,6 +42,14 @@ def plan_for(pipe, grasp, cut, grasping="right"):
     pixels = pixel_targets(snapshot, selected, *clicks, frame.camera)
     targets = pipe_targets(snapshot, selected, pixels, frame.camera)
     return plan_task(targets, frame.camera, home_posture(), np.random.default_rng(1), grasping=grasping)
+
+
+@pytest.fixture(autouse=True)
+def patient_camera(monkeypatch):
+    """A camera that is rendered by a busy computer is slow and not lost."""
+    monkeypatch.setattr(
+        camera_thread, "teleop_entries", lambda part: {**teleop_entries(part), "mute": 1e-3 * _PATIENCE}
+    )
 
 
 @pytest.fixture(scope="session")

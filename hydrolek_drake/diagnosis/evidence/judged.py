@@ -3,13 +3,13 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.noise import NOISE_KNOWN
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.gains import FIDELITY
+from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 
 EFFECT_COST = 4.5
@@ -48,7 +48,7 @@ class Judged:
     spread: float = 0.0
     behind: float = 0.0
     behind_error: float = math.nan
-    stands: Mapping[str, tuple[tuple[Any, ...], np.ndarray]] = field(default_factory=dict)
+    stands: Mapping[str, tuple[tuple[Addition, ...], np.ndarray]] = field(default_factory=dict)
 
     @property
     def over_noise(self) -> float:

@@ -45,10 +45,13 @@ def judge_structures(
         settings: of the search.
         cores: that roll out at the same time.
     """
+    last = settings.last
+    refined: list[Hypothesis] = []
     contenders = _contenders(found)
-    entrants = [Entrant(h.effects, h.values) for h in contenders]
-    last = replace(settings.last, keep=len(contenders))
-    refined = race(bench, entrants, (last,), cores)
+    for rounds, some in ((last.rounds, _in_doubt(contenders, found.best)), (0, contenders)):
+        entrants = [Entrant(h.effects, h.values) for h in some if h.ids not in {r.ids for r in refined}]
+        if entrants:
+            refined += race(bench, entrants, (replace(last, rounds=rounds, keep=len(entrants)),), cores)
     refined = [h for h in refined if pays(h, refined) and all(c.says_something(h.values) for c in h.effects)]
     judged = _predicted(bench, refined, held_out, last.coarse * bench.fine, settings, cores)
     return with_probabilities([j for j in judged if predicts(j, judged)])
@@ -58,10 +61,16 @@ def _contenders(found: Tried) -> list[Hypothesis]:
     """Those that may still be right, always with the nominal model and the best one less one addition."""
     best = found.best
     ranked = sorted(found.hypotheses.values(), key=cost)
-    near = [h for h in ranked if 0.5 * (cost(h) - cost(best)) < max(OUT_OF_REACH, 0.05 * best.fit.objective)]
+    near = _in_doubt(ranked, best)
     lesser = [h for h in ranked if h.ids < best.ids and len(h.ids) == len(best.ids) - 1]
     unique = {h.ids: h for h in (best, found.baseline, *lesser, *near)}
     return list(unique.values())[:MOST_JUDGED]
+
+
+def _in_doubt(hypotheses: Sequence[Hypothesis], best: Hypothesis) -> list[Hypothesis]:
+    """Those that the training data leave in doubt beside the best one."""
+    doubt = max(OUT_OF_REACH, 0.05 * best.fit.objective)
+    return [h for h in hypotheses if 0.5 * (cost(h) - cost(best)) < doubt]
 
 
 def _predicted(
@@ -85,6 +94,7 @@ def _predicted(
             places.append(Place(problem, bench.movable(effects, problem.parameters), unit, exact=True))
     told = iter(with_slopes(places, bench.pool, cores))
     judged, far = [], []
+    doubtful = _in_doubt(hypotheses, min(hypotheses, key=cost))
     for own in begun:
         h = own.hypothesis
         some = [next(told) for _ in held_out]
@@ -93,7 +103,7 @@ def _predicted(
         chi_squared, spread = predictive(residuals, slopes, h.fit)
         one = replace(own, held_out=residuals, chi_squared=chi_squared, spread=spread)
         is_far = one.over_noise > SMALL or float(residuals @ residuals) - chi_squared > NEARBY
-        far.append(is_far and not own_of_recordings(h).any())
+        far.append(is_far and any(h is d for d in doubtful) and not own_of_recordings(h).any())
         judged.append(one)
     chosen = [i for i, is_far in enumerate(far) if is_far]
     both = [*bench.training, *held_out]

@@ -11,7 +11,7 @@ AT_NOISE = 1.0 + NOISE_KNOWN
 """A model that leaves so many times the noise or less leaves nothing that could be told from noise."""
 
 ABOVE_NOISE = 1.0 + 2.0 * NOISE_KNOWN
-"""Where no effect promises anything, a model is taken to lack one only if it leaves more than this."""
+"""A model that leaves more than this is surely above the noise."""
 
 MORE_AHEAD = 1.0 + 4.0 * NOISE_KNOWN
 """A model lacks something ahead if it leaves so many times the noise there, whatever its uncertainty accounts for: four

@@ -6,7 +6,6 @@ parameters.
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.lost_commands.search import windows_ahead
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows, recording_of
 from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 
@@ -49,7 +49,7 @@ def with_stands(
             continue
         experiment = part.split(np.ones_like(part.used))  # a lost command moves all that comes after it
         lost = windows_ahead(bench, h, experiment, h.step, settings, cores)
-        effects: tuple[Any, ...] = tuple(
+        effects: tuple[Addition, ...] = tuple(
             lost if lost is not None and isinstance(c, LostWindows) else c for c in h.effects
         )
         rest = {path: value for path, value in h.values.items() if ".lost." not in path}
@@ -75,7 +75,7 @@ def own_of_recordings(hypothesis: Hypothesis) -> np.ndarray:
 
 def _in_phase(
     bench: Workbench,
-    effects: tuple[Any, ...],
+    effects: tuple[Addition, ...],
     unit: np.ndarray,
     experiment: Experiment,
     step: float,

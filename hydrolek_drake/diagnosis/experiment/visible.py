@@ -15,6 +15,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.fitting.projection import Across
 from hydrolek_drake.diagnosis.search.gains import VISIBLE, gain_needed
 from hydrolek_drake.diagnosis.search.promise import Promise
+from hydrolek_drake.diagnosis.search.settings import TELLING
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects import EFFECTS
@@ -55,21 +56,28 @@ def visible_sizes(
     """
     across = Across(hypothesis.fit)
     own = hypothesis.ids
-    wanted = [p for p in promises if p.candidate.size_path not in own and 0.0 < p.visible_from < math.inf]
-    sizes = bench.side_by_side(lambda p: _visible_size(bench, hypothesis, p, across), wanted)
+    wanted = [
+        (p.candidate, p)
+        for p in promises
+        if isinstance(p.candidate, Candidate)
+        and p.candidate.size_path not in own
+        and 0.0 < p.visible_from < math.inf
+    ]
+    sizes = bench.side_by_side(lambda one: _visible_size(bench, hypothesis, one[0], one[1], across), wanted)
     found = [
-        Visible(p.candidate, max(size, p.candidate.beneath))
-        for p, size in zip(wanted, sizes, strict=True)
+        Visible(candidate, max(size, candidate.beneath))
+        for (candidate, _), size in zip(wanted, sizes, strict=True)
         if math.isfinite(size)
     ]
     return tuple(sorted(found, key=lambda v: v.candidate.id))
 
 
-def _visible_size(bench: Workbench, hypothesis: Hypothesis, promise: Promise, across: Across) -> float:
+def _visible_size(
+    bench: Workbench, hypothesis: Hypothesis, candidate: Candidate, promise: Promise, across: Across
+) -> float:
     """That of one effect; NaN if none in its range is seen."""
-    candidate = promise.candidate
     path = candidate.size_path
-    problem = bench.problem((*hypothesis.effects, candidate), bench.fine)
+    problem = bench.problem((*hypothesis.effects, candidate), TELLING * bench.fine)
     start = promise.starts[0]
     sign = math.copysign(1.0, start[path])
     alone = {**hypothesis.values, **start, **_without_special_cases(candidate)}

@@ -42,10 +42,11 @@ def searched_along(
     moved = []
     for place, way in zip(places, ways, strict=True):
         units = []
-        for value in () if way is None else way.units:
-            unit = place.unit.copy()
-            unit[way.index] = value  # type: ignore[union-attr]
-            units.append(unit)
+        if way is not None:
+            for value in way.units:
+                unit = place.unit.copy()
+                unit[way.index] = value
+                units.append(unit)
         moved.append(units)
     found = residuals_at(
         [Request(p.problem, tuple(u)) for p, u in zip(places, moved, strict=True)], pool, cores

@@ -6,14 +6,14 @@ Jamieson and Talwalkar, Non-stochastic best arm identification and hyperparamete
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.line_search import Along, searched_along
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
 from hydrolek_drake.diagnosis.search.settings import Rung
-from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
@@ -32,10 +32,10 @@ class Start:
         values: full path -> value; what is not named is at the rig's own.
     """
 
-    effects: tuple[Candidate, ...]
+    effects: tuple[Addition, ...]
     values: dict[str, float]
 
-    def with_addition(self, addition: Any, values: Mapping[str, float]) -> "Entrant":
+    def with_addition(self, addition: Addition, values: Mapping[str, float]) -> "Entrant":
         """The structure with one addition.
 
         Args:
@@ -55,7 +55,7 @@ class Entrant:
         start: whose slopes lead it at first; None for its own.
     """
 
-    effects: tuple[Candidate, ...]
+    effects: tuple[Addition, ...]
     values: dict[str, float]
     start: Start | None = None
 
@@ -64,7 +64,7 @@ class Entrant:
 class Runner:
     """A structure on its way."""
 
-    effects: tuple[Candidate, ...]
+    effects: tuple[Addition, ...]
     place: Place
 
     @property
@@ -92,29 +92,67 @@ def race(
     Returns:
         Those that ended on the last rung, the best first.
     """
+    runners = run(bench, entered(bench, entrants, rungs[0], cores), rungs, cores, seen)
+    return hypotheses_of(bench, runners, rungs[-1])
+
+
+def entered(bench: Workbench, entrants: Sequence[Entrant], rung: Rung, cores: int) -> list[Runner]:
+    """Structures at their starts, led by the slopes of the structures that they enlarge.
+
+    Args:
+        bench: data and problems.
+        entrants: structures and starts.
+        rung: the first one.
+        cores: that roll out at the same time.
+    """
     runners = [_begun(bench, entrant) for entrant in entrants]
+    problems = {r.key: problem_of(bench, r.effects, rung) for r in runners}
+    led = _led(bench, entrants, [r.place.at(problems[r.key]) for r in runners], rung, cores)
+    return [replace(r, place=place) for r, place in zip(runners, led, strict=True)]
+
+
+def run(
+    bench: Workbench,
+    runners: Sequence[Runner],
+    rungs: Sequence[Rung],
+    cores: int,
+    seen: Callable[[Sequence[Runner], Rung], None] = lambda runners, rung: None,
+) -> list[Runner]:
+    """Structures on their way through rungs, the best first.
+
+    Args:
+        bench: data and problems.
+        runners: structures and where they stand.
+        rungs: of the race.
+        cores: that roll out at the same time.
+        seen: told how the fits stand after each rung.
+    """
+    now = list(runners)
     for rung in rungs:
-        problems = {r.key: problem_of(bench, r.effects, rung) for r in runners}
-        begun = [r.place.at(problems[r.key]) for r in runners]
-        if rung is rungs[0]:
-            begun = _led(bench, entrants, begun, rung, cores)
-        last = rung is rungs[-1]
+        problems = {r.key: problem_of(bench, r.effects, rung) for r in now}
         places = descend(
-            begun,
+            [r.place.at(problems[r.key]) for r in now],
             rung.rounds,
             bench.pool,
             cores,
-            share=1e-4 if last else 5e-4,
+            share=rung.share,
             stop=bench.alive,
         )
         bench.evaluations += sum(p.evaluations for p in problems.values())
-        runners = [replace(r, place=place) for r, place in zip(runners, places, strict=True)]
-        if rung is not rungs[0]:
-            runners = tried_elsewhere(bench, runners, cores)
-        seen(runners, rung)
-        runners = sorted(runners, key=lambda r: r.place.objective)
-        runners = _best_of_each(runners, 2 if rung is not rungs[-1] else 1)[: rung.keep]
-    return [hypothesis_of(r.effects, r.place, rungs[-1].coarse * bench.fine) for r in runners]
+        now = [replace(r, place=place) for r, place in zip(now, places, strict=True)]
+        if rung.elsewhere:
+            now = tried_elsewhere(bench, now, cores)
+        now = sorted(now, key=lambda r: r.place.objective)
+        seen(now, rung)
+        last = rung is rungs[-1]
+        now = _distinct(now, 1 if last else 2)
+        now = (now if last or not math.isinf(rung.observer_s + rung.seconds) else _in_reach(now))[: rung.keep]
+    return now
+
+
+def hypotheses_of(bench: Workbench, runners: Sequence[Runner], rung: Rung) -> list[Hypothesis]:
+    """Fits of a rung as the rest of the diagnosis takes them."""
+    return [hypothesis_of(r.effects, r.place, rung.coarse * bench.fine) for r in runners]
 
 
 STRIDES = (0.25, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 1.02, 1.05, 1.1, 1.25, 1.5, 2.0, 4.0)
@@ -145,7 +183,8 @@ def _ways(runner: Runner, number: int) -> list[Along]:
     paths = list(runner.place.problem.parameters.paths)
     ways = []
     if candidate.sudden:
-        free, index = candidate.size, paths.index(candidate.size_path)
+        index = paths.index(candidate.size_path)
+        free = runner.place.problem.parameters.free[index]
         value = free.from_unit(float(runner.place.unit[index]))
         places = np.clip([free.to_unit(value * stride) for stride in STRIDES], EDGE, 1.0 - EDGE)
         ways.append(Along(index, places))
@@ -189,18 +228,32 @@ def _inside(unit: np.ndarray, moving: np.ndarray) -> np.ndarray:
     return np.where(moving, np.clip(unit, EDGE, 1.0 - EDGE), unit)
 
 
-def _best_of_each(runners: Sequence[Runner], count: int) -> list[Runner]:
-    """At most so many fits of each structure, the best first."""
-    taken: dict[frozenset[str], int] = {}
-    kept = []
+SAME = 1e-3
+"""Two fits of a structure whose squares differ by less than this share stand in the same minimum."""
+
+
+def _distinct(runners: Sequence[Runner], count: int) -> list[Runner]:
+    """At most so many fits of each structure, in different minima, the best first."""
+    kept: dict[frozenset[str], list[float]] = {}
+    chosen = []
     for runner in runners:
-        taken[runner.key] = taken.get(runner.key, 0) + 1
-        if taken[runner.key] <= count:
-            kept.append(runner)
-    return kept
+        before = kept.setdefault(runner.key, [])
+        squares = runner.place.objective
+        if len(before) < count and (not before or squares > (1.0 + SAME) * before[-1]):
+            before.append(squares)
+            chosen.append(runner)
+    return chosen
 
 
-def problem_of(bench: Workbench, effects: tuple[Candidate, ...], rung: Rung) -> Problem:
+def _in_reach(runners: Sequence[Runner]) -> list[Runner]:
+    """Those that may still come to where the best one is: nothing is below the noise."""
+    best = runners[0].place
+    if best.objective > AT_NOISE**2 * best.problem.counted:
+        return list(runners)
+    return [r for r in runners if r.place.objective <= FAR**2 * best.objective]
+
+
+def problem_of(bench: Workbench, effects: tuple[Addition, ...], rung: Rung) -> Problem:
     """Residuals of a structure on a rung."""
     data = bench.training if math.isinf(rung.seconds) else [e.until(rung.seconds) for e in bench.training]
     return problem_with(bench, effects, rung.coarse * bench.fine, data, rung.observer_s)
@@ -208,7 +261,7 @@ def problem_of(bench: Workbench, effects: tuple[Candidate, ...], rung: Rung) -> 
 
 def problem_with(
     bench: Workbench,
-    effects: tuple[Candidate, ...],
+    effects: tuple[Addition, ...],
     step: float,
     experiments: Sequence[Experiment],
     observer_s: float = math.inf,
@@ -235,7 +288,7 @@ def _begun(bench: Workbench, entrant: Entrant) -> Runner:
     )
 
 
-def hypothesis_of(effects: tuple[Candidate, ...], place: Place, step: float) -> Hypothesis:
+def hypothesis_of(effects: tuple[Addition, ...], place: Place, step: float) -> Hypothesis:
     """A fit as the rest of the diagnosis takes it."""
     problem, unit, residuals, moving = place.problem, place.unit, place.residuals, place.moving
     assert residuals is not None

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from hydrolek_drake.diagnosis.fitting.projection import Across
+from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
 from hydrolek_drake.diagnosis.intervals.curvature import CONFIDENCE, Interval
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench, moments_of
 from hydrolek_drake.identification.parameter_set import Free
@@ -19,11 +20,16 @@ CLOSER = 12
 """So many times closer together about the fitted one."""
 
 
-def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis) -> dict[str, Interval]:
+def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis, cores: int) -> dict[str, Interval]:
     """Full path -> moment with its 95 % interval: all moments that the residuals do not tell from the best one.
 
     A moment has no slope, so its interval is that of the likelihood ratio, all else changed along its tangents (Seber,
     Wild, Nonlinear Regression, 1989, chapter 5).
+
+    Args:
+        bench: data and problems.
+        hypothesis: a fitted model.
+        cores: that roll out at the same time.
     """
     found = {}
     for free in moments_of(hypothesis.effects):
@@ -31,7 +37,7 @@ def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis) -> dict[str, 
         tried = np.linspace(free.lower, free.upper, GRID + 1)
         near = np.clip(value + apart * np.linspace(-2.0, 2.0, 4 * CLOSER + 1), free.lower, free.upper)
         moments = np.unique([*tried, *near, value])
-        errors = _errors(bench, hypothesis, free, moments)
+        errors = _errors(bench, hypothesis, free, moments, cores)
         unlike = chi2.ppf(CONFIDENCE, 1) * max(1.0, hypothesis.fit.over_noise) ** 2
         alike = np.flatnonzero(errors <= errors.min() + unlike)
         low, high = max(alike[0] - 1, 0), min(alike[-1] + 1, len(moments) - 1)
@@ -39,14 +45,13 @@ def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis) -> dict[str, 
     return found
 
 
-def _errors(bench: Workbench, hypothesis: Hypothesis, free: Free, moments: np.ndarray) -> np.ndarray:
+def _errors(
+    bench: Workbench, hypothesis: Hypothesis, free: Free, moments: np.ndarray, cores: int
+) -> np.ndarray:
     """Squared residuals that each moment leaves after the best change of all else. # (moments,)."""
-    problem, across = bench.problem(hypothesis.effects, bench.fine), Across(hypothesis.fit)
-
-    def error(moment: float) -> float:
-        bench.alive()
-        unit = problem.parameters.unit({**hypothesis.values, free.path: moment})
-        left = across(np.concatenate([problem.residuals(unit), hypothesis.fit.off_prior]))
-        return float(left @ left)
-
-    return np.nan_to_num(np.array(bench.side_by_side(error, list(moments))), nan=np.inf)
+    problem = bench.problem(hypothesis.effects, bench.fine)
+    across, off = Across(hypothesis.fit), hypothesis.fit.off_prior
+    units = [problem.parameters.unit({**hypothesis.values, free.path: moment}) for moment in moments]
+    [found] = residuals_at([Request(problem, tuple(units))], bench.pool, cores)
+    left = [across(np.concatenate([residuals, off])) for residuals in found]
+    return np.nan_to_num(np.array([float(each @ each) for each in left]), nan=np.inf)

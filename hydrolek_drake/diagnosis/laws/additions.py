@@ -50,6 +50,7 @@ class LawTerm:
     cost: ClassVar[float] = 2.0
     """In effects: where it enters and what it depends on are both chosen among many."""
 
+    tried: ClassVar[tuple[float, ...]] = (1.0,)
     weakens: ClassVar[bool] = False
     sudden: ClassVar[bool] = False
     moments: ClassVar[tuple[Free, ...]] = ()

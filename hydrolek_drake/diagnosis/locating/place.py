@@ -108,7 +108,7 @@ def locate(
     explained = share_of(baseline.fit, baseline.fit.chi_squared - best.fit.chi_squared)
     found = []
     weights = []
-    for candidate in best.effects:
+    for candidate in best.listed:
         neutral = {
             f"joints.{candidate.joint}.effects.{candidate.id}.{p.name}": float(p.neutral or 0.0)
             for p in candidate.effect.parameters

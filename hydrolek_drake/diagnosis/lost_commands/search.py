@@ -1,7 +1,6 @@
 """Windows in which commands got lost, completed: more beside those that were fitted, and none without need."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -27,6 +26,7 @@ from hydrolek_drake.diagnosis.lost_commands.windows import (
 )
 from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.search.tracing import trace
+from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 
@@ -52,11 +52,11 @@ def with_windows(
         settings: of the search.
         cores: that roll out at the same time.
     """
-    rungs = tuple(rung for rung in settings.continued if rung.observer_s >= REMEMBERS_S)
+    rungs = (*(rung for rung in settings.continued if rung.observer_s >= REMEMBERS_S), settings.again)
     own, now, fits = of_additions(parent.values), lost, []
     values = parent.values
     for _ in range(settings.lost_rounds):
-        effects: tuple[Any, ...] = (*parent.effects, now)
+        effects: tuple[Addition, ...] = (*parent.effects, now)
         begun = [Entrant(effects, own), Entrant(effects, values)]
         fitted = race(bench, begun, rungs, cores)[0]
         fitted, needed = _needed(bench, fitted, now, settings, cores)
@@ -99,7 +99,7 @@ def _needed(
             Place(p, bench.movable(e, p.parameters), p.parameters.unit(values))
             for p, e in zip(problems, trials, strict=True)
         ]
-        ended = descend(begun, settings.free[-1].rounds, bench.pool, cores, stop=bench.alive)
+        ended = descend(begun, settings.again.rounds, bench.pool, cores, stop=bench.alive)
         place, effects = min(zip(ended, trials, strict=True), key=lambda each: each[0].objective)
         if place.objective > most:
             break
@@ -114,7 +114,7 @@ def _each(lost: LostWindows) -> list[tuple[str, int]]:
     return [(recording, number) for recording, w in lost.seen.items() for number in range(len(w))]
 
 
-def _exchanged(structure: Hypothesis, other: LostWindows) -> tuple[Any, ...]:
+def _exchanged(structure: Hypothesis, other: LostWindows) -> tuple[Addition, ...]:
     """Additions of a structure with other windows."""
     return tuple(other if isinstance(c, LostWindows) else c for c in structure.effects)
 
@@ -185,7 +185,7 @@ def windows_ahead(
         more = _seen_beside(bench, structure, now, dict(now.seen), (experiment,), cores, as_fitted=True)
         if more is None:
             break
-        effects: tuple[Any, ...] = tuple(more if c is lost else c for c in structure.effects)
+        effects: tuple[Addition, ...] = tuple(more if c is lost else c for c in structure.effects)
         problem = problem_with(bench, effects, step, [experiment])
         moving = np.array([".lost." in path for path in problem.parameters.paths])
         begun = Place(problem, moving, problem.parameters.unit(rest))

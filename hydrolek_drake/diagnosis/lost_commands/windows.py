@@ -9,12 +9,13 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.laws.terms import Span
+from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.identification.problem import Problem
@@ -64,9 +65,9 @@ class LostWindows:
     cost: ClassVar[float] = 2.0
     """In effects, as of terms of laws; each window must pay for itself besides."""
 
-    weakens: ClassVar[bool] = False
     sudden: ClassVar[bool] = False
     moments: ClassVar[tuple[Free, ...]] = ()
+    beneath: ClassVar[float] = 0.0
     stage: ClassVar[str] = "command"
     id: ClassVar[str] = "unlisted.command"
     label: ClassVar[str] = "unlisted.command: lost commands"
@@ -143,12 +144,13 @@ class LostProblem(Problem):
     def runs(self, unit: np.ndarray) -> list[Run]:
         """As of `Problem`, with commands that were lost."""
         records = self.parameters.records(unit)
-        arrived = arrivals(self.parameters.lost, self.parameters.values(unit), self.experiments)  # type: ignore[attr-defined]
+        lost = self.parameters.lost if isinstance(self.parameters, WithWindows) else ()
+        arrived = arrivals(lost, self.parameters.values(unit), self.experiments)
         return [e.run(records, self.longest_step, pull_time=self.pull_time) for e in arrived]
 
 
 def arrivals(
-    additions: Sequence[Any], values: Mapping[str, float], experiments: Sequence[Experiment]
+    additions: Sequence[Addition], values: Mapping[str, float], experiments: Sequence[Experiment]
 ) -> list[Experiment]:
     """The same experiments with the commands that arrived.
 

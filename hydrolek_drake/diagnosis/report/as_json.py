@@ -64,7 +64,7 @@ def effects_json(diagnosis: Diagnosis) -> list[dict[str, Any]]:
     if diagnosis.conclusion is None:
         return []
     told: list[dict[str, Any]] = []
-    for candidate in diagnosis.best.hypothesis.effects:
+    for candidate in diagnosis.best.hypothesis.listed:
         parameters = {}
         for parameter in candidate.effect.parameters:
             known = diagnosis.intervals[path_of(candidate, parameter)]

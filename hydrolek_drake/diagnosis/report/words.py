@@ -10,7 +10,6 @@ from hydrolek_drake.diagnosis.intervals.of_laws import amplitude_intervals, freq
 from hydrolek_drake.diagnosis.laws.law import FoundLaw
 from hydrolek_drake.diagnosis.report.numbers import quantity, with_interval
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
-from hydrolek_drake.diagnosis.structures.ranges import ended
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.replay.display import ratio, shown
 from hydrolek_drake.rigs import Rig
@@ -56,7 +55,7 @@ def effect_sentence(candidate: Candidate, diagnosis: Diagnosis) -> str:
 
 def _at_an_end(candidate: Candidate, diagnosis: Diagnosis) -> str:
     """That a parameter of an effect ends at an end of its range; nothing if none does."""
-    ends = {free.path: free for free in ended(diagnosis.best.hypothesis, candidate)}
+    ends = {free.path: free for free in candidate.ended(diagnosis.best.hypothesis.values)}
     told = []
     for parameter in candidate.effect.parameters:
         free = ends.get(path_of(candidate, parameter))
@@ -103,7 +102,7 @@ def headline(diagnosis: Diagnosis) -> str:
             f"to {after} the noise."
         )
     if diagnosis.verdict == "interrupted":
-        so_far = _listed([c.effect.title for c in best.hypothesis.effects]) or "the nominal model"
+        so_far = _listed([c.effect.title for c in best.hypothesis.listed]) or "the nominal model"
         if diagnosis.law is not None:
             so_far = f"a law at the stage {diagnosis.law.law.input.stage}"
             after = _ratio(diagnosis.law.held_out_over_noise)
@@ -111,8 +110,8 @@ def headline(diagnosis: Diagnosis) -> str:
             f"Cut off before the search had ended: best so far is {so_far}, which leaves {after} the noise on "
             f"held-out data (nominal model: {before}). More time may change it."
         )
-    names = _listed([c.effect.title for c in best.hypothesis.effects])
-    stages = ", ".join(dict.fromkeys(c.effect.stage for c in best.hypothesis.effects))
+    names = _listed([c.effect.title for c in best.hypothesis.listed])
+    stages = ", ".join(dict.fromkeys(c.effect.stage for c in best.hypothesis.listed))
     if diagnosis.verdict == "missing_physics":
         it = "it" if len(best.hypothesis.effects) == 1 else "them"
         return (

@@ -2,17 +2,19 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Protocol
 
 from hydrolek_drake.diagnosis.data.weighing import weighted_by
-from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE
+from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
+from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
-from hydrolek_drake.diagnosis.search.openings import Opening, enlarged, opened
+from hydrolek_drake.diagnosis.search.openings import Opening, continued_nominal, enlarged, opened
 from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.search.tracing import trace
 from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
@@ -23,7 +25,7 @@ EFFECTS, LAWS = "effects", "laws"
 class Unlisted(Protocol):
     """Physics in no list that may be beside a structure."""
 
-    def offer(self, bench: Workbench, parent: Hypothesis) -> Sequence[Any]:
+    def offer(self, bench: Workbench, parent: Hypothesis) -> Sequence[Sized | LostWindows]:
         """Terms of laws and lost commands that may explain what a structure leaves."""
         ...
 
@@ -54,14 +56,18 @@ def search_structures(
     seen: dict[tuple[frozenset[str], str], Opening] = {}
     expansions = 0
     while expansions < settings.most_expansions:
-        openings = []
-        for parent, kind in _open(found, done, settings, laws=unlisted is not None):
+        openings: list[Opening] = []
+        wanted = _open(found, done, settings, laws=unlisted is not None)
+        for parent, kind in sorted(wanted, key=lambda each: each[1] == LAWS):
             key = (parent.ids, kind)
+            if kind == LAWS and any(o.at_noise and _worth_while(o) for o in openings):
+                continue  # a law could promise no more
             if key not in seen or seen[key].parent is not parent:
-                own: Sequence[Any] = candidates
+                own: Sequence[Sized | LostWindows] = candidates
                 if kind == LAWS and unlisted is not None:
                     own = unlisted.offer(bench, parent)
-                seen[key] = opened(bench, parent, kind, own, found, settings, cores)
+                alone = len(wanted) == 1
+                seen[key] = opened(bench, parent, kind, own, found, settings, cores, alone=alone)
             openings.append(seen[key])
         if not openings:
             break
@@ -74,7 +80,8 @@ def search_structures(
         expansions += 1
         say(f"{next_.kind} beside {' + '.join(c.id for c in next_.parent.effects) or 'the nominal model'}")
         done.add(next_.key)
-        enlarged(bench, next_, candidates, found, settings, cores)
+        if enlarged(bench, next_, candidates, found, settings, cores):
+            done.discard(next_.key)
         _weigh(bench, found, settings, cores)
         if found.rounds_without_gain(settings.patience):
             break
@@ -91,7 +98,7 @@ def _open(
     best = found.best
     if (frozenset(), EFFECTS) not in done and not found.seeds:
         return [(found.baseline, EFFECTS)]
-    if best.fit.over_noise <= ABOVE_NOISE:
+    if best.fit.over_noise <= AT_NOISE:
         lawful = not all(isinstance(c, Candidate) for c in best.effects)
         items = [(best, LAWS if lawful else EFFECTS)]
     else:
@@ -116,27 +123,42 @@ def _worth_while(opening: Opening) -> bool:
     fit = opening.parent.fit
     if not opening.own:
         return False
-    return fit.over_noise > ABOVE_NOISE or opening.promising >= PROMISING * opening.own[0].cost * gain_needed(
+    return fit.over_noise > AT_NOISE or opening.promising >= PROMISING * opening.own[0].cost * gain_needed(
         fit
     )
 
 
 def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
-    """The nominal model by continuation, from the rig's own numbers and from the middle of their ranges."""
-    centre = {free.path: free.from_unit(0.5) for free in bench.nominal}
-    starts = [Entrant((), {}), Entrant((), centre)]
-    led = race(bench, starts, settings.nominal, cores)
-    last = settings.nominal[-1]
-    best = race(bench, [Entrant((), led[0].values), *starts], (last,), cores)[0]
-    bench.training = tuple(weighted_by(bench, best, bench.training))
-    best = race(bench, [Entrant((), best.values)], (last,), cores)[0]
+    """The nominal model by free rollouts from the rig's own numbers.
+
+    Nothing is below the noise, so that a fit that reaches it needs no other starts. Where one is near it, so that
+    what is missing is small beside what a wrong local minimum leaves, it is fitted by continuation too; where it is
+    far, only if no addition to it reaches the noise (`openings`).
+    """
+    known = next((h.values for h in found.seeds if not h.effects), {})
+    rungs = (settings.again,) if known else (*settings.free, *settings.ended)
+    best = _as_weighed(bench, race(bench, [Entrant((), known)], rungs, cores)[0], settings, cores)
     trace(f"nominal {best.fit.over_noise:.4f}")
+    if not known and AT_NOISE < best.fit.over_noise < FAR:
+        better = continued_nominal(bench, best, found, settings, cores)
+        best = best if better is None else _as_weighed(bench, better, settings, cores)
     found.keep(best)
     found.weighed_at = best.fit.over_noise
     if found.seeds:
-        rung = replace(last, keep=len(found.seeds))
+        rung = replace(settings.again, keep=len(found.seeds))
         for each in race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (rung,), cores):
             found.keep(each)
+
+
+def _as_weighed(bench: Workbench, structure: Hypothesis, settings: Settings, cores: int) -> Hypothesis:
+    """A structure fitted on, the data weighed by it; what is below the noise then was weighed by a worse fit."""
+    now = structure
+    for _ in range(3):
+        bench.training = tuple(weighted_by(bench, now, bench.training))
+        now = race(bench, [Entrant(now.effects, now.values)], (settings.again,), cores)[0]
+        if now.fit.over_noise > 1.0 / AT_NOISE:
+            break
+    return now
 
 
 def _weigh(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
@@ -148,7 +170,7 @@ def _weigh(bench: Workbench, found: Tried, settings: Settings, cores: int) -> No
     ranked = sorted(found.hypotheses.values(), key=lambda h: h.fit.objective)
     near = [h for h in ranked if h.fit.objective < 4.0 * best.fit.objective][:6]
     chosen = {h.ids: h for h in (found.baseline, *near)}
-    rung = replace(settings.free[-1], keep=len(chosen))
+    rung = replace(settings.again, keep=len(chosen))
     again = race(bench, [Entrant(h.effects, h.values) for h in chosen.values()], (rung,), cores)
     found.given_up.update(found.hypotheses)
     found.hypotheses.clear()

@@ -3,23 +3,31 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, AT_NOISE, FAR
+from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
-from hydrolek_drake.diagnosis.fitting.race import Entrant, Runner, Start, problem_of, race
+from hydrolek_drake.diagnosis.fitting.race import (
+    Entrant,
+    Runner,
+    Start,
+    entered,
+    hypotheses_of,
+    problem_of,
+    race,
+    run,
+)
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.lost_commands.search import with_windows
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.search.promise import Promise, promises_at
-from hydrolek_drake.diagnosis.search.settings import Rung, Settings
+from hydrolek_drake.diagnosis.search.settings import TELLING, Rung, Settings
 from hydrolek_drake.diagnosis.search.tracing import trace
 from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.structures.addition import Addition, Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, redundant, widenings
-from hydrolek_drake.diagnosis.structures.ranges import widened
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
 
@@ -32,19 +40,21 @@ class Opening:
         kind: "effects" or "laws".
         own: the additions.
         free: what they promise in free rollouts where the structure was fitted.
-        pulled: what they promise to an observer around the rig's own numbers.
+        pulled: what they promise to an observer around the rig's own numbers; empty where nobody has asked.
         sizes: full path -> value of what the structure adds to the nominal model.
         expected: cost of the structure that they promise.
+        at_noise: whether that one is promised to leave no more than noise.
         lost: windows of lost commands that may be added too.
     """
 
     parent: Hypothesis
     kind: str
-    own: tuple[Any, ...]
+    own: tuple[Sized, ...]
     free: tuple[Promise, ...]
     pulled: tuple[Promise, ...]
     sizes: dict[str, float]
     expected: float
+    at_noise: bool = False
     lost: LostWindows | None = None
 
     @property
@@ -62,10 +72,12 @@ def opened(
     bench: Workbench,
     parent: Hypothesis,
     kind: str,
-    additions: Sequence[Any],
+    additions: Sequence[Sized | LostWindows],
     found: Tried,
     settings: Settings,
     cores: int,
+    *,
+    alone: bool = False,
 ) -> Opening:
     """See what additions promise beside a structure.
 
@@ -77,28 +89,24 @@ def opened(
         found: receives what effects promise.
         settings: of the search.
         cores: that roll out at the same time.
+        alone: whether it is enlarged whatever others promise.
     """
     lost = next((c for c in additions if isinstance(c, LostWindows)), None)
-    additions = [c for c in additions if c is not lost]
-    own = tuple(c for c in additions if c.size_path not in parent.ids and not redundant(parent.effects, c))
+    sized = [c for c in additions if not isinstance(c, LostWindows)]
+    own = tuple(c for c in sized if c.size_path not in parent.ids and not redundant(parent.effects, c))
     sizes = of_additions(parent.values)
     if not own:
         return Opening(parent, kind, (), (), (), sizes, math.inf)
-    coarse = (1.0 if parent.fit.over_noise < FAR else 2.0) * bench.fine
     exact = Rung(math.inf, 1.0, math.inf, 0, 1)
     place = descend([_place(bench, parent, exact, parent.fit.unit)], 0, bench.pool, cores)[0]
-    free = promises_at(bench, place, parent.effects, own, coarse, settings, cores)
+    free = promises_at(bench, place, parent.effects, own, TELLING * bench.fine, settings, cores)
     if kind == "effects":
         found.left = free
     pulled: list[Promise] = []
     shares = [_share(free[0].gain, parent.fit.objective, parent.fit.counted)]
-    if parent.fit.over_noise > ABOVE_NOISE:
-        first = settings.continued[0]
-        parameters = bench.parameters(parent.effects)
-        begun = _place(bench, parent, first, np.clip(parameters.unit(sizes), 1e-6, 1.0 - 1e-6))
-        near = descend([begun], 2, bench.pool, cores)[0]
-        pulled = promises_at(bench, near, parent.effects, own, first.coarse * bench.fine, settings, cores)
-        shares.append(_share(pulled[0].gain, near.objective, near.problem.counted))
+    if parent.fit.over_noise > AT_NOISE and not alone:
+        pulled, share = _observed(bench, parent, own, settings, cores)
+        shares.append(share)
         if lost is not None:
             shares.append(lost.share)
     excess = max(parent.fit.objective - parent.fit.counted, 0.0)
@@ -114,7 +122,8 @@ def opened(
         + "; pulled "
         + ", ".join(f"{p.candidate.id} {p.gain:.0f}" for p in pulled[:4])
     )
-    return Opening(parent, kind, own, tuple(free), tuple(pulled), sizes, expected, lost)
+    at_noise = left <= AT_NOISE**2 * count
+    return Opening(parent, kind, own, tuple(free), tuple(pulled), sizes, expected, at_noise, lost)
 
 
 def _share(gain: float, objective: float, counted: int) -> float:
@@ -130,7 +139,7 @@ def enlarged(
     found: Tried,
     settings: Settings,
     cores: int,
-) -> None:
+) -> bool:
     """Fit a structure with each of the additions that may be right, and what these lead to without others.
 
     Args:
@@ -140,10 +149,13 @@ def enlarged(
         found: receives the fits.
         settings: of the search.
         cores: that roll out at the same time.
+
+    Returns:
+        Whether the structure itself was fitted better meanwhile, and should be enlarged again.
     """
     parent = opening.parent
     needed = gain_needed(parent.fit)
-    near = parent.fit.over_noise <= ABOVE_NOISE
+    near = parent.fit.over_noise <= AT_NOISE
     fitted, own = Start(parent.effects, parent.values), Start(parent.effects, opening.sizes)
     free = [
         fitted.with_addition(p.candidate, start)
@@ -157,23 +169,72 @@ def enlarged(
         for start in wider.starts[:4]
     ]
     fine = parent.fit.over_noise < FAR
-    ended = race(bench, free, _steps(settings.free, fine), cores, _traced("free"))
-    reached = min([parent, *ended], key=lambda h: h.fit.objective).fit.over_noise
-    if reached > AT_NOISE and opening.pulled:
+    heats = _steps(settings.free, fine)
+    runners = run(bench, entered(bench, free, heats[0], cores), heats, cores, _traced("free")) if free else []
+    better = None
+    if min((_over_noise(r) for r in runners), default=math.inf) > AT_NOISE < parent.fit.over_noise:
+        if not parent.effects and not found.nominal_continued:
+            better = continued_nominal(bench, parent, found, settings, cores)
+            if better is not None:
+                found.keep(better)
+        pulled = opening.pulled or _observed(bench, parent, opening.own, settings, cores)[0]
         entrants = [
             begun.with_addition(p.candidate, start)
-            for p in opening.pulled[: settings.entrants]
+            for p in pulled[: settings.entrants]
             for start in p.starts[:1]
             for begun in (own, fitted)
         ]
-        ended += race(bench, entrants, _steps(settings.continued, fine), cores, _traced("observed"))
-    for each in ended:
+        heats = _steps(settings.continued, fine)
+        runners += run(bench, entered(bench, entrants, heats[0], cores), heats, cores, _traced("observed"))
+    ended = run(bench, runners, settings.ended, cores, _traced("end")) if runners else []
+    for each in hypotheses_of(bench, ended, settings.ended[-1]):
         found.keep(each)
+    reached = found.best.fit.over_noise
     if opening.lost is not None and reached > AT_NOISE and opening.lost.share >= settings.lost:
         for each in with_windows(bench, parent, opening.lost, settings, cores):
             found.keep(each)
     _widened(bench, found, settings, cores)
     _lessened(bench, found, candidates, settings, cores)
+    return better is not None
+
+
+def _over_noise(runner: Runner) -> float:
+    return math.sqrt(runner.place.objective / max(runner.place.problem.counted, 1))
+
+
+def continued_nominal(
+    bench: Workbench, direct: Hypothesis, found: Tried, settings: Settings, cores: int
+) -> Hypothesis | None:
+    """The nominal model by continuation, from the rig's own numbers and from the middle of their ranges.
+
+    Args:
+        bench: data and problems.
+        direct: as free rollouts led it.
+        found: remembers that it was done.
+        settings: of the search.
+        cores: that roll out at the same time.
+
+    Returns:
+        The fit if it is better by more than one addition must bring; else None.
+    """
+    found.nominal_continued = True
+    centre = Entrant((), {free.path: free.from_unit(0.5) for free in bench.nominal})
+    led = race(bench, [Entrant((), {}), centre], settings.nominal, cores)[0]
+    fitted = race(bench, [Entrant((), led.values), centre], (settings.again,), cores)[0]
+    trace(f"    nominal {direct.fit.over_noise:.4f}, continued {fitted.fit.over_noise:.4f}")
+    return fitted if direct.fit.objective - fitted.fit.objective > gain_needed(direct.fit) else None
+
+
+def _observed(
+    bench: Workbench, parent: Hypothesis, own: Sequence[Sized], settings: Settings, cores: int
+) -> tuple[list[Promise], float]:
+    """What additions promise to an observer around the rig's own numbers, and the share that the best one takes."""
+    first = settings.continued[0]
+    parameters = bench.parameters(parent.effects)
+    unit = np.clip(parameters.unit(of_additions(parent.values)), 1e-6, 1.0 - 1e-6)
+    near = descend([_place(bench, parent, first, unit)], 2, bench.pool, cores)[0]
+    pulled = promises_at(bench, near, parent.effects, own, first.coarse * bench.fine, settings, cores)
+    return pulled, _share(pulled[0].gain, near.objective, near.problem.counted)
 
 
 def _place(bench: Workbench, structure: Hypothesis, rung: Rung, unit: np.ndarray) -> Place:
@@ -194,7 +255,7 @@ def _lessened(
     Each is fitted from where the best structure led, and by continuation.
     """
     best = found.best
-    if best is found.lessened:
+    if best is found.lessened or not best.effects:
         return
     found.lessened = best
     entrants = [
@@ -208,11 +269,14 @@ def _lessened(
         for c, special, effects in narrowings(best.effects, candidates)
         for start in special.starts[:2]
     ]
-    rung = replace(settings.free[-1], keep=len(entrants))
-    fitted = race(bench, entrants, (rung,), cores) if entrants else []
-    if len(best.effects) > 1:  # fewer are structures that were fitted so before
+    rung = replace(settings.again, keep=len(entrants))
+    fitted = race(bench, entrants, (rung,), cores)
+    near = not found.nominal_continued and found.baseline.fit.over_noise < FAR
+    if len(best.effects) > 1 or near:  # others were fitted so before, or are beyond doubt
         own = [Entrant(each.effects, of_additions(each.values)) for each in entrants]
-        fitted += race(bench, own, _steps(settings.continued, best.fit.over_noise < FAR), cores)
+        fitted += race(
+            bench, own, (*_steps(settings.continued, best.fit.over_noise < FAR), settings.again), cores
+        )
     for each in fitted:
         found.keep(each)
 
@@ -220,15 +284,13 @@ def _lessened(
 def _widened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
     """The best structure with wider ranges, where a number of what it adds lies at an end of one (`ranges`)."""
     best = found.best
-    wide: tuple[Any, ...] = tuple(
-        widened(c, best.values) if isinstance(c, Candidate) else c.widened(best.values) for c in best.effects
-    )
+    wide = tuple(c.widened(best.values) for c in best.effects)
     if any(a.free != b.free for a, b in zip(wide, best.effects, strict=True)):
-        for each in race(bench, [Entrant(wide, best.values)], settings.free[-1:], cores):
+        for each in race(bench, [Entrant(wide, best.values)], (settings.again,), cores):
             found.keep(each)
 
 
-def _names(effects: Sequence[Candidate]) -> str:
+def _names(effects: Sequence[Addition]) -> str:
     return "+".join(c.id for c in effects) or "nominal"
 
 

@@ -18,7 +18,7 @@ from hydrolek_drake.diagnosis.fitting.race import hypothesis_of, problem_with
 from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
 from hydrolek_drake.diagnosis.search.gains import VISIBLE
 from hydrolek_drake.diagnosis.search.settings import Settings
-from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.addition import Addition, Sized
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.problem import Problem
 
@@ -35,7 +35,7 @@ class Promise:
             estimate, see `experiment.visible`.
     """
 
-    candidate: Candidate
+    candidate: Sized
     gain: float
     starts: tuple[dict[str, float], ...]
     visible_from: float
@@ -44,8 +44,8 @@ class Promise:
 def promises_at(
     bench: Workbench,
     place: Place,
-    effects: tuple[Candidate, ...],
-    candidates: Sequence[Candidate],
+    effects: tuple[Addition, ...],
+    candidates: Sequence[Sized],
     step: float,
     settings: Settings,
     cores: int,
@@ -76,22 +76,26 @@ def promises_at(
     for candidate, start in tried:
         parameters = problems[candidate.size_path].parameters
         units[candidate.size_path].append(parameters.unit({**values, **start}))
+    here_as_tried = problem_with(
+        bench, effects, step, here_problem.experiments, here_problem.pull_time or math.inf
+    )
     answers = residuals_at(
         [
-            Request(here_problem, (place.unit,)),
+            Request(here_as_tried, (place.unit,)),
             *(Request(problems[c.size_path], tuple(units[c.size_path])) for c in candidates),
         ],
         bench.pool,
         cores,
     )
-    here = np.concatenate([answers[0][0], fit.off_prior])
-    left = across(here)
+    here = answers[0][0]
+    left = across(np.concatenate([fit.residuals, fit.off_prior]))
+    unchanged = np.zeros_like(fit.off_prior)
     promises = []
     for candidate, found in zip(candidates, answers[1:], strict=True):
         starts = _tried(candidate, settings)
         rated = []
         for start, moved in zip(starts, found, strict=True):
-            change = across(np.concatenate([moved, fit.off_prior]) - here)
+            change = across(np.concatenate([moved - here, unchanged]))
             gain = gain_of(change, left)
             power = float(change @ change)
             multiple = np.sqrt(gain / power) if power > 0.0 else 0.0
@@ -100,7 +104,7 @@ def promises_at(
     return sorted(promises, key=lambda p: -p.gain)
 
 
-def _promise(candidate: Candidate, rated: list, settings: Settings) -> Promise:
+def _promise(candidate: Sized, rated: list, settings: Settings) -> Promise:
     best = max(rated, key=lambda each: each[0])
     by_what_is_left = sorted(rated, key=lambda each: each[1])
     scaled = {**best[3]}
@@ -115,7 +119,7 @@ def _promise(candidate: Candidate, rated: list, settings: Settings) -> Promise:
     return Promise(candidate, best[0], tuple(starts[: settings.starts]), _visible_from(candidate, rated))
 
 
-def _visible_from(candidate: Candidate, rated: list) -> float:
+def _visible_from(candidate: Sized, rated: list) -> float:
     """Size whose gain would be `VISIBLE`, in proportion to the larger sizes that were tried; a first estimate."""
     sizes = [(each[3][candidate.size_path], float(each[4] @ each[4])) for each in rated]
     largest = max((abs(size) for size, _ in sizes), default=0.0)
@@ -133,11 +137,11 @@ def _visible_from(candidate: Candidate, rated: list) -> float:
     return min(told, default=float("inf"))
 
 
-def _tried(candidate: Candidate, settings: Settings) -> list[dict[str, float]]:
+def _tried(candidate: Sized, settings: Settings) -> list[dict[str, float]]:
     """Places of an addition's own parameters that are tried."""
     places = []
     for begin in candidate.starts:
-        for times in settings.sizes if isinstance(candidate, Candidate) else (1.0,):
+        for times in candidate.tried:
             size = begin[candidate.size_path] * (1.0 / times if candidate.weakens else times)
             tried = {**begin, candidate.size_path: size}
             if all(free.lower <= tried[free.path] <= free.upper for free in candidate.free):

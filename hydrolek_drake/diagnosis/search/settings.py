@@ -14,6 +14,13 @@ WIDER = 4.0
 far than where its fit begins."""
 
 
+SIZES = (1.0, 0.1, 0.01)
+"""Sizes at which an effect is tried, as multiples of where its search begins."""
+
+TELLING = 2.0
+"""What an addition changes is told by rollouts with steps so many times the rig's own on both sides of a difference."""
+
+
 @dataclass(frozen=True)
 class Rung:
     """One rung of a race: how a structure is fitted, and how many go on.
@@ -24,6 +31,8 @@ class Rung:
         seconds: so much of the recordings is seen.
         rounds: steps of a fit.
         keep: so many fits go on.
+        share: fits end where a step takes less than this share of what is left.
+        elsewhere: whether what has no slope is tried elsewhere.
     """
 
     observer_s: float
@@ -31,14 +40,13 @@ class Rung:
     seconds: float
     rounds: int
     keep: int
+    share: float = 5e-4
+    elsewhere: bool = False
 
 
 @dataclass(frozen=True)
 class Settings:
     """Constants of the search."""
-
-    sizes: tuple[float, ...] = (1.0, 0.1, 0.01)
-    """Sizes at which an addition is tried, as multiples of where its search begins."""
 
     starts: int = 2
     """So many places of each addition are fitted from on each way."""
@@ -51,29 +59,36 @@ class Settings:
 
     free: tuple[Rung, ...] = (
         Rung(math.inf, 2.0, 20.0, 5, 8),
-        Rung(math.inf, 2.0, math.inf, 12, 4),
-        Rung(math.inf, 1.0, math.inf, 32, 3),
+        Rung(math.inf, 2.0, math.inf, 12, 4, elsewhere=True),
     )
     """A race of free rollouts, from where the structure before it led."""
 
     continued: tuple[Rung, ...] = (
         Rung(0.1, 2.0, 20.0, 4, 12),
-        Rung(0.5, 2.0, math.inf, 8, 8),
-        Rung(3.0, 2.0, math.inf, 12, 4),
-        Rung(math.inf, 1.0, math.inf, 32, 3),
+        Rung(0.5, 2.0, math.inf, 8, 8, elsewhere=True),
+        Rung(3.0, 2.0, math.inf, 12, 4, elsewhere=True),
     )
     """A race by continuation, from the rig's own numbers: prediction errors of an observer forget, so that they have
     few local minima (Ljung, System Identification, 1999, chapter 7); free rollouts see what is slow."""
+
+    ended: tuple[Rung, ...] = (
+        Rung(math.inf, 1.0, math.inf, 8, 4),
+        Rung(math.inf, 1.0, math.inf, 32, 3, share=1e-4, elsewhere=True),
+    )
+    """The end of both races."""
 
     nominal: tuple[Rung, ...] = (
         Rung(0.1, 2.0, math.inf, 8, 4),
         Rung(0.5, 2.0, math.inf, 8, 4),
         Rung(3.0, 1.0, math.inf, 12, 4),
-        Rung(math.inf, 1.0, math.inf, 32, 1),
+        Rung(math.inf, 1.0, math.inf, 32, 1, share=1e-4),
     )
     """The nominal model by continuation, to the end."""
 
-    last: Rung = Rung(math.inf, LAST_STEP, math.inf, 4, 8)
+    again: Rung = Rung(math.inf, 1.0, math.inf, 32, 1, share=1e-4)
+    """Fits that begin where nearly the same one ended."""
+
+    last: Rung = Rung(math.inf, LAST_STEP, math.inf, 4, 8, share=1e-4)
     """The last fits, with half of the rig's own step, so that the error of the integration cannot decide."""
 
     nearer: float = 0.8

@@ -18,6 +18,7 @@ class Tried:
         weighed_at: what the structure left, over the noise, by which the data are weighed.
         costs: of the best structure after each round.
         seeds: structures fitted to other data, from where fits begin too.
+        nominal_continued: whether the nominal model was fitted by continuation too.
         lessened: the structure that was fitted without each of its additions last.
     """
 
@@ -27,6 +28,7 @@ class Tried:
     weighed_at: float = 0.0
     costs: list[float] = field(default_factory=list)
     seeds: list[Hypothesis] = field(default_factory=list)
+    nominal_continued: bool = False
     lessened: Hypothesis | None = None
 
     def keep(self, hypothesis: Hypothesis) -> None:

@@ -3,9 +3,11 @@
 import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
+from hydrolek_drake.diagnosis.search.settings import AT_BOUND, SIZES, WIDER
+from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.effects import EFFECTS, Effect
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.parameter_set import Free
@@ -36,6 +38,8 @@ class Candidate:
 
     cost: ClassVar[float] = 1.0
     """In effects."""
+
+    tried: ClassVar[tuple[float, ...]] = SIZES
 
     @property
     def weakens(self) -> bool:
@@ -92,9 +96,52 @@ class Candidate:
         """Whether its size, among fitted values, is beyond what the model's own equations simplify."""
         return self.beneath == 0.0 or abs(values[self.size_path] - self.effect.neutral_size) > self.beneath
 
-    def is_special_case_of(self, other: "Candidate") -> bool:
+    def is_special_case_of(self, other: Addition) -> bool:
         """Whether another effect at the same joint contains this one."""
         return isinstance(other, Candidate) and self.joint == other.joint and self.id in other.effect.contains
+
+    def ended(self, values: Mapping[str, float]) -> list[Free]:
+        """Its parameters, but for its size and moments, that were fitted to an end of what is searched.
+
+        How quickly an oil warms up or how far a cushion reaches is no more than a natural scale of the machine allows;
+        what asks for more may be something else, which the effect only imitates.
+
+        Args:
+            values: full path -> fitted value.
+        """
+        others = [f for f in self.free if f.path != self.size_path and f not in self.moments]
+        places = [(free, free.to_unit(values[free.path])) for free in others]
+        return [free for free, place in places if not AT_BOUND < place < 1.0 - AT_BOUND]
+
+    def widened(self, values: Mapping[str, float]) -> "Candidate":
+        """The same effect, searched further where a parameter lies at an end, as far as it can be at all.
+
+        An effect's range follows from the machine's natural scales: what a worn machine may have. Where the best model
+        has an effect at the far end of its range, the machine may have more of it, and what is added to that model only
+        makes up for the rest. The same goes for what else an effect has, at either end.
+
+        Args:
+            values: full path -> fitted value.
+        """
+        return replace(self, free=tuple(self._further(f, values[f.path]) for f in self.free))
+
+    def _further(self, free: Free, value: float) -> Free:
+        """A parameter with a wider range if it lies at an end; a size not at that where the effect is off."""
+        lowest, highest = self.utmost.get(free.path, (free.lower, free.upper))
+        place = free.to_unit(value)
+        size = free.path == self.size_path
+        if place > 1.0 - AT_BOUND and not (size and self.effect.weakens):
+            upper = min(free.upper * WIDER, highest)
+            mirrored = size and free.lower < 0.0
+            return replace(
+                free, lower=max(free.lower * WIDER, lowest) if mirrored else free.lower, upper=upper
+            )
+        if place < AT_BOUND and free.lower < 0.0:
+            upper = min(free.upper * WIDER, highest) if size else free.upper
+            return replace(free, lower=max(free.lower * WIDER, lowest), upper=upper)
+        if place < AT_BOUND and free.lower > 0.0 and (not size or self.effect.weakens):
+            return replace(free, lower=max(free.lower / WIDER, lowest))
+        return free
 
 
 def candidates_of(rig: Rig, joint: str, scales: Scales) -> tuple[Candidate, ...]:
@@ -154,24 +201,24 @@ def _candidate(effect: Effect, rig: Rig, joint: str, scales: Scales) -> Candidat
     )
 
 
-Exchange = tuple[Candidate, Candidate, tuple[Candidate, ...]]
+Exchange = tuple[Addition, Candidate, tuple[Addition, ...]]
 """An effect, the one in its place, and all effects with that one at the end."""
 
 
-def widenings(effects: Sequence[Candidate], candidates: Sequence[Candidate]) -> list[Exchange]:
+def widenings(effects: Sequence[Addition], candidates: Sequence[Candidate]) -> list[Exchange]:
     """Each effect that another one contains, with that other one in its place."""
     return _exchanges(effects, candidates, lambda own, other: own.is_special_case_of(other))
 
 
-def narrowings(effects: Sequence[Candidate], candidates: Sequence[Candidate]) -> list[Exchange]:
+def narrowings(effects: Sequence[Addition], candidates: Sequence[Candidate]) -> list[Exchange]:
     """Each effect that contains another one, with that special case in its place."""
     return _exchanges(effects, candidates, lambda own, other: other.is_special_case_of(own))
 
 
 def _exchanges(
-    effects: Sequence[Candidate],
+    effects: Sequence[Addition],
     candidates: Sequence[Candidate],
-    may: Callable[[Candidate, Candidate], bool],
+    may: Callable[[Addition, Candidate], bool],
 ) -> list[Exchange]:
     return [
         (effect, other, (*(rest for rest in effects if rest is not effect), other))
@@ -181,11 +228,11 @@ def _exchanges(
     ]
 
 
-def redundant(effects: Sequence[Candidate], candidate: Candidate) -> bool:
+def redundant(effects: Sequence[Addition], candidate: Addition) -> bool:
     """Whether an effect says nothing new beside others, because one of them contains it or is contained in it."""
     return any(one_contains_the_other(c, candidate) for c in effects)
 
 
-def one_contains_the_other(first: Candidate, second: Candidate) -> bool:
+def one_contains_the_other(first: Addition, second: Addition) -> bool:
     """Whether one of two effects at the same joint contains the other."""
     return first.is_special_case_of(second) or second.is_special_case_of(first)

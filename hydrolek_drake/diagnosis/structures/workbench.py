@@ -5,13 +5,13 @@ import threading
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor, wait
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from hydrolek_drake.diagnosis.laws.additions import LawTerm, WithTerms
 from hydrolek_drake.diagnosis.lost_commands.windows import LostProblem, LostWindows, WithWindows
+from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
@@ -40,7 +40,7 @@ class Hypothesis:
         step: integration step with which it was fitted [s].
     """
 
-    effects: tuple[Candidate, ...]
+    effects: tuple[Addition, ...]
     values: dict[str, float]
     fit: Fit
     step: float
@@ -50,7 +50,12 @@ class Hypothesis:
         """What identifies it: id and joint of its effects."""
         return key_of(self.effects)
 
-    def without(self, effect: Candidate) -> tuple[Candidate, ...]:
+    @property
+    def listed(self) -> tuple[Candidate, ...]:
+        """Its effects."""
+        return tuple(c for c in self.effects if isinstance(c, Candidate))
+
+    def without(self, effect: Addition) -> tuple[Addition, ...]:
         """Its effects but for one."""
         return tuple(c for c in self.effects if c is not effect)
 
@@ -65,12 +70,12 @@ class Hypothesis:
         return sum(len(candidate.free) for candidate in self.effects)
 
 
-def key_of(effects: Iterable[Candidate]) -> frozenset[str]:
+def key_of(effects: Iterable[Addition]) -> frozenset[str]:
     """A set of effects, whatever their order."""
     return frozenset(candidate.size_path for candidate in effects)
 
 
-def moments_of(effects: Iterable[Candidate]) -> list[Free]:
+def moments_of(effects: Iterable[Addition]) -> list[Free]:
     """Parameters of some effects that say when something happens."""
     return [free for candidate in effects for free in candidate.moments]
 
@@ -130,7 +135,7 @@ class Workbench:
         """Whether joints move at the same time."""
         return any(experiment.others is not None for experiment in self.training)
 
-    def parameters(self, effects: Sequence[Candidate]) -> ParameterSet:
+    def parameters(self, effects: Sequence[Addition]) -> ParameterSet:
         """The searched parameters of the nominal model with these effects."""
         own = [p for candidate in effects for p in candidate.free]
         key = frozenset(own)  # with their ranges, which may be widened
@@ -148,7 +153,7 @@ class Workbench:
 
     def problem(
         self,
-        effects: Sequence[Candidate],
+        effects: Sequence[Addition],
         step: float,
         experiments: Sequence[Experiment] | None = None,
         pull_time: float | None = None,
@@ -160,8 +165,7 @@ class Workbench:
         prior[: len(self.nominal)] = SPREAD
         if kind is Problem and isinstance(parameters, WithWindows):
             kind = LostProblem
-        if kind is ProblemTogether:
-            kind = partial(ProblemTogether, known=self._moving)  # type: ignore[assignment]
+        known = {"known": self._moving} if kind is ProblemTogether else {}
         return kind(
             parameters,
             experiments or self.training,
@@ -169,10 +173,11 @@ class Workbench:
             pool=self.pool,
             prior=prior,
             pull_time=pull_time,
+            **known,
         )
 
     @staticmethod
-    def movable(effects: Sequence[Candidate], parameters: ParameterSet) -> np.ndarray:
+    def movable(effects: Sequence[Addition], parameters: ParameterSet) -> np.ndarray:
         """Parameters that least squares can move: all but moments, see `intervals.moments`. # (n,)."""
         held = {free.path for free in moments_of(effects)}
         return np.array([path not in held for path in parameters.paths])

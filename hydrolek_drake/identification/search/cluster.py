@@ -15,6 +15,30 @@ RETRIES = 3
 """Times that a chunk is given to another worker when its own dies."""
 
 
+def connected(address: str) -> Any:
+    """A client of a cluster that has workers.
+
+    Args:
+        address: of the scheduler, such as tcp://host:8786.
+
+    Raises:
+        InputError: no scheduler there, or one without workers.
+    """
+    from distributed import Client
+
+    try:
+        client = Client(address, timeout=CONNECT_WITHIN)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise InputError(
+            f"--cluster {address}: no Dask scheduler answers there; start one with 'dask scheduler' and "
+            "give its address, such as tcp://host:8786"
+        ) from error
+    if not client.scheduler_info()["workers"]:
+        client.close()
+        raise InputError(f"--cluster {address}: the scheduler has no workers; start 'dask worker {address}'")
+    return client
+
+
 class ClusterWorkers:
     """Maps an objective over points with a cluster's workers; use as a context manager."""
 
@@ -29,21 +53,8 @@ class ClusterWorkers:
         Raises:
             InputError: no scheduler there, or one without workers.
         """
-        from distributed import Client
-
-        try:
-            self._client = Client(address, timeout=CONNECT_WITHIN)
-        except (OSError, ValueError, TimeoutError) as error:
-            raise InputError(
-                f"--cluster {address}: no Dask scheduler answers there; start one with 'dask scheduler' and "
-                "give its address, such as tcp://host:8786"
-            ) from error
         self.overdue = overdue
-        if not self._client.scheduler_info()["workers"]:
-            self._client.close()
-            raise InputError(
-                f"--cluster {address}: the scheduler has no workers; start 'dask worker {address}'"
-            )
+        self._client = connected(address)
         self._objective = objective
         self._send()
 

@@ -10,7 +10,6 @@ from hydrolek_drake.diagnosis.report.numbers import quantity
 from hydrolek_drake.diagnosis.report.words import effect_sentence
 from hydrolek_drake.diagnosis.search.settings import WIDER
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
-from hydrolek_drake.diagnosis.structures.ranges import ended, widened
 from hydrolek_drake.identification.natural_scales import natural_scales
 
 AIR = "effects.fluid.entrained_air.air_fraction"
@@ -29,21 +28,21 @@ def _ended(candidate, **at):
 
 def test_a_size_is_widened_away_from_where_the_effect_is_off(candidates) -> None:
     air, drift, base = (candidates[id_] for id_ in ("fluid.entrained_air", "sensor.drift", "base.compliance"))
-    wide = widened(air, _ended(air, air_fraction=1.0))
+    wide = air.widened(_ended(air, air_fraction=1.0))
     assert wide.size.upper == pytest.approx(WIDER * air.size.upper)
     assert wide.size.lower == air.size.lower == 0.0
-    assert widened(air, _ended(air)) == air == widened(air, _ended(air, air_fraction=0.0))
+    assert air.widened(_ended(air)) == air == air.widened(_ended(air, air_fraction=0.0))
     name = drift.effect.size
     for end in (0.0, 1.0):
-        wide = widened(drift, _ended(drift, **{name: end}))
+        wide = drift.widened(_ended(drift, **{name: end}))
         assert wide.size.upper == pytest.approx(WIDER * drift.size.upper)
         assert wide.size.lower == pytest.approx(WIDER * drift.size.lower)
     assert drift.size.lower < 0.0
     # a base is there the more the softer it is
-    wide = widened(base, _ended(base, **{base.effect.size: 0.0}))
+    wide = base.widened(_ended(base, **{base.effect.size: 0.0}))
     assert wide.size.lower == pytest.approx(base.size.lower / WIDER)
     assert wide.size.upper == base.size.upper
-    assert widened(base, _ended(base, **{base.effect.size: 1.0})) == base
+    assert base.widened(_ended(base, **{base.effect.size: 1.0})) == base
     others = [free for free in wide.free if free.path != base.size_path]
     assert others == [free for free in base.free if free.path != base.size_path]
 
@@ -53,11 +52,9 @@ def test_what_else_an_effect_has_is_widened_at_either_end(candidates) -> None:
     name = "stribeck_velocity_m_per_s"
     fades = next(free for free in stribeck.free if free.path.endswith(name))
     for end, factors in ((0.0, (1.0 / WIDER, 1.0)), (1.0, (1.0, WIDER))):
-        wide = next(
-            f for f in widened(stribeck, _ended(stribeck, **{name: end})).free if f.path == fades.path
-        )
+        wide = next(f for f in stribeck.widened(_ended(stribeck, **{name: end})).free if f.path == fades.path)
         assert (wide.lower, wide.upper) == pytest.approx((factors[0] * fades.lower, factors[1] * fades.upper))
-    assert widened(payload, _ended(payload, time_s=1.0)) == payload  # the recording is no longer than that
+    assert payload.widened(_ended(payload, time_s=1.0)) == payload  # the recording is no longer than that
 
 
 def test_what_ends_at_an_end_of_its_range_is_told(bench, candidates) -> None:
@@ -73,7 +70,7 @@ def test_what_ends_at_an_end_of_its_range_is_told(bench, candidates) -> None:
 
     for end in (0.0, 1.0):
         hasty = diagnosed(warm, time_constant_s=end)
-        [free] = ended(hasty.best.hypothesis, warm)
+        [free] = warm.ended(hasty.best.hypothesis.values)
         assert free.path.endswith("time_constant_s")
         told = effect_sentence(warm, hasty)
         assert f"{quantity(free.lower, 's')} to {quantity(free.upper, 's')}" in told
@@ -84,7 +81,7 @@ def test_what_ends_at_an_end_of_its_range_is_told(bench, candidates) -> None:
         (payload, {"time_s": 1.0}),
     ):
         usual = diagnosed(candidate, **at)
-        assert not ended(usual.best.hypothesis, candidate)
+        assert not candidate.ended(usual.best.hypothesis.values)
         assert "something else" not in effect_sentence(candidate, usual)
 
 
@@ -93,10 +90,10 @@ def test_a_range_is_not_widened_beyond_what_can_be_or_what_the_rig_states(
 ) -> None:
     fade = candidates["amplifier.gain_fade"]
     # more than all of the current cannot be lost
-    assert widened(fade, _ended(fade, **{fade.effect.size: 1.0})).size.upper == 1.0
+    assert fade.widened(_ended(fade, **{fade.effect.size: 1.0})).size.upper == 1.0
     path = bench.full_path(AIR)
     entries = {**bench.entries, path: replace(bench.entries[path], range=(0.0, 0.01))}
     stated = replace(bench, entries=entries)
     scales = natural_scales(bench, "joint", recorded(bench, bench))
     air = next(c for c in candidates_of(stated, "joint", scales) if c.id == "fluid.entrained_air")
-    assert widened(air, _ended(air, air_fraction=1.0)) == air
+    assert air.widened(_ended(air, air_fraction=1.0)) == air
