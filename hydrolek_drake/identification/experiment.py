@@ -167,7 +167,7 @@ class Experiment:
         return replace(self, command_times=times, command=command)
 
     @property
-    def supplied(self) -> "Experiment":
+    def with_recorded_supply(self) -> "Experiment":
         """The same with the recorded supply pressure in place of the supply, cut in two where it is measured.
 
         What the chain behind it is then does not depend on the supply's numbers; itself where no supply pressure is

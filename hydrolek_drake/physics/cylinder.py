@@ -113,12 +113,12 @@ def chamber_volumes(stroke: float, joint: Any) -> tuple[float, float]:
 
 @njit
 def counted_volumes(stroke: float, joint: Any) -> tuple[float, float]:
-    """Oil volumes that give way to pressure on sides A and B [m^3]: not less than the least compliance c of a column has.
+    """Oil volumes that give way to pressure on sides A and B [m^3], at least what a column's least compliance c has.
 
     The oil column of a chamber has the compliance V / (B A^2) (Merritt, Hydraulic Control Systems, 1967, section 6.1),
     so that V counts as B A^2 c at least. Simulators that join components by transmission lines keep their columns so
-    soft, since a step h bears a mass m only with c >= h^2/(0.1 m) (Hopsan's cylinder; Krus et al., Trans. of the Society
-    for Computer Simulation 10 (1993) 19, on the method); a real tube with its mounts gives way, too.
+    soft, since a step h bears a mass m only with c >= h^2/(0.1 m) (Hopsan, HydraulicCylinderC: its least volumes);
+    a real tube with its mounts gives way, too.
     """
     p = joint.cylinder
     volume_a, volume_b = chamber_volumes(stroke, joint)

@@ -208,7 +208,7 @@ def relieved_by_valve(
 def relieved_with_lag(
     above: float, valve: float, rate: float, slope: float, h: float, joint: Any
 ) -> tuple[float, float]:
-    """The same with a relief valve that follows with a time constant T: du/dt = rate + slope b, T db/dt = b_0(u, b) - b.
+    """The same with a relief valve that follows with a time constant T: u' = rate + slope b, T b' = b_0(u, b) - b.
 
     The valve's place b, which lets off what the pressure b above the setting would without hysteresis, is drawn to the
     nearer edge b_0 of its play and rests on its seat at zero. With the oil of the line it is an oscillator of the
