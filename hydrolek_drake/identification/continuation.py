@@ -54,7 +54,7 @@ class Continuation:
         longest_step: of the rollouts [s]; None for the rig's own.
         prior: as of `Problem`.
         stop: asked before each step; it raises what ends the fit.
-        told: told how many rollouts a part took, and the least over the noise in it.
+        told: told how many rollouts a part took, the least over the noise in it, and where.
     """
 
     parameters: ParameterSet
@@ -64,7 +64,7 @@ class Continuation:
     longest_step: float | None = None
     prior: np.ndarray | None = None
     stop: Callable[[], None] = lambda: None
-    told: Callable[[int, float], None] = lambda evaluations, over_noise: None
+    told: Callable[[int, float, np.ndarray], None] = lambda evaluations, over_noise, unit: None
 
     def from_starts(self, starts: Sequence[np.ndarray]) -> Place:
         """The best place to which some starts lead, fitted to the end.
@@ -97,7 +97,7 @@ class Continuation:
             [path.startswith(UPSTREAM["supply_pressure"]) for path in self.parameters.paths], dtype=bool
         )
         uncut = all(part is e for part, e in zip(parts, self.experiments, strict=True))
-        if uncut or not supply.any():
+        if uncut or not supply.any() or self.parameters.rig.variants["supply"] != "pump":
             return None
         behind = self._by_observers(parts, starts, ~supply)[0].unit
         begun = [np.where(supply, start, behind) for start in starts]
@@ -155,7 +155,7 @@ class Continuation:
         best = places[0]
         assert best.residuals is not None
         over_noise = float(np.sqrt(best.residuals @ best.residuals / max(best.problem.counted, 1)))
-        self.told(sum(problem.evaluations for problem in problems), over_noise)
+        self.told(sum(problem.evaluations for problem in problems), over_noise, best.unit)
         return places
 
 

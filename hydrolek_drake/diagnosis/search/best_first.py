@@ -159,7 +159,7 @@ def _by_parts(bench: Workbench, cores: int) -> dict[str, float]:
     parameters = bench.parameters(())
     prior = np.full(len(parameters), SPREAD)
 
-    def told(evaluations: int, over_noise: float) -> None:
+    def told(evaluations: int, over_noise: float, unit: np.ndarray) -> None:
         bench.evaluations += evaluations
         trace(f"  nominal by parts {over_noise:.4f}")
 

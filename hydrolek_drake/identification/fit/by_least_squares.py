@@ -39,6 +39,8 @@ def by_least_squares(
 ) -> tuple[Fit, int, bool]:
     """The best of the fits that were finished, rollouts that it took, and whether Ctrl-C ended them early.
 
+    Where none was finished it is the place that the first one had reached, or the rig's own.
+
     It ends with the first round that is at the noise, or that ends where another one did. The fits of joints that move
     together have each joint's own rollouts, with what the measured angles of the others tell, which take a tenth of the
     time and end near; the fit then goes on from the best with what the joints do to each other.
@@ -55,11 +57,11 @@ def by_least_squares(
     problem = Problem(parameters, training, pool=pool)
     last = problem_of(parameters, training, pool=pool)
     finished: list[Fit] = []
-    done = 0
+    done, reached = 0, parameters.unit()
 
-    def told(evaluations: int, over_noise: float) -> None:
-        nonlocal done
-        done += evaluations
+    def told(evaluations: int, over_noise: float, unit: np.ndarray) -> None:
+        nonlocal done, reached
+        done, reached = done + evaluations, unit
         if progress is not None:
             known = min([over_noise, *(fit.over_noise for fit in finished)])
             progress(done + problem.evaluations + last.evaluations, known)
@@ -82,9 +84,8 @@ def by_least_squares(
         if together:
             finished = [_followed(last, finished[0].unit, loss)]
     except KeyboardInterrupt:
-        if not finished:
-            raise
         interrupted = True
+        finished = finished or [min((_at(problem, u) for u in (parameters.unit(), reached)), key=_objective)]
     return finished[0], done + problem.evaluations + last.evaluations, interrupted
 
 
@@ -92,8 +93,16 @@ def _ended(problem: Problem, place: Place, loss: str) -> Fit:
     """A place as a fit; with a robust loss it goes on from there."""
     if loss != "linear":
         return fit_from(problem, place.unit, loss=loss)
-    unit, residuals = place.unit, place.residuals
-    assert residuals is not None
+    return _at(problem, place.unit, place.residuals)
+
+
+def _objective(fit: Fit) -> float:
+    return fit.objective
+
+
+def _at(problem: Problem, unit: np.ndarray, known: np.ndarray | None = None) -> Fit:
+    """A place as one where a fit ended, with its residuals if they are known. # unit: (n,)."""
+    residuals = problem.residuals(unit) if known is None else known
     return Fit(
         unit=unit,
         residuals=residuals,
@@ -101,7 +110,7 @@ def _ended(problem: Problem, place: Place, loss: str) -> Fit:
         slopes=lambda: problem.jacobian(unit, residuals),
         prior_jacobian=problem.prior_jacobian(),
         counted=problem.counted,
-        evaluations=place.problem.evaluations,
+        evaluations=problem.evaluations,
         unsure=problem.unsure,
     )
 
