@@ -166,7 +166,6 @@ class Experiment:
             command = np.concatenate([command[:before], [neutral, command[resumed]], command[after:]])
         return replace(self, command_times=times, command=command)
 
-    @property
     def with_recorded_supply(self) -> "Experiment":
         """The same with the recorded supply pressure in place of the supply, cut in two where it is measured.
 
