@@ -10,6 +10,7 @@
   Physics 18, 102).
 """
 
+import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -27,6 +28,9 @@ RUNGS: tuple[tuple[float | None, int], ...] = ((0.1, 8), (0.5, 8), (None, 10))
 
 HORIZONS = (8, 6, 4, 4, 3, 2, 1)
 """So many places go on from each horizon; each is twice as long as the one before, the last one is all."""
+
+FEWEST = 50
+"""Samples of the shortest horizon, at least: fewer do not tell a supply's numbers apart."""
 
 SHORT_STEPS, LONG_STEPS = 10, 20
 """Steps of a fit over a part of the time, and over all of it."""
@@ -121,7 +125,10 @@ class Continuation:
         """Where the numbers that move end, from short horizons to all of the time. # (n,)."""
         units = list(starts)
         whole = max(float(e.time[-1] - e.time[0]) for e in self.experiments)
-        for halvings, keep in zip(reversed(range(len(HORIZONS))), HORIZONS, strict=True):
+        samples = min(e.time.size for e in self.experiments)
+        most = min(int(math.log2(max(samples / FEWEST, 1.0))), len(HORIZONS) - 1)
+        for halvings in range(most, -1, -1):
+            keep = HORIZONS[len(HORIZONS) - 1 - halvings]
             parts = tuple(e.until(whole / 2**halvings) if halvings else e for e in self.experiments)
             steps, share = (SHORT_STEPS, 1e-3) if halvings else (LONG_STEPS, 1e-4)
             places = self._descended(parts, units, moving, None, steps, share=share)

@@ -63,6 +63,7 @@ def test_behind_the_cut_nothing_depends_on_the_supply(recording) -> None:
     assert part.with_recorded_supply() is part
 
 
+@pytest.mark.long("ten seconds")
 def test_what_rings_is_found_over_a_horizon_that_grows(recording) -> None:
     """Free rollouts from the rig's own numbers end in another local minimum, part by part they reach the noise."""
     rig = load_rig("hopsan_link", {path: text for path, text in TRUE.items() if path == "load.mass"})

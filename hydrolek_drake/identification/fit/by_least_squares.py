@@ -18,7 +18,7 @@ ROUNDS = 10
 """So often two starts are tried: the rig's own values and the middle of its ranges, then random ones."""
 
 ALIKE = 0.01
-"""Two rounds that end with the same squares, to this share of them, have found what there is to be found."""
+"""A round that ends with the least squares of those before, to this share of them, has found what there is."""
 
 WORTH = 0.1
 """Squares that a step of joints that move together must promise: a third of a standard error."""
@@ -75,9 +75,8 @@ def by_least_squares(
             starts = [parameters.unit(), np.full(len(parameters), 0.5)]
             for _ in range(ROUNDS):
                 fit = _ended(problem, way.from_starts(starts), loss)
-                again = any(abs(fit.objective - f.objective) < ALIKE * f.objective for f in finished)
-                finished.append(fit)
-                finished.sort(key=lambda each: each.objective)
+                again = bool(finished) and abs(fit.objective / finished[0].objective - 1.0) < ALIKE
+                finished = sorted([*finished, fit], key=_objective)
                 if again or fit.over_noise <= enough:
                     break
                 starts = list(rng.uniform(size=(2, len(parameters))))
