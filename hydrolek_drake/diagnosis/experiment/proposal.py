@@ -160,7 +160,7 @@ def _separations(
         places.append(Place(problem, bench.movable(rival.effects, problem.parameters), unit, exact=True))
     found = []
     for place, (shown,) in zip(with_slopes(places, bench.pool, cores), played, strict=True):
-        assert place.residuals is not None
+        assert place.residuals is not None and place.slopes is not None
         fit = hypothesis_of(rival.effects, place, bench.fine).fit
         across = Across(replace(fit, slopes=place.slopes))
         unchanged = np.zeros_like(fit.off_prior)
