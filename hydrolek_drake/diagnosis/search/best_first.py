@@ -18,6 +18,9 @@ from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
+MOST_WEIGHED = 3
+"""So often the data are weighed by the nominal model at most."""
+
 EFFECTS, LAWS = "effects", "laws"
 """What structures are enlarged by."""
 
@@ -151,12 +154,12 @@ def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> 
 
 
 def _as_weighed(bench: Workbench, structure: Hypothesis, settings: Settings, cores: int) -> Hypothesis:
-    """A structure fitted on, the data weighed by it; what is below the noise then was weighed by a worse fit."""
+    """A structure fitted on, the data weighed by it; again where its noise fell, since a worse fit had told it."""
     now = structure
-    for _ in range(3):
+    for _ in range(MOST_WEIGHED):
         bench.training = tuple(weighted_by(bench, now, bench.training))
-        now = race(bench, [Entrant(now.effects, now.values)], (settings.again,), cores)[0]
-        if now.fit.over_noise > 1.0 / AT_NOISE:
+        before, now = now, race(bench, [Entrant(now.effects, now.values)], (settings.again,), cores)[0]
+        if now.fit.over_noise > 1.0 / AT_NOISE or now.fit.over_noise < AT_NOISE * before.fit.over_noise:
             break
     return now
 
