@@ -174,7 +174,7 @@ def _diagnosed(
         places = locate(bench, best, found.baseline, bench.training)
         if law is not None:
             places = (locate_law(bench, best, found.baseline, law), *places)
-        proposal = propose(bench, conclusion, [j.hypothesis for j in judged])
+        proposal = propose(bench, conclusion, [j.hypothesis for j in judged], cores)
         visible = visible_sizes(bench, best, found.left)
     except KeyboardInterrupt:  # the verdict stands without what is left
         bench.resume()

@@ -12,11 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.conclusion import Conclusion
+from hydrolek_drake.diagnosis.fitting.lockstep import Place, with_slopes
 from hydrolek_drake.diagnosis.fitting.projection import Across
+from hydrolek_drake.diagnosis.fitting.race import hypothesis_of
+from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.channel import Channel
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import Fit
 
 DURATION_S = 40.0
 SAMPLE_S = 0.01
@@ -63,13 +65,16 @@ def commands_of(amplitude: float) -> dict[str, np.ndarray]:
     return {words: amplitude * shape for words, shape in shapes.items()}
 
 
-def propose(bench: Workbench, conclusion: Conclusion, hypotheses: Sequence[Hypothesis]) -> Proposal | None:
+def propose(
+    bench: Workbench, conclusion: Conclusion, hypotheses: Sequence[Hypothesis], cores: int
+) -> Proposal | None:
     """The experiment that tells the two most probable hypotheses apart best; None if there is only one.
 
     Args:
         bench: data and fits.
         conclusion: with its groups.
         hypotheses: fitted, the most probable first.
+        cores: that roll out at the same time.
     """
     if (
         len(hypotheses) < 2
@@ -93,7 +98,7 @@ def propose(bench: Workbench, conclusion: Conclusion, hypotheses: Sequence[Hypot
         if unrecorded:
             options.append((f"{words} (up to {amplitude:.3g} V), with both chamber pressures recorded",
                             _with_pressures(bench, experiment)))  # fmt: skip
-    seen = bench.side_by_side(lambda option: _separation(bench, first, second, option[1]), options)
+    seen = _separations(bench, first, second, [experiment for _, experiment in options], cores)
     ranked = sorted(zip(seen, options, strict=True), key=lambda pair: -pair[0])
     separation, (words, experiment) = ranked[0]
     names = " from ".join(_names(h) for h in (first, second))
@@ -136,14 +141,28 @@ def _with_pressures(bench: Workbench, experiment: Experiment) -> Experiment:
     return replace(experiment, channels=(position, *more), start_response=None)
 
 
-def _separation(bench: Workbench, truth: Hypothesis, rival: Hypothesis, experiment: Experiment) -> float:
-    """Root of the squared residuals that the rival leaves after its best (linear) change of parameters."""
-    played = bench.residuals(truth, [experiment], bench.fine)
-    problem = bench.problem(rival.effects, bench.fine, [experiment])
-    unit = problem.parameters.unit(rival.values)
-    base = problem.residuals(unit)
-    off = problem.prior_residuals(unit)
-    jacobian = problem.jacobian(unit, base)
-    across = Across(Fit(unit, base, off, jacobian, problem.prior_jacobian(), base.size, 0))
-    left = across(np.concatenate([base - played, np.zeros(off.size)]))
-    return float(np.linalg.norm(left))
+def _separations(
+    bench: Workbench, truth: Hypothesis, rival: Hypothesis, experiments: Sequence[Experiment], cores: int
+) -> list[float]:
+    """Root of the squared residuals that the rival leaves of each after its best (linear) change of parameters."""
+    played = residuals_at(
+        [
+            Request(problem, (problem.parameters.unit(truth.values),))
+            for problem in (bench.problem(truth.effects, bench.fine, [e]) for e in experiments)
+        ],
+        bench.pool,
+        cores,
+    )
+    places = []
+    for experiment in experiments:
+        problem = bench.problem(rival.effects, bench.fine, [experiment])
+        unit = problem.parameters.unit(rival.values)
+        places.append(Place(problem, bench.movable(rival.effects, problem.parameters), unit, exact=True))
+    found = []
+    for place, (shown,) in zip(with_slopes(places, bench.pool, cores), played, strict=True):
+        assert place.residuals is not None and place.slopes is not None
+        fit = hypothesis_of(rival.effects, place, bench.fine).fit
+        across = Across(replace(fit, slopes=place.slopes))
+        unchanged = np.zeros_like(fit.off_prior)
+        found.append(float(np.linalg.norm(across(np.concatenate([place.residuals - shown, unchanged])))))
+    return found

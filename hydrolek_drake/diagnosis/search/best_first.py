@@ -21,6 +21,9 @@ from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.continuation import Continuation
 
+MOST_WEIGHED = 3
+"""So often the data are weighed by the nominal model at most."""
+
 EFFECTS, LAWS = "effects", "laws"
 """What structures are enlarged by."""
 
@@ -171,12 +174,12 @@ def _by_parts(bench: Workbench, cores: int) -> dict[str, float]:
 
 
 def _as_weighed(bench: Workbench, structure: Hypothesis, settings: Settings, cores: int) -> Hypothesis:
-    """A structure fitted on, the data weighed by it; what is below the noise then was weighed by a worse fit."""
+    """A structure fitted on, the data weighed by it; again where its noise fell, since a worse fit had told it."""
     now = structure
-    for _ in range(3):
+    for _ in range(MOST_WEIGHED):
         bench.training = tuple(weighted_by(bench, now, bench.training))
-        now = race(bench, [Entrant(now.effects, now.values)], (settings.again,), cores)[0]
-        if now.fit.over_noise > 1.0 / AT_NOISE:
+        before, now = now, race(bench, [Entrant(now.effects, now.values)], (settings.again,), cores)[0]
+        if now.fit.over_noise > 1.0 / AT_NOISE or now.fit.over_noise < AT_NOISE * before.fit.over_noise:
             break
     return now
 
