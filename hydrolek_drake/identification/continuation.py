@@ -16,6 +16,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import qmc
 
 from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
 from hydrolek_drake.identification.experiment import Experiment
@@ -34,6 +35,9 @@ FEWEST = 50
 
 SHORT_STEPS, LONG_STEPS = 10, 20
 """Steps of a fit over a part of the time, and over all of it."""
+
+SEED = 1
+"""Of the sequence: the same starts each time."""
 
 STARTS = 64
 """Places from which the shortest horizon is fitted."""
@@ -167,13 +171,6 @@ class Continuation:
 
 
 def spread_evenly(count: int, size: int) -> np.ndarray:
-    """Points of a unit cube that fill it evenly however many there are: an additive recurrence. # (count, size).
-
-    u_k = frac(1/2 + k a), a_i = g^-i with the root g of g^(size + 1) = g + 1, in one dimension the golden ratio
-    (Niederreiter, Random Number Generation and Quasi-Monte Carlo Methods, 1992, section 3.1, for such sequences).
-    """
-    root = 1.0
-    for _ in range(64):
-        root = (1.0 + root) ** (1.0 / (size + 1.0))
-    steps = root ** -np.arange(1.0, size + 1.0)
-    return np.asarray((0.5 + np.arange(1, count + 1)[:, None] * steps) % 1.0)
+    """Points of a unit cube that fill it evenly: the first ones of a scrambled Sobol sequence. # (count, size)."""
+    points = qmc.Sobol(size, rng=np.random.default_rng(SEED)).random(2 ** math.ceil(math.log2(count)))
+    return np.asarray(points[:count])

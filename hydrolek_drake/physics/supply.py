@@ -114,7 +114,7 @@ def rate_of_change(remembered: float, relief: float, drawn: float, joint: Any) -
     A constant pressure remembers the flow drawn, dQ/dt = (Q_drawn - Q)/T, without a slope. A pump's line fills with
     dp/dt = B/V (D w - leakage - Q_drawn - Q_relief). A relief valve that stands at b lets off b/R at the pressure
     p_0 + b that it would have without hysteresis (Merritt, Hydraulic Control Systems, 1967, section 9.2: static
-    characteristic with the gain 1/R), and through the same opening, which is an orifice (4.7),
+    characteristic with the gain 1/R), and through the same opening, which is an orifice,
     Q_relief = b/R sqrt((p - p_T)/(p_0 + b - p_T)) at another one. What b/R takes is left to `relieved_by_valve`: the
     slope is -B/(V R).
 
