@@ -8,6 +8,7 @@ from hydrolek_drake.identification.channel import Channel, faithful
 from hydrolek_drake.identification.neighbours import rows_at, with_recorded
 from hydrolek_drake.identification.start import without_offset
 from hydrolek_drake.identification.thinning import Blocks, block_size
+from hydrolek_drake.physics.probes import PROBES, SUPPLY
 from hydrolek_drake.rollout.kernel import PULLED
 from hydrolek_drake.rollout.rest import rest_state_at_reading
 from hydrolek_drake.rollout.rollout import Outcome, Signals
@@ -40,6 +41,7 @@ class Experiment:
         others_error: by how much each channel of a rollout is wrong since `others` is not quite what they do; None if
             that is not known. # (channels, n)
         recorded: what is recorded in place of a part of the model, as probes of the rollout; None for nothing.
+        cut: part of the model that `recorded` replaces besides those that the rig names, see `physics.driven`.
     """
 
     name: str
@@ -59,6 +61,7 @@ class Experiment:
     start_error: float = 0.0
     start_response: np.ndarray | None = None
     recorded: tuple[float, np.ndarray] | None = None
+    cut: str | None = None
 
     @property
     def command_at_samples(self) -> np.ndarray:
@@ -96,6 +99,9 @@ class Experiment:
     ) -> Run:
         """The rollout that `simulate` makes, to be made beside others (`rollout.lanes`); arguments as there."""
         record = records[self.index : self.index + 1]
+        if self.cut is not None:
+            record = record.copy()
+            record["driven"][self.cut] = 1.0
         return Run(
             record,
             self.command_times,
@@ -159,6 +165,23 @@ class Experiment:
             times = np.concatenate([times[:before], [begin, end], times[after:]])
             command = np.concatenate([command[:before], [neutral, command[resumed]], command[after:]])
         return replace(self, command_times=times, command=command)
+
+    def with_recorded_supply(self) -> "Experiment":
+        """The same with the recorded supply pressure in place of the supply, cut in two where it is measured.
+
+        What the chain behind it is then does not depend on the supply's numbers; itself where no supply pressure is
+        followed.
+        """
+        measured = next((c.measured for c in self.channels if c.model == "supply_pressure"), None)
+        if measured is None:
+            return self
+        known = np.isfinite(measured)
+        rows = np.zeros((max(self.time.size, 2), len(PROBES)))
+        at = np.linspace(self.time[0], self.time[-1], len(rows))
+        rows[:, SUPPLY] = np.interp(at, self.time[known], measured[known])
+        channels = tuple(c for c in self.channels if c.model != "supply_pressure")
+        recorded = with_recorded(self.recorded, (float(at[1] - at[0]), rows))
+        return replace(self, channels=channels, recorded=recorded, cut="supply_pressure")
 
     def until(self, seconds: float) -> "Experiment":
         """The beginning of the experiment, up to so many seconds after its first sample."""

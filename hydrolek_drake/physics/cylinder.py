@@ -68,6 +68,13 @@ STAGE = Stage(
                 lowest=0.0,
             ),
             Parameter("stop_damping", "N s/m", "damping of these stops", neutral=0.0, lowest=0.0),
+            Parameter(
+                "column_compliance",
+                "m/N",
+                "below this compliance the oil column of a chamber is not counted, 0 for any",
+                neutral=0.0,
+                lowest=0.0,
+            ),
         ),
         "vane": (
             *_DISPLACEMENTS,
@@ -105,6 +112,24 @@ def chamber_volumes(stroke: float, joint: Any) -> tuple[float, float]:
 
 
 @njit
+def counted_volumes(stroke: float, joint: Any) -> tuple[float, float]:
+    """Oil volumes that give way to pressure on sides A and B [m^3], at least what a column's least compliance c has.
+
+    The oil column of a chamber has the compliance V / (B A^2) (Merritt, Hydraulic Control Systems, 1967, section 6.1),
+    so that V counts as B A^2 c at least. Simulators that join components by transmission lines keep their columns so
+    soft, since a step h bears a mass m only with c >= h^2/(0.1 m) (Hopsan, HydraulicCylinderC: its least volumes);
+    a real tube with its mounts gives way, too.
+    """
+    p = joint.cylinder
+    volume_a, volume_b = chamber_volumes(stroke, joint)
+    if rare(joint) and p.variant == CYLINDER and p.column_compliance > 0.0:
+        least = joint.fluid.bulk_modulus * p.column_compliance
+        volume_a = max(volume_a, least * p.area_a * p.area_a)
+        volume_b = max(volume_b, least * p.area_b * p.area_b)
+    return volume_a, volume_b
+
+
+@njit
 def pressure_rates(
     p_a: float, p_b: float, flow_a: float, flow_b: float, stroke: float, velocity: float, joint: Any
 ) -> tuple[float, float, float, float]:
@@ -122,7 +147,7 @@ def pressure_rates(
         joint: parameter record.
     """
     p = joint.cylinder
-    volume_a, volume_b = chamber_volumes(stroke, joint)
+    volume_a, volume_b = counted_volumes(stroke, joint)
     stiffness_a = effective_bulk_modulus(p_a, joint) / volume_a
     stiffness_b = effective_bulk_modulus(p_b, joint) / volume_b
     rate_a = stiffness_a * (flow_a - p.area_a * velocity)

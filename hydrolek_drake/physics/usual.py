@@ -16,7 +16,10 @@ MARK = "usual"
 RARE: dict[str, tuple[str, ...]] = {"supply": ("pump",), "valve": ("four_edges",), "load": ("link",)}
 """Stage -> its variants that stand behind `rare`."""
 
-RARE_NUMBERS: tuple[tuple[str, str], ...] = (("cylinder", "stop_stiffness"),)
+RARE_NUMBERS: tuple[tuple[str, str], ...] = (
+    ("cylinder", "stop_stiffness"),
+    ("cylinder", "column_compliance"),
+)
 """Stages and their parameters that stand behind it where they are above zero."""
 
 

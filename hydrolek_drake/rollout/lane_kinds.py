@@ -17,7 +17,13 @@ GROUPS = (("rod_friction", "load_friction"),)
 other hooks is a number that may be zero: all of them together make a step of eight machines a fifth slower, and each
 kind that is not compiled costs 10 s, or has its machines rolled out one by one, which takes three times as long."""
 
-SOMETIMES = ("command.ramp", "amplifier.coil_time", "valve.flow_force", "cylinder.stop_stiffness")
+SOMETIMES = (
+    "command.ramp",
+    "amplifier.coil_time",
+    "valve.flow_force",
+    "cylinder.stop_stiffness",
+    "cylinder.column_compliance",
+)
 """Parameters of the stages that most machines have at zero, and that cost as much."""
 
 TERMS = (1, 2, MOST_TERMS)

@@ -172,7 +172,7 @@ def rates(
             rate_a = rate_b = slope_a = slope_b = 0.0
         friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
         force = cylinder.pressure_force(s.p_a, s.p_b, joint) - friction
-        supply_rate, slope_supply = supply.rate_of_change(s.supply, drawn + probe.flow, joint)
+        supply_rate, slope_supply = supply.rate_of_change(s.supply, s.relief, drawn + probe.flow, joint)
 
     force += probe.cylinder
     moment = force * lever

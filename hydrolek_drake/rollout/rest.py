@@ -78,7 +78,7 @@ def _rest(
     joint = joints[0]
     state[:] = 0.0
     state[4] = state[11] = q
-    state[6] = state[16] = supply.at_rest(joint)
+    state[6], state[16] = supply.at_start(joint)
     state[12] = time
     state[14], state[15] = amplifier.coil_currents(0.0, time, joint)
     if joint.cylinder.variant == cylinder.ELECTRIC_MOTOR:

@@ -123,7 +123,7 @@ def halfway(r: np.ndarray, i: int, h: float, joint: Any) -> None:
         joint: parameter record.
     """
     s, k = state_at(r, i, STATE), state_at(r, i, RATES)
-    rate, _ = supply.rate_of_change(s.supply, r[i, TOTAL], joint)
+    rate, _ = supply.rate_of_change(s.supply, s.relief, r[i, TOTAL], joint)
     r[i, RATES + OF_SUPPLY] = rate
     put_state(r, i, MIDDLE, first_stage(s, _with_supply(k, rate), slopes_at(r, i), h, joint))
 
@@ -159,7 +159,7 @@ def goes_on(
 def ends(r: np.ndarray, i: int, h: float, joint: Any) -> None:
     """The state after the step, and what the sensor's play reads then; arguments as of `halfway`."""
     begun, middle = state_at(r, i, STATE), state_at(r, i, MIDDLE)
-    rate, _ = supply.rate_of_change(middle.supply, r[i, TOTAL], joint)
+    rate, _ = supply.rate_of_change(middle.supply, middle.relief, r[i, TOTAL], joint)
     m = _with_supply(state_at(r, i, LATER), rate)
     n = second_stage(begun, state_at(r, i, RATES), m, slopes_at(r, i), h, joint)
     play, near = r[i, PLAY], near_at(r, i)

@@ -55,7 +55,7 @@ def sizes_for(rig: Rig) -> StepSizes:
     """
     step = min(StepSizes.step, 2.0 * rig.value("integration.longest_step"))
     records = rig.records()
-    sticks = bool(np.any(records["supply"]["relief_hysteresis"] > 0.0))
+    sticks = any(bool(np.any(records["supply"][name] > 0.0)) for name in ("relief_hysteresis", "relief_time"))
     if sticks or any(hooks.linkage_gap(record) > 0.0 for record in records):
         step /= 4.0
     return StepSizes(step=step, log_period=step)

@@ -5,7 +5,7 @@ from numba import njit
 from pydrake.systems.framework import BasicVector, Context, ContinuousState, DiscreteValues, LeafSystem
 
 from hydrolek_drake.physics.probes import SUPPLY
-from hydrolek_drake.physics.supply import PUMP, at_rest, rate_of_change, relieved_with_play, supply_pressure
+from hydrolek_drake.physics.supply import PUMP, at_start, rate_of_change, relieved_by_valve, supply_pressure
 from hydrolek_drake.systems.recorded import Recorded
 from hydrolek_drake.systems.short_law import Outside
 
@@ -17,11 +17,11 @@ def _pressure(joints: np.ndarray, remembered: float, share: float) -> float:
 
 
 @njit(cache=True)
-def _rate(joints: np.ndarray, remembered: float, flows: np.ndarray) -> tuple[float, float]:
+def _rate(joints: np.ndarray, remembered: float, relief: float, flows: np.ndarray) -> tuple[float, float]:
     drawn = 0.0
     for i in range(2 * len(joints), 3 * len(joints)):
         drawn += flows[i]
-    return rate_of_change(remembered, drawn, joints[0])
+    return rate_of_change(remembered, relief, drawn, joints[0])
 
 
 @njit(cache=True)
@@ -33,15 +33,15 @@ def _filled(
     The rate is carried on from the step before to the middle of this one (Adams and Bashforth), so that what the
     joints draw meanwhile counts to second order.
     """
-    rate, slope = _rate(joints, above, flows)
+    rate, slope = _rate(joints, above, valve, flows)
     middle = rate if np.isnan(before) else 1.5 * rate - 0.5 * before
-    above, valve = relieved_with_play(above, valve, middle, slope, h, joints[0])
+    above, valve = relieved_by_valve(above, valve, middle, slope, h, joints[0])
     return above, valve, rate
 
 
 @njit(cache=True)
-def _at_rest(joints: np.ndarray) -> float:
-    return at_rest(joints[0])
+def _at_start(joints: np.ndarray) -> tuple[float, float]:
+    return at_start(joints[0])
 
 
 class Supply(LeafSystem):
@@ -49,7 +49,7 @@ class Supply(LeafSystem):
 
     A constant pressure remembers that flow, low-passed, as a continuous state. A line with a relief valve settles in
     a tenth of a millisecond: it advances in the diagram's steps by the one-step method of the rollout,
-    `supply.relieved_with_play`, from the flow that a step begins with, and hands on its mean over the running step.
+    `supply.relieved_by_valve`, from the flow that a step begins with, and hands on its mean over the running step.
 
     Ports:
         in `oil_flow` (3n): its last n entries are drawn from the supply [m^3/s].
@@ -78,9 +78,9 @@ class Supply(LeafSystem):
         self.available = self.DeclareVectorInputPort("pressure_available", 1)
         self.outside = Outside(self, self._n)
         self._pump = bool(joints["supply"]["variant"][0] == PUMP)
-        start = _at_rest(joints)
+        start, valve = _at_start(joints)
         if self._pump:
-            self._ends = self.DeclareDiscreteState([start, start, np.nan])
+            self._ends = self.DeclareDiscreteState([start, valve, np.nan])
             self._mean = self.DeclareDiscreteState([start])
             self.DeclarePeriodicDiscreteUpdateEvent(step, 0.0, self._update)
         else:
@@ -101,7 +101,7 @@ class Supply(LeafSystem):
         """Low-pass of the flow drawn."""
         if not self._pump:
             flow = context.get_continuous_state_vector().GetAtIndex(0)
-            rate, _ = _rate(self._joints, flow, self.flow.Eval(context))
+            rate, _ = _rate(self._joints, flow, 0.0, self.flow.Eval(context))
             derivatives.get_mutable_vector().SetAtIndex(0, rate)
 
     def _update(self, context: Context, values: DiscreteValues) -> None:

@@ -26,6 +26,17 @@ def test_pressure_rates_are_continuity(bench_joint):
     assert_allclose((stiff_a, stiff_b), (B / (V_0 + A_A * s), B / (V_0 + A_B * (0.40 - s))), rtol=1e-13)
 
 
+def test_an_oil_column_gives_way_by_its_least_compliance(bench_joint):
+    """V / (B A^2) >= c: at zero stroke side A is softer than its dead volume, in mid-stroke both are as they are."""
+    least = 1.5e-7
+    joint = bench_joint({"cylinder.column_compliance": least})
+    for stroke in (0.0, 0.2, 0.4):
+        volumes = cylinder.chamber_volumes(stroke, joint)
+        _, _, *stiffnesses = cylinder.pressure_rates(7e6, 3e6, 0.0, 0.0, stroke, 0.0, joint)
+        for area, volume, stiffness in zip((A_A, A_B), volumes, stiffnesses, strict=True):
+            assert_allclose(1.0 / (stiffness * area**2), max(volume / (B * area**2), least), rtol=1e-12)
+
+
 def test_pressures_do_not_fall_below_zero_but_rise_from_there(bench_joint):
     joint = bench_joint()
     assert cylinder.pressure_rates(0.0, 0.0, -1e-5, -1e-5, 0.07, 0.0, joint)[:2] == (0.0, 0.0)

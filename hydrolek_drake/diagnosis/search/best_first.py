@@ -4,6 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Protocol
 
+import numpy as np
+
 from hydrolek_drake.diagnosis.data.weighing import weighted_by
 from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
@@ -16,7 +18,8 @@ from hydrolek_drake.diagnosis.search.tracing import trace
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
+from hydrolek_drake.identification.continuation import Continuation
 
 MOST_WEIGHED = 3
 """So often the data are weighed by the nominal model at most."""
@@ -136,9 +139,10 @@ def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> 
 
     Nothing is below the noise, so that a fit that reaches it needs no other starts. Where one is near it, so that
     what is missing is small beside what a wrong local minimum leaves, it is fitted by continuation too; where it is
-    far, only if no addition to it reaches the noise (`openings`).
+    far, only if no addition to it reaches the noise (`openings`). Where a pump's pressure was recorded it is fitted
+    part by part first: a line that rings has many local minima.
     """
-    known = next((h.values for h in found.seeds if not h.effects), {})
+    known = next((h.values for h in found.seeds if not h.effects), {}) or _by_parts(bench, cores)
     rungs = (settings.again,) if known else (*settings.free, *settings.ended)
     best = _as_weighed(bench, race(bench, [Entrant((), known)], rungs, cores)[0], settings, cores)
     trace(f"nominal {best.fit.over_noise:.4f}")
@@ -151,6 +155,22 @@ def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> 
         rung = replace(settings.again, keep=len(found.seeds))
         for each in race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (rung,), cores):
             found.keep(each)
+
+
+def _by_parts(bench: Workbench, cores: int) -> dict[str, float]:
+    """Numbers of the nominal model, cut where a pump's pressure was recorded; none where there is no such."""
+    parameters = bench.parameters(())
+    prior = np.full(len(parameters), SPREAD)
+
+    def told(evaluations: int, over_noise: float, unit: np.ndarray) -> None:
+        bench.evaluations += evaluations
+        trace(f"  nominal by parts {over_noise:.4f}")
+
+    way = Continuation(
+        parameters, tuple(bench.training), bench.pool, cores, bench.fine, prior, bench.alive, told
+    )
+    unit = way.from_the_cut([parameters.unit(), np.full(len(parameters), 0.5)])
+    return {} if unit is None else parameters.values(unit)
 
 
 def _as_weighed(bench: Workbench, structure: Hypothesis, settings: Settings, cores: int) -> Hypothesis:

@@ -33,8 +33,8 @@ from hydrolek_drake.rollout.pool import RolloutPool
 CONFIDENCE = 1.96
 """Standard errors on either side that hold 95 % of a normal distribution."""
 
-SIGNALS = ("position", "pressure_a", "pressure_b")
-"""What is followed where it was recorded."""
+SIGNALS = ("position", "pressure_a", "pressure_b", "supply_pressure")
+"""What is followed where it was recorded; the last in rigs of one joint, as of `experiments_of`."""
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def fit_rig(
         method: one of `METHODS`.
         paths: which parameters; None for all with a range that the recordings can tell, see `searched`.
         holdout: recordings that are only compared with.
-        signals: which of position, pressure_a, pressure_b are followed.
+        signals: which of `SIGNALS` are followed.
         budget: simulations that a search may make.
         p: norm of the objective; least squares is p = 2.
         segments: of nsga2.
@@ -166,7 +166,9 @@ def fit_rig(
     if by_rollouts:
         with RolloutPool(workers) as threads:
             pool = threads if workers > 1 else None
-            fit, evaluations, interrupted = by_least_squares(parameters, training, pool, rng, loss, progress)
+            fit, evaluations, interrupted = by_least_squares(
+                parameters, training, pool, workers, rng, loss, progress
+            )
             jacobian = fit.jacobian
         unit, found = fit.unit, None
     else:

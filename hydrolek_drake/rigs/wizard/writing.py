@@ -238,7 +238,20 @@ def _pump(sheet: Sheet) -> list[str]:
         _asked(sheet, "pump_speed", "speed"),
         _rise(sheet),
         _asked(sheet, "relief_hysteresis"),
+        _asked(sheet, "relief_time"),
         _asked(sheet, "line_volume"),
+        *_line_at_start(sheet),
+    ]
+
+
+def _line_at_start(sheet: Sheet) -> list[str]:
+    """The line where a recording begins, which a fit finds: at rest, or with a pump that was just switched on."""
+    bar = si_factor("bar", "Pa")
+    rest = sheet["supply_pressure"] + sheet["relief_rise"]
+    limits = (sheet["tank_pressure"] / bar, 1.1 * rest / bar)
+    return [
+        _entry("initial_pressure", rest / bar, "bar", "assumed: at rest", limits, log=False),
+        _entry("initial_relief", 1.0, "1", "assumed: at rest; 0 with the valve closed", (0.0, 1.0)),
     ]
 
 
@@ -282,6 +295,7 @@ def _cylinder(sheet: Sheet) -> list[str]:
         "  dead_volume_b: {same_as: dead_volume_a}",
         f"  {_end(sheet, 'stroke', sheet['stroke'], SHEET)}",
         *(f"  {line}" for line in _stops(sheet)),
+        f"  {_column(sheet)}",
         f"  {_at_start(sheet)}",
         f"  {_asked(sheet, 'seal_damping', 'viscous_friction')}",
         f"  {_kept('friction_velocity')}",
@@ -313,6 +327,14 @@ def _stops(sheet: Sheet) -> list[str]:
             (damping / spread, damping * spread),
         ),
     ]
+
+
+def _column(sheet: Sheet) -> str:
+    """Compliance that an oil column has at least, as a share of that of side A in mid-stroke."""
+    share, spread = fixed("column_share"), fixed("stop_depth_factor")["value"]
+    volume = sheet["dead_volume"] + 0.5 * sheet["stroke"] * sheet.area_a
+    least = share["value"] * volume / (sheet["bulk_modulus"] * sheet.area_a**2)
+    return _entry("column_compliance", least, "m/N", share["source"], (least / spread, least * spread))
 
 
 def _end(sheet: Sheet, name: str, value: float, source: str) -> str:
