@@ -14,12 +14,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from hydrolek_drake.control.comparison.thesis_tables import STEP_TABLES
 from hydrolek_drake.control.design import integrator, lq_gains
-from hydrolek_drake.control.inverse_dead_zone import InverseDeadZone, inverse_dead_zone
-from hydrolek_drake.control.scaled_input import ScaledInput
-from hydrolek_drake.control.sdp_model import SdpModel, thesis_model
+from hydrolek_drake.control.laws.inverse_dead_zone import InverseDeadZone, inverse_dead_zone
+from hydrolek_drake.control.laws.scaled_input import ScaledInput
+from hydrolek_drake.control.models.sdp_model import SdpModel, thesis_model
 from hydrolek_drake.control.thesis_gains import entry, scaled_input, voltage_limit_V
-from hydrolek_drake.control.thesis_tables import STEP_TABLES
 
 Array = NDArray[np.float64]
 
@@ -46,13 +46,13 @@ USED: Form = {
     "gains": "printed", "law": LAWS[0], "inverse": INVERSES[0], "late": 1, "fed back": "limited", "internal delay": 0,
     "chatter": 0.05, "model at 0.05 s": False, "plant delay": 0,
 }  # fmt: skip
-"""What `control/forward_path.py` is."""
+"""What `control/laws/forward_path.py` is."""
 
 USED_PI: Form = {
     "K_I": "per s", "rule": "backward", "anti-windup": False, "signal limited": True, "printed (6.7)": False,
     "model at 0.05 s": False, "plant delay": 0, "K_P times integral": False,
 }  # fmt: skip
-"""What `control/pi.py` is in the thesis's form."""
+"""What `control/laws/pi.py` is in the thesis's form."""
 
 
 @dataclass

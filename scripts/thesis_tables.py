@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from scipy.stats import spearmanr
 
-from hydrolek_drake.control.bench_tables import MEASURES, Measure, beside, text
 from hydrolek_drake.control.catalogue import CONTROLLERS
-from hydrolek_drake.control.thesis_tables import GRASP_TABLES, MACHINE_TABLES, printed
+from hydrolek_drake.control.comparison.bench_tables import MEASURES, Measure, beside, text
+from hydrolek_drake.control.comparison.thesis_tables import GRASP_TABLES, MACHINE_TABLES, printed
 
 RESULTS = Path(__file__).parents[1] / "docs" / "control.json"
 JOINTS = ("right_j1", "right_j2", "right_j3", "right_j4")

@@ -26,59 +26,89 @@ class CommandEntry(NamedTuple):
 
 COMMANDS: dict[str, CommandEntry] = {
     "simulate": CommandEntry(
-        "hydrolek_drake.cli.simulate", "simulate", "run a scenario on its Drake diagram"
+        "hydrolek_drake.cli.machines.simulate", "simulate", "run a scenario on its Drake diagram"
     ),
     "replay": CommandEntry(
-        "hydrolek_drake.cli.replay", "replay", "drive a rig's model with a recorded command and compare"
+        "hydrolek_drake.cli.machines.replay",
+        "replay",
+        "drive a rig's model with a recorded command and compare",
     ),
-    "fit": CommandEntry("hydrolek_drake.cli.fit", "fit", "estimate a rig's free parameters from recordings"),
+    "fit": CommandEntry(
+        "hydrolek_drake.cli.identification.fit", "fit", "estimate a rig's free parameters from recordings"
+    ),
     "diagnose": CommandEntry(
-        "hydrolek_drake.cli.diagnose", "diagnose", "find out what physics the model leaves out, and model it"
+        "hydrolek_drake.cli.diagnosis.diagnose",
+        "diagnose",
+        "find out what physics the model leaves out, and model it",
     ),
     "sensitivity": CommandEntry(
-        "hydrolek_drake.cli.sensitivity", "sensitivity", "which parameters matter, and in which part"
+        "hydrolek_drake.cli.identification.sensitivity",
+        "sensitivity",
+        "which parameters matter, and in which part",
     ),
     "identify": CommandEntry(
-        "hydrolek_drake.cli.identify", "identify", "identify sdp: SDP models from open-loop step tests"
+        "hydrolek_drake.cli.identification.identify",
+        "identify",
+        "identify sdp: SDP models from open-loop step tests",
     ),
     "challenge": CommandEntry(
-        "hydrolek_drake.cli.challenge",
+        "hydrolek_drake.cli.diagnosis.challenge",
         "challenge",
         "diagnose concealed machines of the project's own, and score",
     ),
     "effects": CommandEntry(
-        "hydrolek_drake.cli.effects", "effects", "list the known effects, or show one in full"
+        "hydrolek_drake.cli.machines.effects", "effects", "list the known effects, or show one in full"
     ),
     "rigs": CommandEntry(
-        "hydrolek_drake.cli.rigs", "rigs", "list the built-in rigs, or one rig's parameters"
+        "hydrolek_drake.cli.machines.rigs", "rigs", "list the built-in rigs, or one rig's parameters"
     ),
     "rig": CommandEntry(
-        "hydrolek_drake.cli.rig", "rig", "a new rig from a data sheet, or what is implausible about one"
+        "hydrolek_drake.cli.machines.rig",
+        "rig",
+        "a new rig from a data sheet, or what is implausible about one",
     ),
     "export": CommandEntry(
-        "hydrolek_drake.cli.export", "export", "a rig's model as an FMU, for other programs' simulations"
+        "hydrolek_drake.cli.machines.export",
+        "export",
+        "a rig's model as an FMU, for other programs' simulations",
     ),
     "fmu": CommandEntry(
-        "hydrolek_drake.cli.fmu", "fmu", "other programs' FMUs in place of a machine: show, or record one"
+        "hydrolek_drake.cli.machines.fmu",
+        "fmu",
+        "other programs' FMUs in place of a machine: show, or record one",
     ),
-    "ik": CommandEntry("hydrolek_drake.cli.ik", "ik", "joint angles for a target, or what prevents it"),
+    "ik": CommandEntry(
+        "hydrolek_drake.cli.operation.ik", "ik", "joint angles for a target, or what prevents it"
+    ),
     "stand": CommandEntry(
-        "hydrolek_drake.cli.stand", "stand", "where to stand so that a pipe can be grasped and cut"
+        "hydrolek_drake.cli.operation.stand", "stand", "where to stand so that a pipe can be grasped and cut"
     ),
-    "carry": CommandEntry("hydrolek_drake.cli.carry", "carry", "both arms hold one pipe and move it"),
+    "carry": CommandEntry(
+        "hydrolek_drake.cli.operation.carry", "carry", "both arms hold one pipe and move it"
+    ),
     "vision": CommandEntry(
-        "hydrolek_drake.cli.vision", "vision", "edges, selected object and targets of one camera frame"
+        "hydrolek_drake.cli.operation.vision",
+        "vision",
+        "edges, selected object and targets of one camera frame",
     ),
-    "teleop": CommandEntry("hydrolek_drake.cli.teleop", "teleop", "the operator's console in the browser"),
+    "teleop": CommandEntry(
+        "hydrolek_drake.cli.operation.teleop", "teleop", "the operator's console in the browser"
+    ),
     "serve": CommandEntry(
-        "hydrolek_drake.cli.serve", "serve", "the controllers' end of the console's link, for another machine"
+        "hydrolek_drake.cli.operation.serve",
+        "serve",
+        "the controllers' end of the console's link, for another machine",
     ),
-    "show": CommandEntry("hydrolek_drake.cli.show", "show", "show a saved run of the arms in the browser"),
+    "show": CommandEntry(
+        "hydrolek_drake.cli.machines.show", "show", "show a saved run of the arms in the browser"
+    ),
     "control": CommandEntry(
-        "hydrolek_drake.cli.control", "control", "compare controllers (bench), or design one (design)"
+        "hydrolek_drake.cli.operation.control",
+        "control",
+        "compare controllers (bench), or design one (design)",
     ),
     "benchmark": CommandEntry(
-        "hydrolek_drake.cli.benchmark", "benchmark", "speed and exactness of the executions"
+        "hydrolek_drake.cli.diagnosis.benchmark", "benchmark", "speed and exactness of the executions"
     ),
 }
 """Name -> entry, in the order of the help."""

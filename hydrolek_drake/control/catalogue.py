@@ -6,26 +6,26 @@ from functools import cache
 from typing import Any
 
 from hydrolek_drake.control.design import integrator, lq_gains
-from hydrolek_drake.control.feedforward import FeedforwardLaw
-from hydrolek_drake.control.feedforward_tuning import tuning
-from hydrolek_drake.control.forward_path import ForwardPathLaw
-from hydrolek_drake.control.fuzzy import (
+from hydrolek_drake.control.laws.feedforward import FeedforwardLaw
+from hydrolek_drake.control.laws.feedforward_tuning import tuning
+from hydrolek_drake.control.laws.forward_path import ForwardPathLaw
+from hydrolek_drake.control.laws.fuzzy import (
     SingleInputFuzzyLaw,
     TwoInputFuzzyLaw,
     appendix_f_surface,
     printed_surface,
 )
-from hydrolek_drake.control.guard import GuardedLaw, guarded
-from hydrolek_drake.control.inverse_dead_zone import InverseDeadZone, inverse_dead_zone
-from hydrolek_drake.control.law import ControlLaw
+from hydrolek_drake.control.laws.guard import GuardedLaw, guarded
+from hydrolek_drake.control.laws.inverse_dead_zone import InverseDeadZone, inverse_dead_zone
+from hydrolek_drake.control.laws.law import ControlLaw
+from hydrolek_drake.control.laws.pi import PiLaw
+from hydrolek_drake.control.laws.pid import PidLaw
+from hydrolek_drake.control.laws.pip import PipLaw
+from hydrolek_drake.control.laws.rate_control import RateLaw
+from hydrolek_drake.control.laws.rate_map import RateMap, map_from_model, rig_model_and_rates
+from hydrolek_drake.control.laws.scaled_input import DirectInput, ScaledInput
+from hydrolek_drake.control.models.sdp_model import SdpModel, thesis_model
 from hydrolek_drake.control.names import TITLES, check_names
-from hydrolek_drake.control.pi import PiLaw
-from hydrolek_drake.control.pid import PidLaw
-from hydrolek_drake.control.pip import PipLaw
-from hydrolek_drake.control.rate_control import RateLaw
-from hydrolek_drake.control.rate_map import RateMap, map_from_model, rig_model_and_rates
-from hydrolek_drake.control.scaled_input import DirectInput, ScaledInput
-from hydrolek_drake.control.sdp_model import SdpModel, thesis_model
 from hydrolek_drake.control.thesis_gains import (
     entry,
     pip_gains,

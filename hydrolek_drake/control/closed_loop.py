@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hydrolek_drake.control.law import ControlLaw
-from hydrolek_drake.control.sdp_model import SdpModel
+from hydrolek_drake.control.laws.law import ControlLaw
+from hydrolek_drake.control.models.sdp_model import SdpModel
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rollout.rest import rest_state
 from hydrolek_drake.rollout.rollout import roll_out

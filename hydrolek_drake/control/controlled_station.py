@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hydrolek_drake.control.law import Array, ControlLaw
+from hydrolek_drake.control.laws.law import Array, ControlLaw
+from hydrolek_drake.control.laws.operator_path import through_operator_computer
 from hydrolek_drake.control.loop_command import loop_command
-from hydrolek_drake.control.operator_path import through_operator_computer
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.station.simulation import initial_context, run
 from hydrolek_drake.station.station import make_station

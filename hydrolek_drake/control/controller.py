@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from pydrake.systems.framework import Context, LeafSystem, State
 
-from hydrolek_drake.control.law import ControlLaw
+from hydrolek_drake.control.laws.law import ControlLaw
 
 
 class Controller(LeafSystem):

@@ -15,12 +15,12 @@ from hydrolek_drake.control.design import (
     lq_gains,
     pole_gains,
 )
-from hydrolek_drake.control.forward_path import ForwardPathLaw
-from hydrolek_drake.control.guard import GuardedLaw, guarded
-from hydrolek_drake.control.inverse_dead_zone import InverseDeadZone, inverse_dead_zone
-from hydrolek_drake.control.law import ControlLaw
-from hydrolek_drake.control.pip import PipLaw
-from hydrolek_drake.control.sdp_model import SdpModel, thesis_data
+from hydrolek_drake.control.laws.forward_path import ForwardPathLaw
+from hydrolek_drake.control.laws.guard import GuardedLaw, guarded
+from hydrolek_drake.control.laws.inverse_dead_zone import InverseDeadZone, inverse_dead_zone
+from hydrolek_drake.control.laws.law import ControlLaw
+from hydrolek_drake.control.laws.pip import PipLaw
+from hydrolek_drake.control.models.sdp_model import SdpModel, thesis_data
 from hydrolek_drake.control.thesis_gains import sample_s, voltage_limit_V
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.files import write_out

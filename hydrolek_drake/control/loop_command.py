@@ -17,7 +17,7 @@ from pydrake.systems.primitives import (
 from pydrake.trajectories import PiecewisePolynomial
 
 from hydrolek_drake.control.controller import Controller
-from hydrolek_drake.control.law import Array, ControlLaw
+from hydrolek_drake.control.laws.law import Array, ControlLaw
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
 

@@ -4,7 +4,7 @@ from functools import cache
 from typing import Any
 
 from hydrolek_drake.control.design import PipGains
-from hydrolek_drake.control.scaled_input import ScaledInput
+from hydrolek_drake.control.laws.scaled_input import ScaledInput
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.yaml_files import package_yaml
 

@@ -1,18 +1,18 @@
-"""Finds every effect file of this folder."""
+"""Finds every effect file of the folder `listed`."""
 
 import difflib
 import importlib
 import pkgutil
-from pathlib import Path
 
+from hydrolek_drake.effects import listed
 from hydrolek_drake.effects.effect import Effect
 from hydrolek_drake.errors import InputError
 
 
 def _found() -> dict[str, Effect]:
     effects = {}
-    for module_info in sorted(pkgutil.iter_modules([str(Path(__file__).parent)]), key=lambda m: m.name):
-        module = importlib.import_module(f"hydrolek_drake.effects.{module_info.name}")
+    for module_info in sorted(pkgutil.iter_modules(listed.__path__), key=lambda m: m.name):
+        module = importlib.import_module(f"{listed.__name__}.{module_info.name}")
         effect = getattr(module, "EFFECT", None)
         if isinstance(effect, Effect):
             effects[effect.id] = effect

@@ -85,8 +85,8 @@ class Controlled:
         """
         # a controller is designed on a rig: it stands above stations, and only such a scenario has need of it
         from hydrolek_drake.control.catalogue import build_law, rig_setting
+        from hydrolek_drake.control.laws.operator_path import through_operator_computer
         from hydrolek_drake.control.loop_command import loop_command
-        from hydrolek_drake.control.operator_path import through_operator_computer
         from hydrolek_drake.control.thesis_gains import sample_s
 
         laws = {

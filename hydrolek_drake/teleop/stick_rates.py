@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hydrolek_drake.control.catalogue import JointSetting, chosen
-from hydrolek_drake.control.rate_map import map_from_model, rate_at
+from hydrolek_drake.control.laws.rate_map import map_from_model, rate_at
 from hydrolek_drake.control.thesis_gains import signal_limit
 from hydrolek_drake.teleop.operator_model import operator_entries
 

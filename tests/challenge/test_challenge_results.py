@@ -8,7 +8,7 @@ from hydrolek_drake.challenge.build import BENCH
 from hydrolek_drake.challenge.cases import digest, labels_of
 from hydrolek_drake.challenge.drawing import draw_cases
 from hydrolek_drake.challenge.results import earlier_scores, write_results
-from hydrolek_drake.cli.challenge import challenge
+from hydrolek_drake.cli.diagnosis.challenge import challenge
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import load_rig
 

@@ -15,7 +15,7 @@ from hydrolek_drake.challenge.drawing import FRICTIONS, _in_turn, _shown, drafte
 from hydrolek_drake.challenge.listed import with_effects
 from hydrolek_drake.challenge.scoring import markdown, score, summaries, summaries_markdown, summary
 from hydrolek_drake.challenge.visibility import visibility_markdown
-from hydrolek_drake.cli.challenge import challenge
+from hydrolek_drake.cli.diagnosis.challenge import challenge
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.rigs import load_rig

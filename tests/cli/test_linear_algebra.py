@@ -7,8 +7,8 @@ import sys
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from hydrolek_drake.cli import rigs
 from hydrolek_drake.cli.app import run
+from hydrolek_drake.cli.machines import rigs
 from hydrolek_drake.linear_algebra import VARIABLE
 
 

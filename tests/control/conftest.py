@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from hydrolek_drake.control.feedforward import FeedforwardLaw
-from hydrolek_drake.control.feedforward_tuning import tuning
-from hydrolek_drake.control.rate_map import map_from_model
-from hydrolek_drake.control.sdp_model import SdpModel, thesis_model
+from hydrolek_drake.control.laws.feedforward import FeedforwardLaw
+from hydrolek_drake.control.laws.feedforward_tuning import tuning
+from hydrolek_drake.control.laws.rate_map import map_from_model
+from hydrolek_drake.control.models.sdp_model import SdpModel, thesis_model
 
 
 @pytest.fixture(scope="session")

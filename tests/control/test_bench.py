@@ -5,12 +5,18 @@ import json
 import numpy as np
 import pytest
 
-from hydrolek_drake.control.bench import bench_on_machine, bench_on_models
-from hydrolek_drake.control.bench_report import write_bench
-from hydrolek_drake.control.bench_tables import MEASURES, ranking, rows, sentence
-from hydrolek_drake.control.metrics import mean_squared_error, spread, step_measures, switching, tool_error
-from hydrolek_drake.control.sequences import set_points
-from hydrolek_drake.control.thesis_tables import SINE_TABLES, STEP_TABLES
+from hydrolek_drake.control.comparison.bench import bench_on_machine, bench_on_models
+from hydrolek_drake.control.comparison.bench_report import write_bench
+from hydrolek_drake.control.comparison.bench_tables import MEASURES, ranking, rows, sentence
+from hydrolek_drake.control.comparison.metrics import (
+    mean_squared_error,
+    spread,
+    step_measures,
+    switching,
+    tool_error,
+)
+from hydrolek_drake.control.comparison.sequences import set_points
+from hydrolek_drake.control.comparison.thesis_tables import SINE_TABLES, STEP_TABLES
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import load_rig
 

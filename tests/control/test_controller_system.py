@@ -9,9 +9,9 @@ from pydrake.trajectories import PiecewisePolynomial
 
 from hydrolek_drake.control.catalogue import CONTROLLERS, build_law, joystick_law, thesis_setting
 from hydrolek_drake.control.controller import Controller
-from hydrolek_drake.control.fuzzy import fuzzy_data
-from hydrolek_drake.control.sdp_joints import SdpJoints
-from hydrolek_drake.control.sdp_model import thesis_model
+from hydrolek_drake.control.laws.fuzzy import fuzzy_data
+from hydrolek_drake.control.models.sdp_joints import SdpJoints
+from hydrolek_drake.control.models.sdp_model import thesis_model
 
 SAMPLE = 0.05
 COUNT = 160

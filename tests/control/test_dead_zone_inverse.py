@@ -2,9 +2,9 @@
 
 import pytest
 
-from hydrolek_drake.control.inverse_dead_zone import inverse_dead_zone
-from hydrolek_drake.control.scaled_input import DirectInput
-from hydrolek_drake.control.sdp_model import SdpModel, thesis_model
+from hydrolek_drake.control.laws.inverse_dead_zone import inverse_dead_zone
+from hydrolek_drake.control.laws.scaled_input import DirectInput
+from hydrolek_drake.control.models.sdp_model import SdpModel, thesis_model
 from hydrolek_drake.control.thesis_gains import scaled_input
 
 JOINTS = ("j1", "j2", "j3", "j4", "j4_linear")

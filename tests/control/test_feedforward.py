@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.control.closed_loop import loop_on_model
-from hydrolek_drake.control.feedforward_tuning import limit
-from hydrolek_drake.control.metrics import step_measures
-from hydrolek_drake.control.rate_map import map_from_model, rate_at, voltage_for
-from hydrolek_drake.control.sdp_model import thesis_model
+from hydrolek_drake.control.comparison.metrics import step_measures
+from hydrolek_drake.control.laws.feedforward_tuning import limit
+from hydrolek_drake.control.laws.rate_map import map_from_model, rate_at, voltage_for
+from hydrolek_drake.control.models.sdp_model import thesis_model
 
 JOINTS = ("j1", "j2", "j3", "j4")
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.control.closed_loop import loop_on_model
-from hydrolek_drake.control.conditions import span_deg
-from hydrolek_drake.control.feedforward_tuning import limit
+from hydrolek_drake.control.comparison.conditions import span_deg
+from hydrolek_drake.control.laws.feedforward_tuning import limit
 
 JOINTS = ("j1", "j2", "j3", "j4")
 

@@ -5,9 +5,9 @@ import pytest
 
 from hydrolek_drake.control.catalogue import build_law, rig_setting
 from hydrolek_drake.control.closed_loop import loop_on_rollout
-from hydrolek_drake.control.conditions import Condition, machine, span_deg
-from hydrolek_drake.control.metrics import step_measures, switching
-from hydrolek_drake.control.rig_model import fit_law, one_joint, step_tests
+from hydrolek_drake.control.comparison.conditions import Condition, machine, span_deg
+from hydrolek_drake.control.comparison.metrics import step_measures, switching
+from hydrolek_drake.control.models.rig_model import fit_law, one_joint, step_tests
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import load_rig
 

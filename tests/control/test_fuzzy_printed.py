@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from hydrolek_drake.control.bench import bench_on_models
-from hydrolek_drake.control.fuzzy import (
+from hydrolek_drake.control.comparison.bench import bench_on_models
+from hydrolek_drake.control.laws.fuzzy import (
     SETS,
     appendix_f_sets,
     appendix_f_surface,

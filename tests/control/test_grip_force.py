@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from hydrolek_drake.control.grip_force import GripForceLaw, Range
-from hydrolek_drake.control.scaled_input import ScaledInput
+from hydrolek_drake.control.laws.grip_force import GripForceLaw, Range
+from hydrolek_drake.control.laws.scaled_input import ScaledInput
 from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.forward import tool_pose

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.control.catalogue import CONTROLLERS, build_law, thesis_setting
-from hydrolek_drake.control.sdp_model import thesis_model
+from hydrolek_drake.control.models.sdp_model import thesis_model
 
 SETTING = thesis_setting("j2")
 MODEL = thesis_model("j2")

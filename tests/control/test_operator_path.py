@@ -5,7 +5,7 @@ import pytest
 
 from hydrolek_drake.control.catalogue import build_law, rig_setting
 from hydrolek_drake.control.controlled_station import run_controlled
-from hydrolek_drake.control.operator_path import through_operator_computer
+from hydrolek_drake.control.laws.operator_path import through_operator_computer
 from hydrolek_drake.physics.command import calibrated_voltages
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.systems.operator_computer import FieldPoint, OperatorComputer

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hydrolek_drake.control.sdp_model import exponential_rate, thesis_model
+from hydrolek_drake.control.models.sdp_model import exponential_rate, thesis_model
 from hydrolek_drake.errors import InputError
 
 JOINTS = ("j1", "j2", "j3", "j4", "j4_linear")

@@ -6,13 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrolek_drake.control.bench import Bench, JointMeasures, Trial, bench_on_models
-from hydrolek_drake.control.bench_report import as_json, page
-from hydrolek_drake.control.bench_tables import MEASURES, rows, tool_rows
-from hydrolek_drake.control.metrics import StepMeasures
-from hydrolek_drake.control.sdp_model import thesis_model
-from hydrolek_drake.control.sequences import sequence_data
-from hydrolek_drake.control.thesis_tables import (
+from hydrolek_drake.control.comparison.bench import Bench, JointMeasures, Trial, bench_on_models
+from hydrolek_drake.control.comparison.bench_report import as_json, page
+from hydrolek_drake.control.comparison.bench_tables import MEASURES, rows, tool_rows
+from hydrolek_drake.control.comparison.metrics import StepMeasures
+from hydrolek_drake.control.comparison.sequences import sequence_data
+from hydrolek_drake.control.comparison.thesis_tables import (
     GRASP_TABLES,
     JOINTS,
     MACHINE_TABLES,
@@ -21,6 +20,7 @@ from hydrolek_drake.control.thesis_tables import (
     STEP_TABLES,
     printed,
 )
+from hydrolek_drake.control.models.sdp_model import thesis_model
 
 THESIS = Path(__file__).resolve().parents[3] / "shared" / "spec" / "thesis.txt"
 TABLES = {

@@ -9,10 +9,10 @@ import pytest
 
 from hydrolek_drake.control.catalogue import build_law, thesis_setting
 from hydrolek_drake.control.closed_loop import loop_on_model
-from hydrolek_drake.control.metrics import step_measures
-from hydrolek_drake.control.pi import PiLaw
+from hydrolek_drake.control.comparison.metrics import step_measures
+from hydrolek_drake.control.comparison.thesis_tables import STEP_TABLES
+from hydrolek_drake.control.laws.pi import PiLaw
 from hydrolek_drake.control.thesis_gains import entry, voltage_limit_V
-from hydrolek_drake.control.thesis_tables import STEP_TABLES
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
 import controller_forms  # the search that docs/control.md tells

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hydrolek_drake.control.sdp_model import SdpModel, thesis_model
+from hydrolek_drake.control.models.sdp_model import SdpModel, thesis_model
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.sdp import identify_sdp
 from hydrolek_drake.identification.sdp.dead_time import dead_time_samples

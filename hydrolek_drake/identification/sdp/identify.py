@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.control.inverse_dead_zone import InverseDeadZone, inverse_dead_zone
-from hydrolek_drake.control.sdp_model import SdpModel
+from hydrolek_drake.control.laws.inverse_dead_zone import InverseDeadZone, inverse_dead_zone
+from hydrolek_drake.control.models.sdp_model import SdpModel
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.sdp.dead_time import dead_time_samples
 from hydrolek_drake.identification.sdp.law_fit import LawFit, RateData, fit_exponential, fit_linear

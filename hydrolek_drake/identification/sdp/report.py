@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from hydrolek_drake.control.sdp_model import thesis_data
+from hydrolek_drake.control.models.sdp_model import thesis_data
 from hydrolek_drake.files import write_results
 from hydrolek_drake.identification.sdp.identify import SdpIdentification
 from hydrolek_drake.identification.sdp.step_test import campaign_data
@@ -61,7 +61,7 @@ def as_json(found: SdpIdentification, runs: Sequence[ValidationRun]) -> dict[str
 
 
 def as_model_entry(found: SdpIdentification) -> dict[str, Any]:
-    """The joint as `control/sdp_models.yaml` writes it."""
+    """The joint as `control/models/sdp_models.yaml` writes it."""
     return {
         "law": "exponential",
         "alpha": [round(value, 5) for value in found.exponential.values],

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.control.sdp_model import SdpModel
+from hydrolek_drake.control.models.sdp_model import SdpModel
 from hydrolek_drake.identification.sdp.step_test import campaign_data
 
 KINDS = ("limited amplitude", "limited amplitude and dead-band")

@@ -6,7 +6,7 @@ import numpy as np
 
 from hydrolek_drake.control.closed_loop import loop_on_rollout
 from hydrolek_drake.control.designed import design_controller
-from hydrolek_drake.control.rig_model import rig_model
+from hydrolek_drake.control.models.rig_model import rig_model
 from hydrolek_drake.control.thesis_gains import entry, sample_s
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.two_step.settings import MASSES, only_joint, two_step_data

@@ -8,11 +8,11 @@ from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorC
 from pydrake.systems.framework import Diagram, DiagramBuilder
 from pydrake.systems.primitives import Adder, MatrixGain
 
-from hydrolek_drake.control.bench import MACHINE_STEP_S
 from hydrolek_drake.control.catalogue import CONTROLLERS, JointSetting, build_law, joystick_law, rig_setting
+from hydrolek_drake.control.comparison.bench import MACHINE_STEP_S
 from hydrolek_drake.control.controller import Controller
-from hydrolek_drake.control.grip_force import grip_force_law
-from hydrolek_drake.control.operator_path import through_operator_computer
+from hydrolek_drake.control.laws.grip_force import grip_force_law
+from hydrolek_drake.control.laws.operator_path import through_operator_computer
 from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.chain import SIDES
@@ -63,9 +63,9 @@ class HydraulicArms:
                  |   +------------+                                                                |
                  +---------------------------------------------------------------------------------+
     ```
-    Of the two, one has NaN as its input and gives 0 V; with both NaN all valves are closed (`control/guard.py`). The
-    voltages pass the operator computer's calibration, (4.2) and (4.3), and the channels of the field point, Table 3.1,
-    which are in the station (`control/operator_path.py`).
+    Of the two, one has NaN as its input and gives 0 V; with both NaN all valves are closed (`control/laws/guard.py`).
+    The voltages pass the operator computer's calibration, (4.2) and (4.3), and the channels of the field point, Table
+    3.1, which are in the station (`control/laws/operator_path.py`).
     Joints 6 and 7 have no potentiometer on the machine; here the controllers read their simulated angles.
 
     Args:

@@ -1,0 +1,1 @@
+"""Commands that diagnose, and that measure how well."""

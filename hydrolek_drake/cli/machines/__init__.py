@@ -1,0 +1,1 @@
+"""Commands about rigs, their models and their recordings."""

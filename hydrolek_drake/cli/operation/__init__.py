@@ -1,0 +1,1 @@
+"""Commands that control and operate machines."""

@@ -1,0 +1,1 @@
+"""Controllers compared and judged."""

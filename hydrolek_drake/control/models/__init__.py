@@ -1,0 +1,1 @@
+"""Models of joints for the design of control laws."""

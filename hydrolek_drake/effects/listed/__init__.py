@@ -1,0 +1,1 @@
+"""The effects that a diagnosis can name: one file each."""
