@@ -1,4 +1,4 @@
-"""Finds every effect file of the folder `listed`."""
+"""Finds every effect file in the folders of `listed`."""
 
 import difflib
 import importlib
@@ -11,9 +11,9 @@ from hydrolek_drake.errors import InputError
 
 def _found() -> dict[str, Effect]:
     effects = {}
-    for module_info in sorted(pkgutil.iter_modules(listed.__path__), key=lambda m: m.name):
-        module = importlib.import_module(f"{listed.__name__}.{module_info.name}")
-        effect = getattr(module, "EFFECT", None)
+    names = [found.name for found in pkgutil.walk_packages(listed.__path__, f"{listed.__name__}.")]
+    for name in sorted(names, key=lambda name: name.rpartition(".")[2]):
+        effect = getattr(importlib.import_module(name), "EFFECT", None)
         if isinstance(effect, Effect):
             effects[effect.id] = effect
     return effects

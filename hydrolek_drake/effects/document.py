@@ -5,8 +5,8 @@ from hydrolek_drake.effects.effect import HOOKS, Effect
 
 _HEAD = """# The known effects
 
-Physics that the nominal model leaves out, one file each in `hydrolek_drake/effects/listed/`. Every effect is part of
-every rig and off until its size leaves its neutral value:
+Physics that the nominal model leaves out, one file each in the folders of
+`hydrolek_drake/effects/listed/`. Every effect is part of every rig and off until its size leaves its neutral value:
 
 ```yaml
 effects:

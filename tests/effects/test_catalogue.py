@@ -166,7 +166,7 @@ def test_a_new_file_is_found_and_acts_without_any_other_change(tmp_path):
     package = Path(hydrolek_drake.__file__).parent
     copied = tmp_path / package.name
     shutil.copytree(package, copied, ignore=shutil.ignore_patterns("__pycache__"))
-    (copied / "effects" / "listed" / "load_wind.py").write_text(NEW_EFFECT)
+    (copied / "effects" / "listed" / "mechanical" / "load_wind.py").write_text(NEW_EFFECT)
     done = subprocess.run(
         [sys.executable, "-c", USE_IT],
         cwd=tmp_path,

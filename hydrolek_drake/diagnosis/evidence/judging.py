@@ -19,15 +19,15 @@ from hydrolek_drake.diagnosis.evidence.compared import with_differences
 from hydrolek_drake.diagnosis.evidence.judged import SMALL, Judged, with_probabilities
 from hydrolek_drake.diagnosis.evidence.nuisance import own_of_recordings, with_stands
 from hydrolek_drake.diagnosis.evidence.predictive import NEARBY, OUT_OF_REACH, pays, predictive, predicts
-from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
 from hydrolek_drake.diagnosis.fitting.race import Entrant, problem_with, race
-from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.lockstep import Place, descend, with_slopes
+from hydrolek_drake.identification.rolling import Request, residuals_at
 
 MOST_JUDGED = 8
 """At most so many structures are judged."""

@@ -10,7 +10,6 @@ from dataclasses import replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
 from hydrolek_drake.diagnosis.fitting.race import problem_with
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.lost_commands.search import windows_ahead
@@ -19,6 +18,7 @@ from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.lockstep import Place, descend
 
 PHASES = 12
 """Where a periodic law may stand when a recording begins is first tried at so many places."""

@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.conclusion import Conclusion
-from hydrolek_drake.diagnosis.fitting.lockstep import Place, with_slopes
 from hydrolek_drake.diagnosis.fitting.projection import Across
 from hydrolek_drake.diagnosis.fitting.race import hypothesis_of
-from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.channel import Channel
 from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.lockstep import Place, with_slopes
+from hydrolek_drake.identification.rolling import Request, residuals_at
 
 DURATION_S = 40.0
 SAMPLE_S = 0.01

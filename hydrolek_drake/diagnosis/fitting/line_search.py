@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.fitting.lockstep import Place, normal_step
-from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
+from hydrolek_drake.identification.lockstep import Place, normal_step
+from hydrolek_drake.identification.rolling import Request, residuals_at
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,11 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.line_search import Along, searched_along
-from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
 from hydrolek_drake.diagnosis.search.settings import Rung
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.lockstep import Place, descend, fit_of, with_slopes
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
 
@@ -290,16 +289,4 @@ def _begun(bench: Workbench, entrant: Entrant) -> Runner:
 
 def hypothesis_of(effects: tuple[Addition, ...], place: Place, step: float) -> Hypothesis:
     """A fit as the rest of the diagnosis takes it."""
-    problem, unit, residuals, moving = place.problem, place.unit, place.residuals, place.moving
-    assert residuals is not None
-    fit = Fit(
-        unit=unit,
-        residuals=residuals,
-        off_prior=problem.prior_residuals(unit),
-        slopes=lambda: problem.jacobian(unit, residuals, moving),
-        prior_jacobian=problem.prior_jacobian(),
-        counted=problem.counted,
-        evaluations=problem.evaluations,
-        unsure=problem.unsure,
-    )
-    return Hypothesis(effects, problem.parameters.values(unit), fit, step)
+    return Hypothesis(effects, place.problem.parameters.values(place.unit), fit_of(place), step)

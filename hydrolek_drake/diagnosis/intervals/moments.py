@@ -8,10 +8,10 @@ import numpy as np
 from scipy.stats import chi2
 
 from hydrolek_drake.diagnosis.fitting.projection import Across
-from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
 from hydrolek_drake.diagnosis.intervals.curvature import CONFIDENCE, Interval
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench, moments_of
 from hydrolek_drake.identification.parameter_set import Free
+from hydrolek_drake.identification.rolling import Request, residuals_at
 
 GRID = 120
 """So many moments are tried over the range: four a second of a recording of half a minute, less than a move takes."""

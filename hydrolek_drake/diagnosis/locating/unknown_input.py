@@ -22,7 +22,6 @@ from typing import ClassVar, Protocol
 import numpy as np
 from scipy.sparse import csc_matrix
 
-from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend, with_slopes
 from hydrolek_drake.diagnosis.fitting.projection import Across
 from hydrolek_drake.diagnosis.fitting.race import hypothesis_of
 from hydrolek_drake.diagnosis.laws.additions import of_additions
@@ -30,6 +29,7 @@ from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.lost_commands.windows import arrivals
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.lockstep import Place, descend, with_slopes
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rollout.lane_view import LANES
 from hydrolek_drake.rollout.lanes import roll_out_lanes

@@ -6,7 +6,6 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.conclusion import EXPLAINED
 from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE
-from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
 from hydrolek_drake.diagnosis.fitting.race import (
     Entrant,
     Runner,
@@ -15,7 +14,6 @@ from hydrolek_drake.diagnosis.fitting.race import (
     race,
     tried_elsewhere,
 )
-from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.lost_commands.seen import GAIN, REMEMBERS_S, lost_seen
 from hydrolek_drake.diagnosis.lost_commands.windows import (
@@ -29,6 +27,8 @@ from hydrolek_drake.diagnosis.search.tracing import trace
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.lockstep import Place, descend
+from hydrolek_drake.identification.rolling import Request, residuals_at
 
 
 def lost_in(hypothesis: Hypothesis) -> LostWindows | None:

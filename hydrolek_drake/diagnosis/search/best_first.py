@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from hydrolek_drake.diagnosis.data.weighing import weighted_by
-from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR
+from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.cost import cost
@@ -99,7 +99,8 @@ def _open(
     """Structures that may be enlarged, and by what.
 
     A search that goes on from another one's structures begins at the best of these. Each is enlarged by effects first,
-    since a law can imitate most of them, and only the best one once it leaves nothing above the noise.
+    since a law can imitate most of them, and only the best one once it leaves nothing above the noise. Laws are asked
+    for where the best one is surely above it.
     """
     best = found.best
     if (frozenset(), EFFECTS) not in done and not found.seeds:
@@ -119,7 +120,7 @@ def _open(
             listed = all(isinstance(c, Candidate) for c in h.effects)
             if listed and (h.ids, EFFECTS) not in done:
                 items.append((h, EFFECTS))
-            elif laws:
+            elif laws and best.fit.over_noise > ABOVE_NOISE:
                 items.append((h, LAWS))
     return [(h, kind) for h, kind in items if (h.ids, kind) not in done]
 

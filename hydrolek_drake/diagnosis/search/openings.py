@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR
-from hydrolek_drake.diagnosis.fitting.lockstep import Place, descend
 from hydrolek_drake.diagnosis.fitting.race import (
     Entrant,
     Runner,
@@ -29,6 +28,7 @@ from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.structures.addition import Addition, Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, redundant, widenings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.lockstep import Place, descend
 
 
 @dataclass(frozen=True)
@@ -219,8 +219,10 @@ def continued_nominal(
     """
     found.nominal_continued = True
     centre = Entrant((), {free.path: free.from_unit(0.5) for free in bench.nominal})
-    led = race(bench, [Entrant((), {}), centre], settings.nominal, cores)[0]
-    fitted = race(bench, [Entrant((), led.values), centre], (settings.again,), cores)[0]
+    heats = settings.nominal
+    led = run(bench, entered(bench, [Entrant((), {}), centre], heats[0], cores), heats, cores)
+    ended = run(bench, [*led, *entered(bench, [centre], settings.again, cores)], (settings.again,), cores)
+    [fitted] = hypotheses_of(bench, ended, settings.again)
     trace(f"    nominal {direct.fit.over_noise:.4f}, continued {fitted.fit.over_noise:.4f}")
     return fitted if direct.fit.objective - fitted.fit.objective > gain_needed(direct.fit) else None
 
@@ -282,7 +284,7 @@ def _lessened(
 
 
 def _widened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
-    """The best structure with wider ranges, where a number of what it adds lies at an end of one (`ranges`)."""
+    """The best structure with wider ranges, where a number of what it adds lies at an end of one."""
     best = found.best
     wide = tuple(c.widened(best.values) for c in best.effects)
     if any(a.free != b.free for a, b in zip(wide, best.effects, strict=True)):
@@ -296,12 +298,11 @@ def _names(effects: Sequence[Addition]) -> str:
 
 def _traced(name: str) -> Callable[[Sequence[Runner], Rung], None]:
     def seen(runners: Sequence[Runner], rung: Rung) -> None:
-        ranked = sorted(runners, key=lambda r: r.place.objective)[:5]
         trace(
             f"    {name} T={rung.observer_s} x{rung.coarse} {len(runners)}: "
             + ", ".join(
                 f"{_names(r.effects)} {math.sqrt(r.place.objective / r.place.problem.counted):.4f}"
-                for r in ranked
+                for r in runners[:5]
             )
         )
 

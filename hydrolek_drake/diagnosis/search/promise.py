@@ -12,15 +12,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.fitting.lockstep import Place
 from hydrolek_drake.diagnosis.fitting.projection import Across, gain_of
 from hydrolek_drake.diagnosis.fitting.race import hypothesis_of, problem_with
-from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
 from hydrolek_drake.diagnosis.search.gains import VISIBLE
 from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition, Sized
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
+from hydrolek_drake.identification.lockstep import Place
 from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.rolling import Request, residuals_at
 
 
 @dataclass(frozen=True)

@@ -81,9 +81,8 @@ class Settings:
         Rung(0.1, 2.0, math.inf, 8, 4),
         Rung(0.5, 2.0, math.inf, 8, 4),
         Rung(3.0, 1.0, math.inf, 12, 4),
-        Rung(math.inf, 1.0, math.inf, 32, 1, share=1e-4),
     )
-    """The nominal model by continuation, to the end."""
+    """The nominal model by continuation."""
 
     again: Rung = Rung(math.inf, 1.0, math.inf, 32, 1, share=1e-4)
     """Fits that begin where nearly the same one ended."""

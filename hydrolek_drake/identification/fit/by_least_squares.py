@@ -5,10 +5,10 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.fitting.lockstep import Place
 from hydrolek_drake.identification.continuation import Continuation
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import GOOD_ENOUGH, Fit, fit_from
+from hydrolek_drake.identification.lockstep import Place, fit_of
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether, problem_of
@@ -102,16 +102,7 @@ def _objective(fit: Fit) -> float:
 def _at(problem: Problem, unit: np.ndarray, known: np.ndarray | None = None) -> Fit:
     """A place as one where a fit ended, with its residuals if they are known. # unit: (n,)."""
     residuals = problem.residuals(unit) if known is None else known
-    return Fit(
-        unit=unit,
-        residuals=residuals,
-        off_prior=problem.prior_residuals(unit),
-        slopes=lambda: problem.jacobian(unit, residuals),
-        prior_jacobian=problem.prior_jacobian(),
-        counted=problem.counted,
-        evaluations=problem.evaluations,
-        unsure=problem.unsure,
-    )
+    return fit_of(Place(problem, np.ones(unit.size, dtype=bool), unit, residuals))
 
 
 def _followed(together: Problem, start: np.ndarray, loss: str) -> Fit:

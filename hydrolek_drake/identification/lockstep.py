@@ -12,8 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.fitting.rolling import Request, residuals_at
+from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.rolling import Request, residuals_at
 
 DAMPED = 1e-2
 """Marquardt's damping at first, as a share of the normal equations' diagonal."""
@@ -68,6 +69,26 @@ class Place:
         ):
             return Place(problem, self.moving, self.unit, damping=self.damping)
         return Place(problem, self.moving, self.unit, slopes=self.slopes, damping=self.damping)
+
+
+def fit_of(place: Place) -> Fit:
+    """A place as one where a fit ended.
+
+    Args:
+        place: with residuals.
+    """
+    problem, unit, residuals, moving = place.problem, place.unit, place.residuals, place.moving
+    assert residuals is not None
+    return Fit(
+        unit=unit,
+        residuals=residuals,
+        off_prior=problem.prior_residuals(unit),
+        slopes=lambda: problem.jacobian(unit, residuals, moving),
+        prior_jacobian=problem.prior_jacobian(),
+        counted=problem.counted,
+        evaluations=problem.evaluations,
+        unsure=problem.unsure,
+    )
 
 
 def _values_of(problem: Problem) -> int:

@@ -1,0 +1,1 @@
+"""Command, amplifier and sensor."""

@@ -1,0 +1,1 @@
+"""Supply, oil, valve and cylinder."""

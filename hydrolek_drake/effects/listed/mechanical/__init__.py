@@ -1,0 +1,1 @@
+"""Linkage, load and base."""
