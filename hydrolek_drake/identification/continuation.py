@@ -42,6 +42,9 @@ SEED = 1
 STARTS = 64
 """Places from which the shortest horizon is fitted."""
 
+FAR = 3.0
+"""A chain that leaves so many times the noise behind the cut lacks something there: the supply is left as it is."""
+
 EDGE = 1e-6
 """Starts are pulled so far inside the cube, from where steps to both sides can be made."""
 
@@ -100,20 +103,35 @@ class Continuation:
         Returns:
             None where no pump's pressure is followed, or nothing of the supply is searched. # (n,)
         """
-        parts = tuple(e.with_recorded_supply() for e in self.experiments)
-        supply = np.array(
-            [path.startswith(UPSTREAM["supply_pressure"]) for path in self.parameters.paths], dtype=bool
-        )
-        uncut = all(part is e for part, e in zip(parts, self.experiments, strict=True))
-        if uncut or not supply.any() or self.parameters.rig.variants["supply"] != "pump":
+        parts, supply = self.parts(), self._supply
+        if parts is None:
             return None
-        behind = self._by_observers(parts, starts, ~supply)[0].unit
-        begun = [np.where(supply, start, behind) for start in starts]
+        behind = self._by_observers(parts, starts, ~supply)[0]
+        if behind.objective > FAR**2 * behind.problem.counted:
+            return np.where(
+                supply, starts[0], behind.unit
+            )  # what it lacks, the supply's numbers would make up for
+        behind_unit = behind.unit
+        begun = [np.where(supply, start, behind_unit) for start in starts]
         for spread in spread_evenly(STARTS - len(begun), int(supply.sum())):
-            unit = behind.copy()
+            unit = behind_unit.copy()
             unit[supply] = spread
             begun.append(unit)
         return self._over_growing_horizons(begun, supply)
+
+    def parts(self) -> tuple[Experiment, ...] | None:
+        """The experiments with the chain cut at the recorded supply pressure; None as above."""
+        parts = tuple(e.with_recorded_supply() for e in self.experiments)
+        uncut = all(part is e for part, e in zip(parts, self.experiments, strict=True))
+        if uncut or not self._supply.any() or self.parameters.rig.variants["supply"] != "pump":
+            return None
+        return parts
+
+    @property
+    def _supply(self) -> np.ndarray:
+        """Which parameters are the supply's. # (n,) truth values."""
+        upstream = UPSTREAM["supply_pressure"]
+        return np.array([path.startswith(upstream) for path in self.parameters.paths], dtype=bool)
 
     def _by_observers(
         self, experiments: tuple[Experiment, ...], starts: Sequence[np.ndarray], moving: np.ndarray

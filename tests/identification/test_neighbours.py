@@ -16,6 +16,8 @@ from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import make_station
 
+pytestmark = pytest.mark.xdist_group("joints together")
+
 MOVING = ("right_j2", "right_j3")
 TIME = np.arange(0.0, 6.0 + 0.005, 0.01)
 RESISTANCE = 5e10

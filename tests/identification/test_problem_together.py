@@ -12,6 +12,8 @@ from hydrolek_drake.identification.problem_together import ProblemTogether, prob
 from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.rigs import load_rig
 
+pytestmark = pytest.mark.xdist_group("joints together")
+
 TRUTH = {
     "joints.right_j2.cylinder.area_a": 1.04,  # times the rig's own
     "joints.right_j3.cylinder.area_a": 0.97,

@@ -12,6 +12,8 @@ from hydrolek_drake.replay.by_diagram import moved_by_diagram
 from hydrolek_drake.replay.driving import Driven, Moved, moved
 from hydrolek_drake.rigs import load_rig
 
+pytestmark = pytest.mark.xdist_group("joints together")
+
 DROOP = "joints.right_j2.effects.supply.pressure_droop.resistance_Pa_s_per_m3"
 ALLOWED_DEG = 0.02
 """What the rollout's own step may cost (hydrolek.yaml)."""

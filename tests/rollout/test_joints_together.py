@@ -15,6 +15,8 @@ from hydrolek_drake.station.simulation import command_source, initial_context, r
 from hydrolek_drake.station.station import make_station
 from hydrolek_drake.station.step_sizes import StepSizes
 
+pytestmark = pytest.mark.xdist_group("joints together")
+
 MOVING = ("right_j2", "right_j3")
 TIME = np.arange(0.0, 4.0 + 0.005, 0.01)
 ALLOWED_DEG = 0.02

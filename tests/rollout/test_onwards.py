@@ -10,6 +10,8 @@ from hydrolek_drake.rollout.kernel import SIGNALS
 from hydrolek_drake.rollout.onwards import onwards
 from hydrolek_drake.rollout.together import JointsTogether
 
+pytestmark = pytest.mark.xdist_group("joints together")
+
 ROUNDING = 1e-9
 """Share of a signal's range: times are sums here and products there."""
 

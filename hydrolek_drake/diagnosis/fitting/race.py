@@ -79,7 +79,7 @@ def race(
     cores: int,
     seen: Callable[[Sequence[Runner], Rung], None] = lambda runners, rung: None,
 ) -> list[Hypothesis]:
-    """Fit structures, the better ones to the end; each structure counts by its best fit.
+    """Fit structures, the better ones to the end.
 
     Args:
         bench: data and problems.
@@ -141,11 +141,12 @@ def run(
         now = [replace(r, place=place) for r, place in zip(now, places, strict=True)]
         if rung.elsewhere:
             now = tried_elsewhere(bench, now, cores)
-        now = sorted(now, key=lambda r: r.place.objective)
+        part = math.isfinite(min(rung.observer_s, rung.seconds))
+        now = sorted(now, key=_told_apart if part else lambda r: r.place.objective)
         seen(now, rung)
         last = rung is rungs[-1]
-        now = _distinct(now, 1 if last else 2)
-        now = (now if last or not math.isinf(rung.observer_s + rung.seconds) else _in_reach(now))[: rung.keep]
+        now = _distinct(now, rung.each)
+        now = (now if last or part else _in_reach(now))[: rung.keep]
     return now
 
 
@@ -225,6 +226,16 @@ def _led(
 def _inside(unit: np.ndarray, moving: np.ndarray) -> np.ndarray:
     """A place a little within the ranges, from where steps to both sides can be made."""
     return np.where(moving, np.clip(unit, EDGE, 1.0 - EDGE), unit)
+
+
+def _told_apart(runner: Runner) -> float:
+    """Squares by which structures are ranked that an observer follows, or that the beginning of the data is shown.
+
+    What reaches the noise there, to two standard deviations of its squares, is not told apart by it: what promised most
+    goes on.
+    """
+    count = runner.place.problem.counted
+    return max(runner.place.objective, AT_NOISE**2 * count + 2.0 * math.sqrt(2.0 * count))
 
 
 SAME = 1e-3

@@ -1,5 +1,6 @@
 """Windows in which commands got lost, completed: more beside those that were fitted, and none without need."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -37,13 +38,18 @@ def lost_in(hypothesis: Hypothesis) -> LostWindows | None:
 
 
 def with_windows(
-    bench: Workbench, parent: Hypothesis, lost: LostWindows, settings: Settings, cores: int
+    bench: Workbench,
+    parent: Hypothesis,
+    lost: LostWindows,
+    settings: Settings,
+    cores: int,
+    reached: float = math.inf,
 ) -> list[Hypothesis]:
     """A structure with lost commands, more of them beside those that were fitted as long as some are seen.
 
     The structure has bent its numbers to make up for them, so that each fit also begins at the rig's own, with an
     observer that remembers a lost command. Windows fit anything a little, so that only what they explain to the noise
-    counts.
+    counts, and none are looked for beside those that explain less than other structures do.
 
     Args:
         bench: data and problems.
@@ -51,6 +57,7 @@ def with_windows(
         lost: windows that were seen beside it.
         settings: of the search.
         cores: that roll out at the same time.
+        reached: what other structures leave, over the noise.
     """
     rungs = (*(rung for rung in settings.continued if rung.observer_s >= REMEMBERS_S), settings.again)
     own, now, fits = of_additions(parent.values), lost, []
@@ -59,6 +66,8 @@ def with_windows(
         effects: tuple[Addition, ...] = (*parent.effects, now)
         begun = [Entrant(effects, own), Entrant(effects, values)]
         fitted = race(bench, begun, rungs, cores)[0]
+        if fitted.fit.over_noise > reached:
+            break
         fitted, needed = _needed(bench, fitted, now, settings, cores)
         fits.append(fitted)
         trace(f"    windows {list(map(len, needed.seen.values()))}: {fitted.fit.over_noise:.4f}")

@@ -4,12 +4,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Protocol
 
-import numpy as np
-
 from hydrolek_drake.diagnosis.data.weighing import weighted_by
-from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, AT_NOISE, FAR
+from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR, MORE_AHEAD
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
+from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.search.openings import Opening, continued_nominal, enlarged, opened
@@ -18,8 +17,7 @@ from hydrolek_drake.diagnosis.search.tracing import trace
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
-from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
-from hydrolek_drake.identification.continuation import Continuation
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
 MOST_WEIGHED = 3
 """So often the data are weighed by the nominal model at most."""
@@ -100,7 +98,7 @@ def _open(
 
     A search that goes on from another one's structures begins at the best of these. Each is enlarged by effects first,
     since a law can imitate most of them, and only the best one once it leaves nothing above the noise. Laws are asked
-    for where the best one is surely above it.
+    for where the best one leaves so much that something would be called missing.
     """
     best = found.best
     if (frozenset(), EFFECTS) not in done and not found.seeds:
@@ -120,7 +118,7 @@ def _open(
             listed = all(isinstance(c, Candidate) for c in h.effects)
             if listed and (h.ids, EFFECTS) not in done:
                 items.append((h, EFFECTS))
-            elif laws and best.fit.over_noise > ABOVE_NOISE:
+            elif laws and best.fit.over_noise > MORE_AHEAD:
                 items.append((h, LAWS))
     return [(h, kind) for h, kind in items if (h.ids, kind) not in done]
 
@@ -141,15 +139,18 @@ def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> 
     Nothing is below the noise, so that a fit that reaches it needs no other starts. Where one is near it, so that
     what is missing is small beside what a wrong local minimum leaves, it is fitted by continuation too; where it is
     far, only if no addition to it reaches the noise (`openings`). Where a pump's pressure was recorded it is fitted
-    part by part first: a line that rings has many local minima.
+    part by part instead: a line that rings has many local minima.
     """
-    known = next((h.values for h in found.seeds if not h.effects), {}) or _by_parts(bench, cores)
-    rungs = (settings.again,) if known else (*settings.free, *settings.ended)
+    known = next((h.values for h in found.seeds if not h.effects), {})
+    if not known and can_be_cut(bench):
+        known = by_parts(bench, (), {}, cores)
+    rungs = (settings.led,) if known else (*settings.free, *settings.ended)
     best = _as_weighed(bench, race(bench, [Entrant((), known)], rungs, cores)[0], settings, cores)
     trace(f"nominal {best.fit.over_noise:.4f}")
     if not known and AT_NOISE < best.fit.over_noise < FAR:
         better = continued_nominal(bench, best, found, settings, cores)
         best = best if better is None else _as_weighed(bench, better, settings, cores)
+    found.nominal_continued = found.nominal_continued or bool(known)
     found.keep(best)
     found.weighed_at = best.fit.over_noise
     if found.seeds:
@@ -158,28 +159,13 @@ def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> 
             found.keep(each)
 
 
-def _by_parts(bench: Workbench, cores: int) -> dict[str, float]:
-    """Numbers of the nominal model, cut where a pump's pressure was recorded; none where there is no such."""
-    parameters = bench.parameters(())
-    prior = np.full(len(parameters), SPREAD)
-
-    def told(evaluations: int, over_noise: float, unit: np.ndarray) -> None:
-        bench.evaluations += evaluations
-        trace(f"  nominal by parts {over_noise:.4f}")
-
-    way = Continuation(
-        parameters, tuple(bench.training), bench.pool, cores, bench.fine, prior, bench.alive, told
-    )
-    unit = way.from_the_cut([parameters.unit(), np.full(len(parameters), 0.5)])
-    return {} if unit is None else parameters.values(unit)
-
-
 def _as_weighed(bench: Workbench, structure: Hypothesis, settings: Settings, cores: int) -> Hypothesis:
     """A structure fitted on, the data weighed by it; again where its noise fell, since a worse fit had told it."""
     now = structure
     for _ in range(MOST_WEIGHED):
         bench.training = tuple(weighted_by(bench, now, bench.training))
-        before, now = now, race(bench, [Entrant(now.effects, now.values)], (settings.again,), cores)[0]
+        rung = settings.again if now.fit.over_noise < FAR else settings.led
+        before, now = now, race(bench, [Entrant(now.effects, now.values)], (rung,), cores)[0]
         if now.fit.over_noise > 1.0 / AT_NOISE or now.fit.over_noise < AT_NOISE * before.fit.over_noise:
             break
     return now

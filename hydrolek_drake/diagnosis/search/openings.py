@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR
+from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR, MORE_AHEAD
+from hydrolek_drake.diagnosis.fitting.local_search import has_other_minima, searched_near
 from hydrolek_drake.diagnosis.fitting.race import (
     Entrant,
     Runner,
@@ -20,6 +21,7 @@ from hydrolek_drake.diagnosis.fitting.race import (
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.lost_commands.search import with_windows
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
+from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.search.promise import Promise, promises_at
 from hydrolek_drake.diagnosis.search.settings import TELLING, Rung, Settings
@@ -156,12 +158,13 @@ def enlarged(
     parent = opening.parent
     needed = gain_needed(parent.fit)
     near = parent.fit.over_noise <= AT_NOISE
+    enough = MORE_AHEAD if can_be_cut(bench) else AT_NOISE
     fitted, own = Start(parent.effects, parent.values), Start(parent.effects, opening.sizes)
     free = [
         fitted.with_addition(p.candidate, start)
         for number, p in enumerate(opening.free[: settings.entrants])
         if not near or p.gain > PROMISING * needed
-        for start in p.starts[: settings.starts if number < settings.doubled else 1]
+        for start in p.starts[: None if number < settings.doubled else 1]
     ]
     free += [
         Entrant(effects, {**parent.values, **{k: v for k, v in start.items() if k not in parent.values}})
@@ -172,7 +175,9 @@ def enlarged(
     heats = _steps(settings.free, fine)
     runners = run(bench, entered(bench, free, heats[0], cores), heats, cores, _traced("free")) if free else []
     better = None
-    if min((_over_noise(r) for r in runners), default=math.inf) > AT_NOISE < parent.fit.over_noise:
+    if runners and enough > AT_NOISE and _over_noise(runners[0]) > enough:
+        runners = [*_by_parts(bench, runners[0], settings, cores), *runners]
+    if not near and min((_over_noise(r) for r in runners), default=math.inf) > enough:
         if not parent.effects and not found.nominal_continued:
             better = continued_nominal(bench, parent, found, settings, cores)
             if better is not None:
@@ -181,21 +186,32 @@ def enlarged(
         entrants = [
             begun.with_addition(p.candidate, start)
             for p in pulled[: settings.entrants]
-            for start in p.starts[:1]
+            for start in p.starts[: None if p.candidate.sudden else 1]
             for begun in (own, fitted)
         ]
         heats = _steps(settings.continued, fine)
         runners += run(bench, entered(bench, entrants, heats[0], cores), heats, cores, _traced("observed"))
     ended = run(bench, runners, settings.ended, cores, _traced("end")) if runners else []
-    for each in hypotheses_of(bench, ended, settings.ended[-1]):
+    fits = hypotheses_of(bench, ended, settings.ended[-1])
+    for each in fits:
         found.keep(each)
+    sudden = any(c.sudden for c in found.best.effects)
+    if found.best.fit.over_noise > AT_NOISE and sudden and has_other_minima(found.best, fits):
+        found.keep(searched_near(bench, found.best, settings, cores))
     reached = found.best.fit.over_noise
     if opening.lost is not None and reached > AT_NOISE and opening.lost.share >= settings.lost:
-        for each in with_windows(bench, parent, opening.lost, settings, cores):
+        for each in with_windows(bench, parent, opening.lost, settings, cores, reached):
             found.keep(each)
     _widened(bench, found, settings, cores)
     _lessened(bench, found, candidates, settings, cores)
     return better is not None
+
+
+def _by_parts(bench: Workbench, runner: Runner, settings: Settings, cores: int) -> list[Runner]:
+    """A structure fitted part by part."""
+    values = by_parts(bench, runner.effects, runner.place.problem.parameters.values(runner.place.unit), cores)
+    begun = entered(bench, [Entrant(runner.effects, values)], settings.again, cores)
+    return run(bench, begun, (settings.again,), cores, _traced("by parts"))
 
 
 def _over_noise(runner: Runner) -> float:

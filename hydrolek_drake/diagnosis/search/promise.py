@@ -106,17 +106,26 @@ def promises_at(
 
 def _promise(candidate: Sized, rated: list, settings: Settings) -> Promise:
     best = max(rated, key=lambda each: each[0])
+    if candidate.sudden:
+        starts = tuple(each[3] for each in sorted(_local_minima(rated), key=lambda each: each[1]))
+        return Promise(candidate, best[0], starts[: settings.scanned], _visible_from(candidate, rated))
     by_what_is_left = sorted(rated, key=lambda each: each[1])
     scaled = {**best[3]}
     if not candidate.weakens:
         free = candidate.size
         size = scaled[free.path] * float(np.clip(best[2], 0.1, 10.0))
         scaled[free.path] = float(np.clip(size, free.lower, free.upper))
-    starts: list[dict[str, float]] = []
+    begun: list[dict[str, float]] = []
     for start in (by_what_is_left[0][3], scaled, *(each[3] for each in by_what_is_left[1:])):
-        if start not in starts:
-            starts.append(start)
-    return Promise(candidate, best[0], tuple(starts[: settings.starts]), _visible_from(candidate, rated))
+        if start not in begun:
+            begun.append(start)
+    return Promise(candidate, best[0], tuple(begun[: settings.starts]), _visible_from(candidate, rated))
+
+
+def _local_minima(rated: list) -> list:
+    """Sizes, in the order in which they were tried, beside which more is left on both sides."""
+    left = [math.inf, *(each[1] for each in rated), math.inf]
+    return [each for i, each in enumerate(rated) if left[i] > left[i + 1] <= left[i + 2]]
 
 
 def _visible_from(candidate: Sized, rated: list) -> float:

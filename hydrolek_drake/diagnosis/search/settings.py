@@ -17,6 +17,10 @@ far than where its fit begins."""
 SIZES = (1.0, 0.1, 0.01)
 """Sizes at which an effect is tried, as multiples of where its search begins."""
 
+SCANNED = tuple(0.8**step for step in range(28))
+"""The same for one without a slope: its squares have a local minimum for every contact that comes a little earlier or
+later, and a fit reaches no farther than a tenth to either side (play of 0.047 rad at an arm's first joint)."""
+
 TELLING = 2.0
 """What an addition changes is told by rollouts with steps so many times the rig's own on both sides of a difference."""
 
@@ -33,6 +37,7 @@ class Rung:
         keep: so many fits go on.
         share: fits end where a step takes less than this share of what is left.
         elsewhere: whether what has no slope is tried elsewhere.
+        each: so many fits of a structure go on at most, in different minima.
     """
 
     observer_s: float
@@ -42,6 +47,7 @@ class Rung:
     keep: int
     share: float = 5e-4
     elsewhere: bool = False
+    each: int = 2
 
 
 @dataclass(frozen=True)
@@ -50,6 +56,9 @@ class Settings:
 
     starts: int = 2
     """So many places of each addition are fitted from on each way."""
+
+    scanned: int = 4
+    """The same of those without a slope."""
 
     entrants: int = 24
     """So many additions of those that promise most are fitted; there are fewer effects, and more terms of laws."""
@@ -73,7 +82,7 @@ class Settings:
 
     ended: tuple[Rung, ...] = (
         Rung(math.inf, 1.0, math.inf, 8, 4),
-        Rung(math.inf, 1.0, math.inf, 32, 3, share=1e-4, elsewhere=True),
+        Rung(math.inf, 1.0, math.inf, 32, 4, share=1e-4, elsewhere=True),
     )
     """The end of both races."""
 
@@ -84,8 +93,26 @@ class Settings:
     )
     """The nominal model by continuation."""
 
+    near: tuple[Rung, ...] = (
+        Rung(0.5, 1.0, math.inf, 6, 4, each=4),
+        Rung(math.inf, 1.0, math.inf, 20, 1, share=1e-4),
+    )
+    """Fits from places near one that ended."""
+
+    near_spreads: tuple[float, ...] = (0.003, 0.01, 0.03)
+    """Standard deviations of their distances from it in each parameter [ranges]."""
+
+    near_each: int = 5
+    """So many places at each of them: with the one in their middle two tables of lanes."""
+
+    near_rounds: int = 6
+    """So often they are looked for at most."""
+
     again: Rung = Rung(math.inf, 1.0, math.inf, 32, 1, share=1e-4)
     """Fits that begin where nearly the same one ended."""
+
+    led: Rung = Rung(math.inf, 1.0, math.inf, 6, 1)
+    """The same of a structure that is far from the noise, or was led by another fit: it is fitted again later."""
 
     last: Rung = Rung(math.inf, LAST_STEP, math.inf, 4, 8, share=1e-4)
     """The last fits, with half of the rig's own step, so that the error of the integration cannot decide."""

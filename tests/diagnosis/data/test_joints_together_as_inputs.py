@@ -9,6 +9,8 @@ from hydrolek_drake.diagnosis.data.joints_together import felt_together
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.recorded import experiments_of
 
+pytestmark = pytest.mark.xdist_group("joints together")
+
 MOVING = ("right_j2", "right_j3")
 ALLOWED_DEG = 0.02
 """What the rollout's own step may cost (hydrolek.yaml)."""

@@ -18,6 +18,8 @@ from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.identification.recorded_together import OneRecording, recordings_of
 from hydrolek_drake.rigs import Rig, load_rig
 
+pytestmark = pytest.mark.xdist_group("joints together")
+
 MOVING = ("right_j2", "right_j3")
 LONG = {"seconds": 10.0, "largest_V": 4.0}
 DROOP = "joints.right_j2.effects.supply.pressure_droop.resistance_Pa_s_per_m3"

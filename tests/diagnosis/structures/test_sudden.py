@@ -17,7 +17,7 @@ FADED = 1e-3
 
 @pytest.fixture
 def fading(bench, recorded):
-    """Effect -> change of the residuals at a thousandth of where its search begins, over that where it begins."""
+    """Effect -> change of the residuals at a thousandth of the middle size at which it is tried, over that there."""
     experiments = recorded(bench, bench, largest_V=4.0)
     with ThreadPoolExecutor(1) as pool:
         workbench = Workbench(bench, free_parameters(bench), experiments, pool)
@@ -41,7 +41,10 @@ def fading(bench, recorded):
         found = {}
         for candidate in candidates_of(bench, "joint", natural_scales(bench, "joint", experiments)):
             weak = 1.0 / FADED if candidate.effect.weakens else FADED
-            small, large = (np.linalg.norm(changed(candidate, f) - nominal) for f in (weak, 1.0))
+            middle = sorted(candidate.tried)[len(candidate.tried) // 2]
+            small, large = (
+                np.linalg.norm(changed(candidate, middle * factor) - nominal) for factor in (weak, 1.0)
+            )
             if large > 0.0:  # a cushion is not reached
                 found[candidate.id] = small / large
     return found

@@ -13,7 +13,7 @@ EFFECT = Effect(
     parameters=(Parameter("gap_rad", "rad", "play, from contact to contact", neutral=0.0, lowest=0.0),),
     size="gap_rad",
     search={
-        "gap_rad": Search("travel", 0.25, (0.0004, 0.004, 0.015, 0.05, 0.15)),
+        "gap_rad": Search("travel", 0.25, (0.15,)),
     },
     source="worn pins; contact model of Nordin and Gutman, Automatica 38 (2002) 1633",
     confused_with={

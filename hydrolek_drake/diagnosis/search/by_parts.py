@@ -1,0 +1,59 @@
+"""Structures fitted part by part where a pump's pressure was recorded: behind the cut first, and then the supply."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.laws.additions import of_additions
+from hydrolek_drake.diagnosis.search.tracing import trace
+from hydrolek_drake.diagnosis.structures.addition import Addition
+from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Workbench
+from hydrolek_drake.identification.continuation import Continuation
+
+
+def can_be_cut(bench: Workbench) -> bool:
+    """Whether a pump's pressure is followed, and something of the supply is searched.
+
+    What is left above the noise then is no local minimum of the supply's numbers once they are fitted by parts, so that
+    a model that explains the data well enough to be called right need not be searched for others.
+    """
+    return _way(bench, ()).parts() is not None
+
+
+def by_parts(
+    bench: Workbench, effects: tuple[Addition, ...], values: Mapping[str, float], cores: int
+) -> dict[str, float]:
+    """Numbers of a structure by a fit that is cut at the recorded supply pressure; see `identification.continuation`.
+
+    Args:
+        bench: data and problems.
+        effects: of the structure.
+        values: full path -> value where it begins; also with no more than those of what it adds.
+        cores: that roll out at the same time.
+
+    Returns:
+        Full path -> value.
+    """
+    way = _way(bench, effects, cores)
+    parameters = way.parameters
+    starts = [parameters.unit(dict(values)), parameters.unit(of_additions(values))]
+    if not effects:
+        starts[1] = np.full(len(parameters), 0.5)
+    unit = way.from_the_cut(starts)
+    assert unit is not None
+    return parameters.values(unit)
+
+
+def _way(bench: Workbench, effects: tuple[Addition, ...], cores: int = 1) -> Continuation:
+    """Fits of a structure by continuation."""
+    parameters = bench.parameters(effects)
+    prior = np.full(len(parameters), np.inf)
+    prior[: len(bench.nominal)] = SPREAD
+
+    def told(evaluations: int, over_noise: float, unit: np.ndarray) -> None:
+        bench.evaluations += evaluations
+        trace(f"  by parts {over_noise:.4f}")
+
+    return Continuation(
+        parameters, tuple(bench.training), bench.pool, cores, bench.fine, prior, bench.alive, told
+    )
