@@ -69,6 +69,11 @@ ON = {
     "sensor.hysteresis": {"half_width_rad": 0.005},
     "sensor.drift": {"rate_rad_per_min": 0.01},
     "load.coulomb_friction": {"force_N": 30.0},
+    "load.stribeck_friction": {
+        "force_N": 30.0,
+        "stribeck_N": 20.0,
+        "stribeck_velocity_m_per_s": 0.02,
+    },
     "load.viscous_friction": {"damping_N_s_per_m": 50.0},
     "load.offset_force": {"force_N": 25.0},
     "valve.port_restriction": {"ratio": 0.8},
@@ -138,6 +143,8 @@ def test_neutral_changes_nothing_bit_for_bit(drive, machine_for, effect_id):
     others = {name: value for name, value in ON[effect_id].items() if name != size}
     if effect_id == "cylinder.stribeck_friction":
         others["coulomb_N"] = 0.0  # a size of its own: without it the effect is Coulomb friction
+    if effect_id == "load.stribeck_friction":
+        others["force_N"] = 0.0
     if effect_id == "load.friction_asymmetry":
         others = {}  # two sizes
     rig = machine_for(effect_id)

@@ -282,6 +282,9 @@ def test_frictions_of_the_load_are_their_laws(record):
     joint = record(
         {
             "effects.load.coulomb_friction.force_N": 31.0,
+            "effects.load.stribeck_friction.force_N": 7.0,
+            "effects.load.stribeck_friction.stribeck_N": 11.0,
+            "effects.load.stribeck_friction.stribeck_velocity_m_per_s": 0.1,
             "effects.load.viscous_friction.damping_N_s_per_m": 17.0,
             "effects.load.offset_force.force_N": 5.0,
             "effects.load.friction_asymmetry.coulomb_N": 3.0,
@@ -290,5 +293,5 @@ def test_frictions_of_the_load_are_their_laws(record):
     )
     for w in (-0.3, 0.002, 0.7):
         share = np.tanh(w / np.radians(0.2))
-        expected = 31 * share + 17 * w + 5 + (3 + 2 * abs(w)) * share**2
+        expected = 31 * share + (7 + 11 * np.exp(-((w / 0.1) ** 2))) * share + 17 * w + 5 + (3 + 2 * abs(w)) * share**2
         assert_allclose(hooks.load_friction(w, joint)[0], expected, rtol=1e-12)

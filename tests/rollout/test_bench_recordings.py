@@ -54,6 +54,11 @@ SIZES = {
     "sensor.hysteresis": {"half_width_rad": 0.01},
     "sensor.drift": {"rate_rad_per_min": 0.02},
     "load.coulomb_friction": {"force_N": 40.0},
+    "load.stribeck_friction": {
+        "force_N": 40.0,
+        "stribeck_N": 30.0,
+        "stribeck_velocity_m_per_s": 0.02,
+    },
     "load.viscous_friction": {"damping_N_s_per_m": 90.0},
     "load.offset_force": {"force_N": 35.0},
     "valve.port_restriction": {"ratio": 0.8},

@@ -175,8 +175,10 @@ def enlarged(
     heats = _steps(settings.free, fine)
     runners = run(bench, entered(bench, free, heats[0], cores), heats, cores, _traced("free")) if free else []
     better = None
-    if runners and enough > AT_NOISE and _over_noise(runners[0]) > enough:
-        runners = [*_by_parts(bench, runners[0], settings, cores), *runners]
+    if runners and _over_noise(runners[0]) > enough:
+        runners = [*_farther(bench, runners[0], settings, cores), *runners]
+        if enough > AT_NOISE:
+            runners = [*_by_parts(bench, runners, enough, settings, cores), *runners]
     if not near and min((_over_noise(r) for r in runners), default=math.inf) > enough:
         if not parent.effects and not found.nominal_continued:
             better = continued_nominal(bench, parent, found, settings, cores)
@@ -207,11 +209,34 @@ def enlarged(
     return better is not None
 
 
-def _by_parts(bench: Workbench, runner: Runner, settings: Settings, cores: int) -> list[Runner]:
-    """A structure fitted part by part."""
-    values = by_parts(bench, runner.effects, runner.place.problem.parameters.values(runner.place.unit), cores)
-    begun = entered(bench, [Entrant(runner.effects, values)], settings.again, cores)
-    return run(bench, begun, (settings.again,), cores, _traced("by parts"))
+def _farther(bench: Workbench, runner: Runner, settings: Settings, cores: int) -> list[Runner]:
+    """The best structure of a race in wider ranges, where a number of what it adds lies at an end of one."""
+    values = runner.place.problem.parameters.values(runner.place.unit)
+    wide = tuple(c.widened(values) for c in runner.effects)
+    if all(a.free == b.free for a, b in zip(wide, runner.effects, strict=True)):
+        return []
+    rungs = settings.free[-1:]
+    return run(
+        bench, entered(bench, [Entrant(wide, values)], rungs[0], cores), rungs, cores, _traced("wider")
+    )
+
+
+def _by_parts(
+    bench: Workbench, runners: Sequence[Runner], enough: float, settings: Settings, cores: int
+) -> list[Runner]:
+    """Structures fitted part by part, one after the other until one leaves no more than is enough; the best first."""
+    first: dict[frozenset[str], Runner] = {}
+    for runner in runners:
+        first.setdefault(runner.key, runner)
+    ended: list[Runner] = []
+    for runner in list(first.values())[: settings.parted]:
+        values = runner.place.problem.parameters.values(runner.place.unit)
+        parted = Entrant(runner.effects, by_parts(bench, runner.effects, values, cores))
+        begun = entered(bench, [parted], settings.again, cores)
+        ended += run(bench, begun, (settings.again,), cores, _traced("by parts"))
+        if _over_noise(ended[-1]) <= enough:
+            break
+    return sorted(ended, key=_over_noise)
 
 
 def _over_noise(runner: Runner) -> float:

@@ -165,8 +165,10 @@ def candidates_of(rig: Rig, joint: str, scales: Scales) -> tuple[Candidate, ...]
 
 
 def _acts(effect: Effect, rig: Rig, joint: str) -> bool:
-    wanted = {**effect.needs, **effect.searched_on}
-    if any(rig.variant(joint, section) not in names for section, names in wanted.items()):
+    if any(rig.variant(joint, section) not in names for section, names in effect.needs.items()):
+        return False
+    searched = [rig.variant(joint, section) in names for section, names in effect.searched_on.items()]
+    if searched and not any(searched):
         return False
     if "linkage_gap" in effect.hooks:  # play needs something that moves within it
         return rig.value(f"joints.{joint}.linkage.play_inertia") > 0.0

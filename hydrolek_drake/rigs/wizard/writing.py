@@ -380,6 +380,7 @@ def _link(sheet: Sheet) -> list[str]:
         f"  {_entry('gyration_radius', sheet['length'] / math.sqrt(12.0), 'm', even)}",
         f"  {weighs}",
         f"  {_asked(sheet, 'bearing_damping', 'damping')}",
+        f"  {_kept('friction_velocity', 'bearing_friction_velocity')}",
         *(f"  {line}" for line in stops),
         f"  {_entry('initial_position', math.degrees(sheet['mid_stroke_at']), 'deg', 'half of the stroke')}",
         "sensor:",

@@ -9,16 +9,17 @@ from hydrolek_drake.physics.smooth import hyperbolic_tangent
 
 EFFECT = Effect(
     id="load.coulomb_friction",
-    title="dry friction of the guides",
+    title="dry friction of the guides or of the joint's bearing",
     equation="force tanh(v / friction_velocity) against the load",
     parameters=(Parameter("force_N", "N", "Coulomb friction (N m for a joint)", neutral=0.0, lowest=0.0),),
     size="force_N",
     search={
         "force_N": Search("load_force", 0.5, (0.01, 0.06)),
     },
-    searched_on={"cylinder": ("electric_motor",)},
+    searched_on={"cylinder": ("electric_motor",), "load": ("link",)},
     source="thesis (4.1), F_c; Janot, Gautier, Brunot, EMPS benchmark (2019)",
     confused_with={
+        "cylinder.coulomb_friction": "seals rub at the rod, so that their moment follows the lever",
         "load.friction_asymmetry": "asymmetry is the part that differs between the directions",
     },
 )

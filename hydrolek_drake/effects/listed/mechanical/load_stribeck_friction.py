@@ -1,0 +1,55 @@
+"""Dry friction of the joint's own bearing that falls as the load starts to move."""
+
+from typing import Any
+
+from hydrolek_drake.compiling import njit
+from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.physics.parameters import Parameter
+from hydrolek_drake.physics.smooth import exponential, hyperbolic_tangent
+
+EFFECT = Effect(
+    id="load.stribeck_friction",
+    title="Coulomb and Stribeck friction of the joint's bearing",
+    equation="(force + stribeck e^(-(w/w_s)^2)) tanh(w / friction_velocity) against the load",
+    parameters=(
+        Parameter("force_N", "N", "Coulomb friction (N m for a joint)", neutral=0.0, lowest=0.0),
+        Parameter(
+            "stribeck_N", "N", "further friction near zero speed (N m for a joint)", neutral=0.0, lowest=0.0
+        ),
+        Parameter(
+            "stribeck_velocity_m_per_s",
+            "m/s",
+            "speed over which it fades (rad/s for a joint)",
+            neutral=1.0,
+            lowest=0.0,
+            positive=True,
+        ),
+    ),
+    size="stribeck_N",
+    contains=("load.coulomb_friction",),
+    search={
+        "force_N": Search("load_force", 0.4, (0.01, 0.05)),
+        "stribeck_N": Search("load_force", 0.4, (0.01, 0.05)),
+        "stribeck_velocity_m_per_s": Search("load_speed", 2.0, (0.03, 0.15), lowest=0.005, log=True),
+    },
+    searched_on={"load": ("link",)},
+    source="Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083, Stribeck curve",
+    confused_with={
+        "load.coulomb_friction": "Coulomb friction does not fall with speed; creeping speed decides",
+        "cylinder.stribeck_friction": "seals rub at the rod, so that their moment follows the lever",
+    },
+)
+
+
+@EFFECT.hook("load_friction")
+@njit
+def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
+    """Friction [N or N m] and its secant slope (see valve_spool_stiction)."""
+    p = joint.effects.load_stribeck_friction
+    if p.force_N == 0.0 and p.stribeck_N == 0.0:
+        return 0.0, 0.0
+    smooth = joint.load.friction_velocity
+    share = hyperbolic_tangent(velocity / smooth)
+    ratio = velocity / p.stribeck_velocity_m_per_s
+    level = p.force_N + p.stribeck_N * exponential(-ratio * ratio)
+    return level * share, level * share / velocity if abs(share) > 1e-3 else level / smooth
