@@ -10,8 +10,9 @@ from hydrolek_drake.diagnosis.fitting.race import Entrant, race
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.cost import cost
+from hydrolek_drake.diagnosis.search.enlarging import continued_nominal, enlarged
 from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
-from hydrolek_drake.diagnosis.search.openings import Opening, continued_nominal, enlarged, opened
+from hydrolek_drake.diagnosis.search.openings import Opening, opened
 from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.search.tracing import trace
 from hydrolek_drake.diagnosis.search.tried import Tried

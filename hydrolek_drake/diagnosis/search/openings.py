@@ -1,34 +1,22 @@
-"""One structure enlarged by one addition: what each promises, and the races of those that may be right."""
+"""What additions promise beside a structure: in free rollouts where it was fitted, and to an observer around it."""
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR, MORE_AHEAD
-from hydrolek_drake.diagnosis.fitting.local_search import has_other_minima, searched_near
-from hydrolek_drake.diagnosis.fitting.race import (
-    Entrant,
-    Runner,
-    Start,
-    entered,
-    hypotheses_of,
-    problem_of,
-    race,
-    run,
-)
+from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE
+from hydrolek_drake.diagnosis.fitting.race import problem_of
 from hydrolek_drake.diagnosis.laws.additions import of_additions
-from hydrolek_drake.diagnosis.lost_commands.search import with_windows
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
-from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
-from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
+from hydrolek_drake.diagnosis.search.gains import gain_needed
 from hydrolek_drake.diagnosis.search.promise import Promise, promises_at
 from hydrolek_drake.diagnosis.search.settings import TELLING, Rung, Settings
-from hydrolek_drake.diagnosis.search.tracing import trace
+from hydrolek_drake.diagnosis.search.tracing import names_of, trace
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.structures.addition import Addition, Sized
-from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, redundant, widenings
+from hydrolek_drake.diagnosis.structures.addition import Sized
+from hydrolek_drake.diagnosis.structures.candidates import redundant
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.lockstep import Place, descend
 
@@ -107,7 +95,7 @@ def opened(
     pulled: list[Promise] = []
     shares = [_share(free[0].gain, parent.fit.objective, parent.fit.counted)]
     if parent.fit.over_noise > AT_NOISE and not alone:
-        pulled, share = _observed(bench, parent, own, settings, cores)
+        pulled, share = observed(bench, parent, own, settings, cores)
         shares.append(share)
         if lost is not None:
             shares.append(lost.share)
@@ -118,7 +106,7 @@ def opened(
     costs = sum(c.cost for c in parent.effects) + own[0].cost
     expected = count * (1.0 + math.log(left / count)) + needed * costs
     trace(
-        f"  open {kind} beside {_names(parent.effects)} {parent.fit.over_noise:.4f}, expected "
+        f"  open {kind} beside {names_of(parent.effects)} {parent.fit.over_noise:.4f}, expected "
         f"{math.sqrt(left / count):.3f}: needed {needed:.0f}; free "
         + ", ".join(f"{p.candidate.id} {p.gain:.0f}" for p in free[:4])
         + "; pulled "
@@ -134,141 +122,7 @@ def _share(gain: float, objective: float, counted: int) -> float:
     return min(gain / excess, 1.0) if excess > 0.02 * counted else 0.0
 
 
-def enlarged(
-    bench: Workbench,
-    opening: Opening,
-    candidates: Sequence[Candidate],
-    found: Tried,
-    settings: Settings,
-    cores: int,
-) -> bool:
-    """Fit a structure with each of the additions that may be right, and what these lead to without others.
-
-    Args:
-        bench: data and problems.
-        opening: the structure and its additions.
-        candidates: all effects.
-        found: receives the fits.
-        settings: of the search.
-        cores: that roll out at the same time.
-
-    Returns:
-        Whether the structure itself was fitted better meanwhile, and should be enlarged again.
-    """
-    parent = opening.parent
-    needed = gain_needed(parent.fit)
-    near = parent.fit.over_noise <= AT_NOISE
-    enough = MORE_AHEAD if can_be_cut(bench) else AT_NOISE
-    fitted, own = Start(parent.effects, parent.values), Start(parent.effects, opening.sizes)
-    free = [
-        fitted.with_addition(p.candidate, start)
-        for number, p in enumerate(opening.free[: settings.entrants])
-        if not near or p.gain > PROMISING * needed
-        for start in p.starts[: None if number < settings.doubled else 1]
-    ]
-    free += [
-        Entrant(effects, {**parent.values, **{k: v for k, v in start.items() if k not in parent.values}})
-        for _, wider, effects in widenings(parent.effects, candidates)
-        for start in wider.starts[:4]
-    ]
-    fine = parent.fit.over_noise < FAR
-    heats = _steps(settings.free, fine)
-    runners = run(bench, entered(bench, free, heats[0], cores), heats, cores, _traced("free")) if free else []
-    better = None
-    if runners and _over_noise(runners[0]) > enough:
-        runners = [*_farther(bench, runners[0], settings, cores), *runners]
-        if enough > AT_NOISE:
-            runners = [*_by_parts(bench, runners, enough, settings, cores), *runners]
-    if not near and min((_over_noise(r) for r in runners), default=math.inf) > enough:
-        if not parent.effects and not found.nominal_continued:
-            better = continued_nominal(bench, parent, found, settings, cores)
-            if better is not None:
-                found.keep(better)
-        pulled = opening.pulled or _observed(bench, parent, opening.own, settings, cores)[0]
-        entrants = [
-            begun.with_addition(p.candidate, start)
-            for p in pulled[: settings.entrants]
-            for start in p.starts[: None if p.candidate.sudden else 1]
-            for begun in (own, fitted)
-        ]
-        heats = _steps(settings.continued, fine)
-        runners += run(bench, entered(bench, entrants, heats[0], cores), heats, cores, _traced("observed"))
-    ended = run(bench, runners, settings.ended, cores, _traced("end")) if runners else []
-    fits = hypotheses_of(bench, ended, settings.ended[-1])
-    for each in fits:
-        found.keep(each)
-    sudden = any(c.sudden for c in found.best.effects)
-    if found.best.fit.over_noise > AT_NOISE and sudden and has_other_minima(found.best, fits):
-        found.keep(searched_near(bench, found.best, settings, cores))
-    reached = found.best.fit.over_noise
-    if opening.lost is not None and reached > AT_NOISE and opening.lost.share >= settings.lost:
-        for each in with_windows(bench, parent, opening.lost, settings, cores, reached):
-            found.keep(each)
-    _widened(bench, found, settings, cores)
-    _lessened(bench, found, candidates, settings, cores)
-    return better is not None
-
-
-def _farther(bench: Workbench, runner: Runner, settings: Settings, cores: int) -> list[Runner]:
-    """The best structure of a race in wider ranges, where a number of what it adds lies at an end of one."""
-    values = runner.place.problem.parameters.values(runner.place.unit)
-    wide = tuple(c.widened(values) for c in runner.effects)
-    if all(a.free == b.free for a, b in zip(wide, runner.effects, strict=True)):
-        return []
-    rungs = settings.free[-1:]
-    return run(
-        bench, entered(bench, [Entrant(wide, values)], rungs[0], cores), rungs, cores, _traced("wider")
-    )
-
-
-def _by_parts(
-    bench: Workbench, runners: Sequence[Runner], enough: float, settings: Settings, cores: int
-) -> list[Runner]:
-    """Structures fitted part by part, one after the other until one leaves no more than is enough; the best first."""
-    first: dict[frozenset[str], Runner] = {}
-    for runner in runners:
-        first.setdefault(runner.key, runner)
-    ended: list[Runner] = []
-    for runner in list(first.values())[: settings.parted]:
-        values = runner.place.problem.parameters.values(runner.place.unit)
-        parted = Entrant(runner.effects, by_parts(bench, runner.effects, values, cores))
-        begun = entered(bench, [parted], settings.again, cores)
-        ended += run(bench, begun, (settings.again,), cores, _traced("by parts"))
-        if _over_noise(ended[-1]) <= enough:
-            break
-    return sorted(ended, key=_over_noise)
-
-
-def _over_noise(runner: Runner) -> float:
-    return math.sqrt(runner.place.objective / max(runner.place.problem.counted, 1))
-
-
-def continued_nominal(
-    bench: Workbench, direct: Hypothesis, found: Tried, settings: Settings, cores: int
-) -> Hypothesis | None:
-    """The nominal model by continuation, from the rig's own numbers and from the middle of their ranges.
-
-    Args:
-        bench: data and problems.
-        direct: as free rollouts led it.
-        found: remembers that it was done.
-        settings: of the search.
-        cores: that roll out at the same time.
-
-    Returns:
-        The fit if it is better by more than one addition must bring; else None.
-    """
-    found.nominal_continued = True
-    centre = Entrant((), {free.path: free.from_unit(0.5) for free in bench.nominal})
-    heats = settings.nominal
-    led = run(bench, entered(bench, [Entrant((), {}), centre], heats[0], cores), heats, cores)
-    ended = run(bench, [*led, *entered(bench, [centre], settings.again, cores)], (settings.again,), cores)
-    [fitted] = hypotheses_of(bench, ended, settings.again)
-    trace(f"    nominal {direct.fit.over_noise:.4f}, continued {fitted.fit.over_noise:.4f}")
-    return fitted if direct.fit.objective - fitted.fit.objective > gain_needed(direct.fit) else None
-
-
-def _observed(
+def observed(
     bench: Workbench, parent: Hypothesis, own: Sequence[Sized], settings: Settings, cores: int
 ) -> tuple[list[Promise], float]:
     """What additions promise to an observer around the rig's own numbers, and the share that the best one takes."""
@@ -283,68 +137,3 @@ def _observed(
 def _place(bench: Workbench, structure: Hypothesis, rung: Rung, unit: np.ndarray) -> Place:
     problem = problem_of(bench, structure.effects, rung)
     return Place(problem, bench.movable(structure.effects, problem.parameters), unit)
-
-
-def _steps(rungs: Sequence[Rung], fine: bool) -> tuple[Rung, ...]:
-    """Rungs with the rig's own step where the error of a longer one would be more than what is to be explained."""
-    return tuple(replace(rung, coarse=1.0) for rung in rungs) if fine else tuple(rungs)
-
-
-def _lessened(
-    bench: Workbench, found: Tried, candidates: Sequence[Candidate], settings: Settings, cores: int
-) -> None:
-    """Backward elimination: the best structure without each addition, and with a special case in its place.
-
-    Each is fitted from where the best structure led, and by continuation.
-    """
-    best = found.best
-    if best is found.lessened or not best.effects:
-        return
-    found.lessened = best
-    entrants = [
-        Entrant(best.without(c), {k: v for k, v in best.values.items() if not k.startswith(c.path + ".")})
-        for c in best.effects
-    ]
-    entrants += [
-        Entrant(
-            effects, {**{k: v for k, v in best.values.items() if not k.startswith(c.path + ".")}, **start}
-        )
-        for c, special, effects in narrowings(best.effects, candidates)
-        for start in special.starts[:2]
-    ]
-    rung = replace(settings.again, keep=len(entrants))
-    fitted = race(bench, entrants, (rung,), cores)
-    near = not found.nominal_continued and found.baseline.fit.over_noise < FAR
-    if len(best.effects) > 1 or near:  # others were fitted so before, or are beyond doubt
-        own = [Entrant(each.effects, of_additions(each.values)) for each in entrants]
-        fitted += race(
-            bench, own, (*_steps(settings.continued, best.fit.over_noise < FAR), settings.again), cores
-        )
-    for each in fitted:
-        found.keep(each)
-
-
-def _widened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
-    """The best structure with wider ranges, where a number of what it adds lies at an end of one."""
-    best = found.best
-    wide = tuple(c.widened(best.values) for c in best.effects)
-    if any(a.free != b.free for a, b in zip(wide, best.effects, strict=True)):
-        for each in race(bench, [Entrant(wide, best.values)], (settings.again,), cores):
-            found.keep(each)
-
-
-def _names(effects: Sequence[Addition]) -> str:
-    return "+".join(c.id for c in effects) or "nominal"
-
-
-def _traced(name: str) -> Callable[[Sequence[Runner], Rung], None]:
-    def seen(runners: Sequence[Runner], rung: Rung) -> None:
-        trace(
-            f"    {name} T={rung.observer_s} x{rung.coarse} {len(runners)}: "
-            + ", ".join(
-                f"{_names(r.effects)} {math.sqrt(r.place.objective / r.place.problem.counted):.4f}"
-                for r in runners[:5]
-            )
-        )
-
-    return seen
