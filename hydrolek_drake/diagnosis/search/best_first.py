@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Protocol
 
 from hydrolek_drake.diagnosis.data.weighing import weighted_by
-from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR, MORE_AHEAD
+from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, AT_NOISE, FAR, MORE_AHEAD
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
@@ -125,13 +125,16 @@ def _open(
 
 
 def _worth_while(opening: Opening) -> bool:
-    """Whether a structure leaves more than noise, or an addition promises to take what it must of the rest."""
+    """Whether a structure leaves more than noise, or an addition promises to take what it must of the rest.
+
+    Noise is known to but a share. A nominal model that leaves more than that may be bent so that what it lacks promises
+    nothing; one with an addition that leaves less than twice that, and beside which nothing promises anything, is right.
+    """
     fit = opening.parent.fit
     if not opening.own:
         return False
-    return fit.over_noise > AT_NOISE or opening.promising >= PROMISING * opening.own[0].cost * gain_needed(
-        fit
-    )
+    above = ABOVE_NOISE if opening.parent.effects else AT_NOISE
+    return fit.over_noise > above or opening.promising >= PROMISING * opening.own[0].cost * gain_needed(fit)
 
 
 def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
