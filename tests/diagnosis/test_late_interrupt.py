@@ -8,7 +8,7 @@ import pytest
 from hydrolek_drake.cli.app import run
 from hydrolek_drake.diagnosis import diagnosis, inquiry
 
-PAIR = Path(__file__).parents[1] / "data" / "bench" / "practice_01"
+PAIR = Path(__file__).parents[1] / "data" / "bench" / "practice_02"
 
 
 @pytest.mark.parametrize(

@@ -127,8 +127,8 @@ def _open(
 def _worth_while(opening: Opening) -> bool:
     """Whether a structure leaves more than noise, or an addition promises to take what it must of the rest.
 
-    Noise is known to but a share. A nominal model that leaves more than that may be bent so that what it lacks promises
-    nothing; one with an addition that leaves less than twice that, and beside which nothing promises anything, is right.
+    Noise is known to but a share. A nominal model that leaves more may be bent so that what it lacks promises nothing;
+    one with an addition that leaves less than twice that, and beside which nothing promises anything, is right.
     """
     fit = opening.parent.fit
     if not opening.own:
