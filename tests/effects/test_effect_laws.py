@@ -293,5 +293,11 @@ def test_frictions_of_the_load_are_their_laws(record):
     )
     for w in (-0.3, 0.002, 0.7):
         share = np.tanh(w / np.radians(0.2))
-        expected = 31 * share + (7 + 11 * np.exp(-((w / 0.1) ** 2))) * share + 17 * w + 5 + (3 + 2 * abs(w)) * share**2
+        expected = (
+            31 * share
+            + (7 + 11 * np.exp(-((w / 0.1) ** 2))) * share
+            + 17 * w
+            + 5
+            + (3 + 2 * abs(w)) * share**2
+        )
         assert_allclose(hooks.load_friction(w, joint)[0], expected, rtol=1e-12)
