@@ -39,8 +39,9 @@ SHORT_STEPS, LONG_STEPS = 10, 20
 SEED = 1
 """Of the sequence: the same starts each time."""
 
-STARTS = 64
-"""Places from which the shortest horizon is fitted."""
+STARTS, MOST_ROUNDS, FOLLOWED = 64, 4, 1.1
+"""Places from which the shortest horizon is fitted in a round; so many rounds at most, until one place leaves so many
+times the noise or less: over few samples chance moves it by 5 %."""
 
 FAR = 3.0
 """A chain that leaves so many times the noise behind the cut lacks something there: the supply is left as it is."""
@@ -108,16 +109,15 @@ class Continuation:
             return None
         behind = self._by_observers(parts, starts, ~supply)[0]
         if behind.objective > FAR**2 * behind.problem.counted:
-            return np.where(
-                supply, starts[0], behind.unit
-            )  # what it lacks, the supply's numbers would make up for
+            # what it lacks, the supply's numbers would make up for
+            return np.where(supply, starts[0], behind.unit)
         behind_unit = behind.unit
-        begun = [np.where(supply, start, behind_unit) for start in starts]
-        for spread in spread_evenly(STARTS - len(begun), int(supply.sum())):
-            unit = behind_unit.copy()
-            unit[supply] = spread
-            begun.append(unit)
-        return self._over_growing_horizons(begun, supply)
+        own = [np.where(supply, start, behind_unit) for start in starts]
+        spread = np.tile(behind_unit, (MOST_ROUNDS * STARTS, 1))
+        spread[:, supply] = spread_evenly(MOST_ROUNDS * STARTS, int(supply.sum()))
+        rounds = [[*own, *spread[: STARTS - len(own)]]]
+        rounds += [list(spread[n * STARTS : (n + 1) * STARTS]) for n in range(1, MOST_ROUNDS)]
+        return self._over_growing_horizons(rounds, supply)
 
     def parts(self) -> tuple[Experiment, ...] | None:
         """The experiments with the chain cut at the recorded supply pressure; None as above."""
@@ -143,9 +143,13 @@ class Continuation:
             units = [place.unit for place in places]
         return places
 
-    def _over_growing_horizons(self, starts: Sequence[np.ndarray], moving: np.ndarray) -> np.ndarray:
-        """Where the numbers that move end, from short horizons to all of the time. # (n,)."""
-        units = list(starts)
+    def _over_growing_horizons(
+        self, rounds: Sequence[Sequence[np.ndarray]], moving: np.ndarray
+    ) -> np.ndarray:
+        """Where the numbers that move end, from short horizons to all of the time. # (n,).
+
+        Further rounds of starts are tried over the shortest horizon as long as none of them follows that to the noise.
+        """
         whole = max(float(e.time[-1] - e.time[0]) for e in self.experiments)
         samples = min(e.time.size for e in self.experiments)
         most = min(int(math.log2(max(samples / FEWEST, 1.0))), len(HORIZONS) - 1)
@@ -153,9 +157,20 @@ class Continuation:
             keep = HORIZONS[len(HORIZONS) - 1 - halvings]
             parts = tuple(e.until(whole / 2**halvings) if halvings else e for e in self.experiments)
             steps, share = (SHORT_STEPS, 1e-3) if halvings else (LONG_STEPS, 1e-4)
-            places = self._descended(parts, units, moving, None, steps, share=share)
-            units = [place.unit for place in places[:keep]]
-        return units[0]
+            if halvings == most:
+                places: list[Place] = []
+                for units in rounds:
+                    places += self._descended(parts, units, moving, None, steps, share=share)
+                    places.sort(key=_objective)
+                    if places[0].objective <= FOLLOWED**2 * places[0].problem.counted:
+                        break
+            else:
+                units = [place.unit for place in places]
+                places = sorted(
+                    self._descended(parts, units, moving, None, steps, share=share), key=_objective
+                )
+            places = places[:keep]
+        return places[0].unit
 
     def _descended(
         self,
@@ -186,6 +201,10 @@ class Continuation:
         over_noise = float(np.sqrt(best.residuals @ best.residuals / max(best.problem.counted, 1)))
         self.told(sum(problem.evaluations for problem in problems), over_noise, best.unit)
         return places
+
+
+def _objective(place: Place) -> float:
+    return place.objective
 
 
 def spread_evenly(count: int, size: int) -> np.ndarray:

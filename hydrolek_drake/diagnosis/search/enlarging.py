@@ -136,7 +136,8 @@ def _by_parts(
     """Structures fitted part by part, one after the other until one leaves no more than is enough; the best first."""
     first: dict[frozenset[str], Runner] = {}
     for runner in runners:
-        first.setdefault(runner.key, runner)
+        if _over_noise(runner) <= FAR * _over_noise(runners[0]):
+            first.setdefault(runner.key, runner)
     ended: list[Runner] = []
     for runner in list(first.values())[: settings.parted]:
         values = runner.place.problem.parameters.values(runner.place.unit)
