@@ -24,7 +24,7 @@ def test_a_share_never_reaches_one_or_zero_and_follows_the_count():
     for kind, counted in reliability_data().items():
         share = counted["right"] / counted["of"]
         assert 0.0 < reliability(kind) < 1.0
-        assert abs(reliability(kind) - share) <= 0.5 / (counted["of"] + 1)
+        assert abs(reliability(kind) - share) <= 0.5 / (counted["of"] + 1) + 1e-12  # at the ends it is that
         assert 0 <= counted["right"] <= counted["of"]
 
 
