@@ -4,8 +4,8 @@ from typing import Any
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.physics.friction import stribeck
 from hydrolek_drake.physics.parameters import Parameter
-from hydrolek_drake.physics.smooth import exponential, hyperbolic_tangent
 
 EFFECT = Effect(
     id="cylinder.stribeck_friction",
@@ -44,10 +44,6 @@ EFFECT = Effect(
 def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, float]:
     """Friction [N] and its secant slope [N s/m] (see valve_spool_stiction) at a rod velocity [m/s]."""
     p = joint.effects.cylinder_stribeck_friction
-    if p.coulomb_N == 0.0 and p.stribeck_N == 0.0:
-        return 0.0, 0.0
-    smooth = joint.cylinder.friction_velocity
-    share = hyperbolic_tangent(velocity / smooth)
-    ratio = velocity / p.stribeck_velocity_m_per_s
-    level = p.coulomb_N + p.stribeck_N * exponential(-ratio * ratio)
-    return level * share, level * share / velocity if abs(share) > 1e-3 else level / smooth
+    return stribeck(
+        velocity, p.coulomb_N, p.stribeck_N, p.stribeck_velocity_m_per_s, joint.cylinder.friction_velocity
+    )

@@ -4,8 +4,8 @@ from typing import Any
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.physics.friction import stribeck
 from hydrolek_drake.physics.parameters import Parameter
-from hydrolek_drake.physics.smooth import exponential, hyperbolic_tangent
 
 EFFECT = Effect(
     id="load.stribeck_friction",
@@ -46,10 +46,6 @@ EFFECT = Effect(
 def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
     """Friction [N or N m] and its secant slope (see valve_spool_stiction)."""
     p = joint.effects.load_stribeck_friction
-    if p.force_N == 0.0 and p.stribeck_N == 0.0:
-        return 0.0, 0.0
-    smooth = joint.load.friction_velocity
-    share = hyperbolic_tangent(velocity / smooth)
-    ratio = velocity / p.stribeck_velocity_m_per_s
-    level = p.force_N + p.stribeck_N * exponential(-ratio * ratio)
-    return level * share, level * share / velocity if abs(share) > 1e-3 else level / smooth
+    return stribeck(
+        velocity, p.force_N, p.stribeck_N, p.stribeck_velocity_m_per_s, joint.load.friction_velocity
+    )
