@@ -17,10 +17,6 @@ far than where its fit begins."""
 SIZES = (1.0, 0.1, 0.01)
 """Sizes at which an effect is tried, as multiples of where its search begins."""
 
-SCANNED = tuple(0.8**step for step in range(28))
-"""The same for one without a slope: its squares have a local minimum for every contact that comes a little earlier or
-later, and a fit reaches no farther than a tenth to either side (play of 0.047 rad at an arm's first joint)."""
-
 TELLING = 2.0
 """What an addition changes is told by rollouts with steps so many times the rig's own on both sides of a difference."""
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
-from hydrolek_drake.diagnosis.search.settings import AT_BOUND, SCANNED, SIZES, WIDER
+from hydrolek_drake.diagnosis.search.settings import AT_BOUND, SIZES, WIDER
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.effects import EFFECTS, Effect
 from hydrolek_drake.effects.scales import Scales
@@ -41,8 +41,8 @@ class Candidate:
 
     @property
     def tried(self) -> tuple[float, ...]:
-        """Multiples of its starts at which it is tried."""
-        return SCANNED if self.sudden else SIZES
+        """Multiples of its starts at which it is tried; those of one without a slope are close enough."""
+        return (1.0,) if self.sudden else SIZES
 
     @property
     def weakens(self) -> bool:

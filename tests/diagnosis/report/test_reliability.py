@@ -7,6 +7,7 @@ import pytest
 from hydrolek_drake.diagnosis.evidence.noise import NOISE_KNOWN
 from hydrolek_drake.diagnosis.report.reliability import kind_of, reliability, reliability_data
 
+ROUNDING = 1e-12  # where all were right, or none, the bound is met with equality
 LEAK, AIR = "joints.j.effects.leak.size", "joints.j.effects.air.size"
 
 
@@ -24,7 +25,7 @@ def test_a_share_never_reaches_one_or_zero_and_follows_the_count():
     for kind, counted in reliability_data().items():
         share = counted["right"] / counted["of"]
         assert 0.0 < reliability(kind) < 1.0
-        assert abs(reliability(kind) - share) <= 0.5 / (counted["of"] + 1) + 1e-12  # at the ends it is that
+        assert abs(reliability(kind) - share) <= 0.5 / (counted["of"] + 1) + ROUNDING
         assert 0 <= counted["right"] <= counted["of"]
 
 

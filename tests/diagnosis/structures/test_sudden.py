@@ -15,13 +15,9 @@ FADED = 1e-3
 """Of a size, at which nothing must be left of an effect that fades with it, but for a tenth."""
 
 
-LARGEST = 10.0
-"""Change that such a size makes at most, in units of the noise."""
-
-
 @pytest.fixture
 def fading(bench, recorded):
-    """Effect -> change of the residuals at a thousandth of a size, over that there."""
+    """Effect -> change of the residuals at a thousandth of where its search begins, over that where it begins."""
     experiments = recorded(bench, bench, largest_V=4.0)
     with ThreadPoolExecutor(1) as pool:
         workbench = Workbench(bench, free_parameters(bench), experiments, pool)
@@ -45,11 +41,7 @@ def fading(bench, recorded):
         found = {}
         for candidate in candidates_of(bench, "joint", natural_scales(bench, "joint", experiments)):
             weak = 1.0 / FADED if candidate.effect.weakens else FADED
-            factor, large = 1.0, np.inf
-            while large > LARGEST:  # plays are tried from the largest that a joint may have
-                large = np.linalg.norm(changed(candidate, factor) - nominal) / np.sqrt(nominal.size)
-                factor *= 2.0 if candidate.effect.weakens else 0.5
-            small = np.linalg.norm(changed(candidate, weak * factor) - nominal) / np.sqrt(nominal.size)
+            small, large = (np.linalg.norm(changed(candidate, f) - nominal) for f in (weak, 1.0))
             if large > 0.0:  # a cushion is not reached
                 found[candidate.id] = small / large
     return found

@@ -6,6 +6,10 @@ from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Search
 from hydrolek_drake.physics.parameters import Parameter
 
+SCANNED = tuple(0.15 * 0.8**step for step in range(28))
+"""Shares of the travel: the squares have a local minimum for every contact that comes a little earlier or later, and a
+fit reaches no farther than a tenth to either side (play of 0.047 rad at an arm's first joint)."""
+
 EFFECT = Effect(
     id="linkage.backlash",
     title="play in the linkage",
@@ -13,7 +17,7 @@ EFFECT = Effect(
     parameters=(Parameter("gap_rad", "rad", "play, from contact to contact", neutral=0.0, lowest=0.0),),
     size="gap_rad",
     search={
-        "gap_rad": Search("travel", 0.25, (0.15,)),
+        "gap_rad": Search("travel", 0.25, SCANNED),
     },
     source="worn pins; contact model of Nordin and Gutman, Automatica 38 (2002) 1633",
     confused_with={
