@@ -144,7 +144,7 @@ def _diagnosed(
     if reasons:
         return _refused(rig, reasons, clock.perf_counter() - begun)
     nominal = _nominal(rig, training)
-    bench = Workbench(rig, nominal, training, pool)
+    bench = Workbench(rig, nominal, training, pool, cores)
     joints = tuple(dict.fromkeys(experiment.joint for experiment in training))
     scales = {joint: natural_scales(rig, joint, training) for joint in joints}
     candidates = list(

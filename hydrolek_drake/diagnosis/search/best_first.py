@@ -5,13 +5,12 @@ from dataclasses import replace
 from typing import Protocol
 
 from hydrolek_drake.diagnosis.data.weighing import weighted_by
-from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, AT_NOISE, FAR, MORE_AHEAD
+from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR, MORE_AHEAD
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.enlarging import continued_nominal, enlarged
-from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.search.openings import Opening, opened
 from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.search.tracing import trace
@@ -65,7 +64,7 @@ def search_structures(
         wanted = _open(found, done, settings, laws=unlisted is not None)
         for parent, kind in sorted(wanted, key=lambda each: each[1] == LAWS):
             key = (parent.ids, kind)
-            if kind == LAWS and any(o.at_noise and _worth_while(o) for o in openings):
+            if kind == LAWS and any(o.at_noise and o.worth_while for o in openings):
                 continue  # a law could promise no more
             if key not in seen or seen[key].parent is not parent:
                 own: Sequence[Sized | LostWindows] = candidates
@@ -76,7 +75,7 @@ def search_structures(
             openings.append(seen[key])
         if not openings:
             break
-        hopeless = [each.key for each in openings if not _worth_while(each)]
+        hopeless = [each.key for each in openings if not each.worth_while]
         done.update(hopeless)
         openings = [each for each in openings if each.key not in done]
         if not openings:
@@ -85,7 +84,8 @@ def search_structures(
         expansions += 1
         say(f"{next_.kind} beside {' + '.join(c.id for c in next_.parent.effects) or 'the nominal model'}")
         done.add(next_.key)
-        if enlarged(bench, next_, candidates, found, settings, cores):
+        better = enlarged(bench, next_, candidates, found, settings, cores)
+        if better and found.best.fit.over_noise > AT_NOISE:
             done.discard(next_.key)
         _weigh(bench, found, settings, cores)
         if found.rounds_without_gain(settings.patience):
@@ -122,19 +122,6 @@ def _open(
             elif laws and best.fit.over_noise > MORE_AHEAD:
                 items.append((h, LAWS))
     return [(h, kind) for h, kind in items if (h.ids, kind) not in done]
-
-
-def _worth_while(opening: Opening) -> bool:
-    """Whether a structure leaves more than noise, or an addition promises to take what it must of the rest.
-
-    Noise is known to but a share. A nominal model that leaves more may be bent so that what it lacks promises nothing;
-    one with an addition that leaves less than twice that, and beside which nothing promises anything, is right.
-    """
-    fit = opening.parent.fit
-    if not opening.own:
-        return False
-    above = ABOVE_NOISE if opening.parent.effects else AT_NOISE
-    return fit.over_noise > above or opening.promising >= PROMISING * opening.own[0].cost * gain_needed(fit)
 
 
 def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:

@@ -55,6 +55,8 @@ def enlarged(
         runners = [*_farther(bench, runners[0], settings, cores), *runners]
         if enough > AT_NOISE:
             runners = [*_by_parts(bench, runners, enough, settings, cores), *runners]
+    if runners and _over_noise(runners[0]) > enough and not runners[0].place.ended:
+        runners = [*run(bench, runners[:1], settings.ended, cores, _traced("first to the end")), *runners[1:]]
     better = None
     reached = min((_over_noise(r) for r in runners), default=math.inf)
     if reached > enough and parent.fit.over_noise > AT_NOISE:

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE
+from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, AT_NOISE
 from hydrolek_drake.diagnosis.fitting.race import problem_of
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
-from hydrolek_drake.diagnosis.search.gains import gain_needed
+from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
 from hydrolek_drake.diagnosis.search.promise import Promise, promises_at
 from hydrolek_drake.diagnosis.search.settings import TELLING, Rung, Settings
 from hydrolek_drake.diagnosis.search.tracing import names_of, trace
@@ -57,6 +57,11 @@ class Opening:
         """Largest fall of the squares that is promised, in free rollouts."""
         return self.free[0].gain if self.free else 0.0
 
+    @property
+    def worth_while(self) -> bool:
+        """Whether a structure leaves more than noise, or an addition promises to take what it must of the rest."""
+        return bool(self.own) and _worth_while(self.parent, self.own[0].cost, self.promising)
+
 
 def opened(
     bench: Workbench,
@@ -94,7 +99,8 @@ def opened(
         found.left = free
     pulled: list[Promise] = []
     shares = [_share(free[0].gain, parent.fit.objective, parent.fit.counted)]
-    if parent.fit.over_noise > AT_NOISE and not alone:
+    asked = parent.fit.over_noise > AT_NOISE and not alone
+    if asked and _worth_while(parent, own[0].cost, free[0].gain):
         pulled, share = observed(bench, parent, own, settings, cores)
         shares.append(share)
         if lost is not None:
@@ -114,6 +120,17 @@ def opened(
     )
     at_noise = left <= AT_NOISE**2 * count
     return Opening(parent, kind, own, tuple(free), tuple(pulled), sizes, expected, at_noise, lost)
+
+
+def _worth_while(parent: Hypothesis, addition_cost: float, promised: float) -> bool:
+    """See `Opening.worth_while`.
+
+    Noise is known to but a share. A nominal model that leaves more may be bent so that what it lacks promises nothing;
+    one with an addition that leaves less than twice that, and beside which nothing promises anything, is right.
+    """
+    above = ABOVE_NOISE if parent.effects else AT_NOISE
+    needed = PROMISING * addition_cost * gain_needed(parent.fit)
+    return parent.fit.over_noise > above or promised >= needed
 
 
 def _share(gain: float, objective: float, counted: int) -> float:

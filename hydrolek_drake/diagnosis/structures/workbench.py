@@ -1,9 +1,10 @@
 """Fits of the nominal model and of models with effects, all to the same recordings."""
 
+import contextlib
 import math
 import threading
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import Executor, wait
+from concurrent.futures import Executor, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -20,6 +21,7 @@ from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.identification.recorded_together import OneRecording
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rollout.pool import RolloutPool
 
 SPREAD = 1.0 / math.sqrt(12.0)
 """Standard deviation, in ranges, of a parameter of which only its range is known.
@@ -89,6 +91,7 @@ class Workbench:
         nominal: Sequence[Free],
         training: Sequence[Experiment],
         pool: Executor,
+        cores: int = 1,
     ) -> None:
         """Prepare.
 
@@ -97,11 +100,13 @@ class Workbench:
             nominal: its free parameters.
             training: the recordings that are fitted; weighed anew in time.
             pool: threads for fits side by side, and for the columns of a fit's Jacobian where some are idle.
+            cores: that roll out at the same time.
         """
         self.rig = rig
         self.nominal = tuple(nominal)
         self.training = tuple(training)
         self.pool = pool
+        self.cores = cores
         self._stopped = threading.Event()
         self.evaluations = 0
         self._places: dict[Free, tuple[np.ndarray, np.ndarray]] = {}
@@ -110,7 +115,7 @@ class Workbench:
 
     def with_training(self, training: Sequence[Experiment]) -> "Workbench":
         """Another one for other recordings of the same machine."""
-        return Workbench(self.rig, self.nominal, training, self.pool)
+        return Workbench(self.rig, self.nominal, training, self.pool, self.cores)
 
     def interrupted(self) -> bool:
         """Whether the user has interrupted."""
@@ -196,13 +201,23 @@ class Workbench:
         return problem.residuals(problem.parameters.unit(hypothesis.values))
 
     def side_by_side(self, work: Callable, items: Sequence) -> list:
-        """Results of independent pieces of work, in their order; an interrupt cancels those not begun."""
-        futures = [self.pool.submit(work, item) for item in items]
-        try:
-            return [future.result() for future in futures]
-        except BaseException:
-            self._stopped.set()
-            for future in futures:
-                future.cancel()
-            wait(futures)
-            raise
+        """Results of independent pieces of work, in their order; an interrupt cancels those not begun.
+
+        What several pieces roll out at the same time goes into common tables of lanes.
+        """
+        with self._threads() as threads:
+            futures = [threads.submit(work, item) for item in items]
+            try:
+                return [future.result() for future in futures]
+            except BaseException:
+                self._stopped.set()
+                for future in futures:
+                    future.cancel()
+                wait(futures)
+                raise
+
+    def _threads(self) -> contextlib.AbstractContextManager[Executor]:
+        """Threads for pieces of work; a cluster has its own."""
+        if isinstance(self.pool, ThreadPoolExecutor):
+            return RolloutPool(self.cores)
+        return contextlib.nullcontext(self.pool)
