@@ -11,7 +11,7 @@ from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.enlarging import continued_nominal, enlarged
-from hydrolek_drake.diagnosis.search.openings import Opening, opened
+from hydrolek_drake.diagnosis.search.openings import Opening, opened, surely_above
 from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.search.tracing import trace
 from hydrolek_drake.diagnosis.search.tried import Tried
@@ -98,13 +98,14 @@ def _open(
     """Structures that may be enlarged, and by what.
 
     A search that goes on from another one's structures begins at the best of these. Each is enlarged by effects first,
-    since a law can imitate most of them, and only the best one once it leaves nothing above the noise. Laws are asked
-    for where the best one leaves so much that something would be called missing.
+    since a law can imitate most of them, and only the best one once it leaves nothing that is surely above the noise:
+    what others lead to has more additions and can leave no less. Laws are asked for where the best one leaves so much
+    that something would be called missing.
     """
     best = found.best
     if (frozenset(), EFFECTS) not in done and not found.seeds:
         return [(found.baseline, EFFECTS)]
-    if best.fit.over_noise <= AT_NOISE:
+    if best.fit.over_noise <= surely_above(best):
         lawful = not all(isinstance(c, Candidate) for c in best.effects)
         items = [(best, LAWS if lawful else EFFECTS)]
     else:

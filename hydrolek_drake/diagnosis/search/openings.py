@@ -122,15 +122,19 @@ def opened(
     return Opening(parent, kind, own, tuple(free), tuple(pulled), sizes, expected, at_noise, lost)
 
 
-def _worth_while(parent: Hypothesis, addition_cost: float, promised: float) -> bool:
-    """See `Opening.worth_while`.
+def surely_above(structure: Hypothesis) -> float:
+    """Above so many times the noise a structure is enlarged even if nothing is promised.
 
     Noise is known to but a share. A nominal model that leaves more may be bent so that what it lacks promises nothing;
     one with an addition that leaves less than twice that, and beside which nothing promises anything, is right.
     """
-    above = ABOVE_NOISE if parent.effects else AT_NOISE
+    return ABOVE_NOISE if structure.effects else AT_NOISE
+
+
+def _worth_while(parent: Hypothesis, addition_cost: float, promised: float) -> bool:
+    """See `Opening.worth_while`."""
     needed = PROMISING * addition_cost * gain_needed(parent.fit)
-    return parent.fit.over_noise > above or promised >= needed
+    return parent.fit.over_noise > surely_above(parent) or promised >= needed
 
 
 def _share(gain: float, objective: float, counted: int) -> float:
