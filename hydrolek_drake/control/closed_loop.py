@@ -10,7 +10,7 @@ from hydrolek_drake.control.laws.law import ControlLaw
 from hydrolek_drake.control.models.sdp_model import SdpModel
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rollout.rest import rest_state
-from hydrolek_drake.rollout.rollout import roll_out
+from hydrolek_drake.rollout.rollout import PreparedJoint
 
 _EPSILON = 1e-9
 
@@ -116,20 +116,14 @@ def loop_on_rollout(
     times: list[float] = [-delay - sample_s]
     commands: list[float] = [neutral]
     state = law.initial(angle)
+    machine = PreparedJoint(joint, longest_step=longest_step)
     for k, wanted_now in enumerate(wanted):
         now = k * sample_s
         state, output, voltage = law.step(state, float(wanted_now), sample(angle))
         times.append(now)
         commands.append(neutral + voltage)
         rows = now + sample_s * np.arange(rows_per_sample + 1) / rows_per_sample
-        outcome = roll_out(
-            joint,
-            np.array(times[-keep:]),
-            np.array(commands[-keep:]),
-            rows,
-            state=chain,
-            longest_step=longest_step,
-        )
+        outcome = machine.roll_out(np.array(times[-keep:]), np.array(commands[-keep:]), rows, state=chain)
         place = slice(k * rows_per_sample, (k + 1) * rows_per_sample)
         readings = np.degrees(outcome.signals.reading)
         angles[place], voltages[place], outputs[place] = readings[:-1], voltage, output

@@ -17,7 +17,7 @@ from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.joint_rows import room
 from hydrolek_drake.rollout.kernel import SIGNALS
 from hydrolek_drake.rollout.rest import rest_state
-from hydrolek_drake.rollout.rollout import roll_out
+from hydrolek_drake.rollout.rollout import PreparedJoint
 from hydrolek_drake.rollout.together import JointsTogether, RunTogether, moving_with, put_begun
 from hydrolek_drake.rollout.together_kernel import integrate_together
 
@@ -63,15 +63,18 @@ class JointOnwards:
         """
         self.joints = (joint,)
         self.time = time
-        self._record = rig.records()[rig.joints.index(joint)][None]
-        self._longest_step = rig.value("integration.longest_step")
-        self._spool_steps = round(rig.value("integration.spool_steps"))
-        self._commands = _Commands(float(command.transport_delay(self._record[0])))
+        record = rig.records()[rig.joints.index(joint)][None]
+        self._machine = PreparedJoint(
+            record,
+            longest_step=rig.value("integration.longest_step"),
+            spool_steps=round(rig.value("integration.spool_steps")),
+        )
+        self._commands = _Commands(float(command.transport_delay(record[0])))
         try:
-            self._state = rest_state(self._record, position)
+            self._state = rest_state(record, position)
         except ZeroDivisionError:
             raise InputError(f"rig {rig.name}: {joint} cannot rest: a lever or an area is zero") from None
-        neutral = self._record["command"]["neutral"]
+        neutral = record["command"]["neutral"]
         self._go(np.array([time]), np.array([time]), neutral)
 
     def advance(self, volts: np.ndarray, until: float) -> None:
@@ -85,15 +88,7 @@ class JointOnwards:
         self.time = until
 
     def _go(self, times: np.ndarray, command_times: np.ndarray, command_values: np.ndarray) -> None:
-        done = roll_out(
-            self._record,
-            command_times,
-            command_values,
-            times,
-            state=self._state,
-            longest_step=self._longest_step,
-            spool_steps=self._spool_steps,
-        )
+        done = self._machine.roll_out(command_times, command_values, times, state=self._state)
         if done.diverged is not None:
             raise InputError(f"{self.joints[0]}: {done.diverged}")
         self._state = done.state

@@ -82,43 +82,91 @@ def roll_out(
         InputError: times that do not rise, not as many command values as command times, or a joint that a recording
             drives without one.
     """
-    check_times(command_times, command_values, times)
-    check_driven(joint, probes is not None)
-    out = np.full((len(times), len(kernel.SIGNALS)), np.nan)
-    times = read_only(times)
-    start = np.full(STATE_SIZE, np.nan) if state is None else state.copy()
-    probe_spacing, probe_values = probes or (1.0, NO_PROBE)
-    changes = np.concatenate(
-        [[True], np.diff(command_values) != 0.0]
-    )  # what only repeats the command says nothing
-    pull_time, measured = pull or (0.0, kernel.NOT_PULLED)
-    diverged = missing_number(joint)
-    if diverged is None:
-        try:
-            start = rest_state(joint) if state is None else start
-            rows = kernel.integrate(
-                as_usual(joint),
-                start,
-                read_only(command_times[changes]),
-                read_only(command_values[changes]),
-                times,
-                longest_step,
-                spool_steps,
-                probe_spacing,
-                read_only(probe_values),
-                pull_time,
-                read_only(measured),
-                with_own(law, joint),
-                out,
-            )
-            if rows < len(times):
-                diverged = why_diverged(joint, float(times[rows]))
-                if diverged == DIVIDED_BY_ZERO:
-                    out[:] = np.nan
-        except ZeroDivisionError:
-            out[:] = np.nan
-            diverged = DIVIDED_BY_ZERO
-    return Outcome(Signals(times, *out.T), diverged, start)
+    prepared = PreparedJoint(joint, longest_step=longest_step, spool_steps=spool_steps, law=law)
+    return prepared.roll_out(command_times, command_values, times, state=state, probes=probes, pull=pull)
+
+
+class PreparedJoint:
+    """A joint's record, checked and brought into the form of the compiled loop once: for many short rollouts.
+
+    A controller gives a command every few steps of the integration, so that what is the same for all of them would
+    take longer than they do.
+    """
+
+    def __init__(
+        self,
+        joint: np.ndarray,
+        *,
+        longest_step: float,
+        spool_steps: int = 1,
+        law: np.ndarray | None = None,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            joint: as of `roll_out`, and so are the others.
+            longest_step: upper bound of the integration step [s].
+            spool_steps: steps of the spool within one step of the rest.
+            law: how inputs from outside follow from the state.
+        """
+        self._joint, self._usual = joint, as_usual(joint)
+        self._longest_step, self._spool_steps = longest_step, spool_steps
+        self._law = with_own(law, joint)
+        self._missing = missing_number(joint)
+        self._driven = is_driven(joint)
+
+    def roll_out(
+        self,
+        command_times: np.ndarray,
+        command_values: np.ndarray,
+        times: np.ndarray,
+        *,
+        state: np.ndarray | None = None,
+        probes: tuple[float, np.ndarray] | None = None,
+        pull: tuple[float, np.ndarray] | None = None,
+    ) -> Outcome:
+        """As `roll_out`, which tells what the arguments are.
+
+        Raises:
+            InputError: as of `roll_out`.
+        """
+        check_times(command_times, command_values, times)
+        if self._driven:
+            check_driven(self._joint, probes is not None)
+        out = np.full((len(times), len(kernel.SIGNALS)), np.nan)
+        times = read_only(times)
+        start = np.full(STATE_SIZE, np.nan) if state is None else state.copy()
+        probe_spacing, probe_values = probes or (1.0, NO_PROBE)
+        changes = np.ones(len(command_values), dtype=bool)  # what only repeats the command says nothing
+        np.not_equal(command_values[1:], command_values[:-1], out=changes[1:])
+        pull_time, measured = pull or (0.0, kernel.NOT_PULLED)
+        diverged = self._missing
+        if diverged is None:
+            try:
+                start = rest_state(self._joint) if state is None else start
+                rows = kernel.integrate(
+                    self._usual,
+                    start,
+                    read_only(command_times[changes]),
+                    read_only(command_values[changes]),
+                    times,
+                    self._longest_step,
+                    self._spool_steps,
+                    probe_spacing,
+                    read_only(probe_values),
+                    pull_time,
+                    read_only(measured),
+                    self._law,
+                    out,
+                )
+                if rows < len(times):
+                    diverged = why_diverged(self._joint, float(times[rows]))
+                    if diverged == DIVIDED_BY_ZERO:
+                        out[:] = np.nan
+            except ZeroDivisionError:
+                out[:] = np.nan
+                diverged = DIVIDED_BY_ZERO
+        return Outcome(Signals(times, *out.T), diverged, start)
 
 
 def with_own(law: np.ndarray | None, joint: np.ndarray) -> np.ndarray | None:
@@ -153,7 +201,7 @@ def check_times(command_times: np.ndarray, command_values: np.ndarray, times: np
             f"rollout: {len(command_times)} command times but {len(command_values)} command values"
         )
     for name, series in (("command times", command_times), ("times", times)):
-        if len(series) == 0 or not np.all(np.diff(series) > 0.0):
+        if len(series) == 0 or not (series[1:] > series[:-1]).all():
             raise InputError(f"rollout: the {name} must rise from each to the next")
 
 
