@@ -22,8 +22,8 @@ from hydrolek_drake.diagnosis.intervals.moments import intervals_of_moments
 from hydrolek_drake.diagnosis.laws.law import FoundLaw
 from hydrolek_drake.diagnosis.locating.place import Location, locate, locate_law
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
-from hydrolek_drake.diagnosis.search.settings import LAST_STEP, Settings
 from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.settings import FITS, Settings
 from hydrolek_drake.diagnosis.structures.as_rig import enlarged_rig, room_for_law
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
@@ -88,7 +88,7 @@ class Diagnosis:
     def step(self) -> float:
         """Integration step of the last fits [s]."""
         assert self.bench is not None
-        return LAST_STEP * self.bench.fine
+        return FITS.last_step * self.bench.fine
 
     def fitted_rig(self) -> Rig:
         """The rig with the named effects and the law switched on and every parameter estimated anew."""
@@ -160,7 +160,7 @@ def _diagnosed(
     if law is not None:
         parameters = bench.parameters(best.effects)
         records = parameters.records(parameters.unit(law.parameters))
-        law = law.held_against(held_out, records, LAST_STEP * bench.fine)
+        law = law.held_against(held_out, records, FITS.last_step * bench.fine)
     places: tuple[Location, ...] = ()
     proposal: Proposal | None = None
     visible: tuple[Visible, ...] = ()

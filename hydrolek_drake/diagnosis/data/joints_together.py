@@ -11,14 +11,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.settings import DATA
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.neighbours import probes_of
 from hydrolek_drake.identification.recorded_together import OneRecording, recordings_of
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.together import Together
-
-MOTION_STEP_S = 1e-3
-"""Of the samples of what the joints do [s]: a tenth of the period of the fastest shaking of an arm."""
 
 
 def felt_together(rig: Rig, experiments: Sequence[Experiment]) -> list[Experiment]:
@@ -39,7 +37,7 @@ def felt_together(rig: Rig, experiments: Sequence[Experiment]) -> list[Experimen
 def _felt(rig: Rig, group: Sequence[Experiment]) -> list[Experiment]:
     """The joints of one recording, beside each other."""
     begin, end = min(float(e.time[0]) for e in group), max(float(e.time[-1]) for e in group)
-    times = begin + MOTION_STEP_S * np.arange(int((end - begin) / MOTION_STEP_S + 1e-6) + 2)
+    times = begin + DATA.motion_step_s * np.arange(int((end - begin) / DATA.motion_step_s + 1e-6) + 2)
     records = rig.records()
     done = OneRecording(rig, group).roll_out(records, times)
     if done.diverged is not None:
@@ -47,10 +45,10 @@ def _felt(rig: Rig, group: Sequence[Experiment]) -> list[Experiment]:
     motions, flows = {}, {}
     for i, joint in enumerate(done.joints):
         position, velocity = done.signals["position"][:, i], done.signals["velocity"][:, i]
-        motions[joint] = (position, velocity, np.gradient(velocity, MOTION_STEP_S))
+        motions[joint] = (position, velocity, np.gradient(velocity, DATA.motion_step_s))
         flows[joint] = done.signals["drawn"][:, i]
     firsts = {e.joint: float(e.time[0]) - begin for e in group}
-    probes = probes_of(rig, motions, flows, MOTION_STEP_S, firsts)
+    probes = probes_of(rig, motions, flows, DATA.motion_step_s, firsts)
     felt = [replace(e, others=probes[e.joint]) for e in group]
     return [replace(e, others_error=_apart(e, records, done)) for e in felt]
 

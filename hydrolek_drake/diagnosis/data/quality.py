@@ -4,26 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.settings import DATA
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.recordings import Recording
-
-LEAST_SAMPLES = 200
-"""Fewer samples than this cannot decide between some twenty effects and ten nominal parameters."""
-
-LEAST_TRAVEL = 20.0
-"""The joint must move by this many times the noise, or there is no movement to explain."""
-
-MOST_MISSING = 0.3
-"""Share of missing values above which a signal is no measurement of the whole recording."""
-
-MOST_SATURATED = 0.2
-"""Share of the time at a sensor's limit above which the signal does not show the movement."""
-
-FROZEN_SPAN_S = 1.0
-"""A sensor that repeats one value for so long while the command drives the joint may have frozen."""
-
-MOST_FROZEN = 0.25
-"""Share of the time with a frozen sensor above which the recording is unusable."""
 
 
 def reasons_against(recording: Recording, experiments: Sequence[Experiment]) -> list[str]:
@@ -34,12 +17,12 @@ def reasons_against(recording: Recording, experiments: Sequence[Experiment]) -> 
         experiments: its joints.
     """
     reasons = []
-    if recording.time.size < LEAST_SAMPLES:
+    if recording.time.size < DATA.least_samples:
         reasons.append(
-            f"{recording.name} has {recording.time.size} samples; at least {LEAST_SAMPLES} are needed"
+            f"{recording.name} has {recording.time.size} samples; at least {DATA.least_samples} are needed"
         )
     gaps = sum(end - start for f in recording.findings if f.kind == "gap" for start, end in f.spans)
-    if gaps > MOST_MISSING * recording.duration:
+    if gaps > DATA.most_missing * recording.duration:
         reasons.append(
             f"{recording.name}: nothing was recorded for {gaps:.1f} s of {recording.duration:.1f} s, "
             "so what the machine was told meanwhile is not known"
@@ -48,23 +31,23 @@ def reasons_against(recording: Recording, experiments: Sequence[Experiment]) -> 
         position = experiment.channels[0]
         known = np.isfinite(position.measured)
         missing = 1.0 - float(known.mean())
-        if missing > MOST_MISSING:
+        if missing > DATA.most_missing:
             reasons.append(
                 f"{recording.name}: {position.key} has no value in {100 * missing:.0f} % of the samples"
             )
         travel = float(np.nanmax(position.measured) - np.nanmin(position.measured)) if known.any() else 0.0
-        if travel < LEAST_TRAVEL * position.noise:
+        if travel < DATA.least_travel * position.noise:
             reasons.append(
                 f"{recording.name}: {position.key} hardly moves ({travel:.3g} {position.unit}, "
                 f"noise {position.noise:.2g}), so there is no movement to explain"
             )
         saturated = _share(recording, position.key, "saturated")
-        if saturated > MOST_SATURATED:
+        if saturated > DATA.most_saturated:
             reasons.append(
                 f"{recording.name}: {position.key} sits at its limit for {100 * saturated:.0f} % of the time"
             )
         frozen = _frozen_share(experiment)
-        if frozen > MOST_FROZEN:
+        if frozen > DATA.most_frozen:
             reasons.append(
                 f"{recording.name}: {position.key} repeats one value for {100 * frozen:.0f} % of the time "
                 "without any noise, as a sensor does that has frozen"
@@ -87,4 +70,4 @@ def _frozen_share(experiment: Experiment) -> float:
         )  # a coarse or noise-free signal repeats itself
     edges = np.flatnonzero(np.diff(np.concatenate([[False], same, [False]]).astype(int)))
     spans = [time[end] - time[begin] for begin, end in zip(edges[::2], edges[1::2], strict=True)]
-    return float(sum(span for span in spans if span > FROZEN_SPAN_S)) / float(np.ptp(time))
+    return float(sum(span for span in spans if span > DATA.frozen_span_s)) / float(np.ptp(time))

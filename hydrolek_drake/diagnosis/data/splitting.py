@@ -5,21 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from hydrolek_drake.diagnosis.data.quality import reasons_against
+from hydrolek_drake.diagnosis.settings import DATA
 from hydrolek_drake.errors import InputError, UninformativeError
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
-
-BLOCKS = 6
-"""Without a held-out recording, each recording is cut into so many blocks ..."""
-
-HELD_BLOCKS = (2, 5)
-"""... of which these are held out: one in the middle and the last."""
-
-SHORT_BLOCKS = 18
-"""Held-out data are cut into so many blocks, of which every other one chooses and those between report. Where they show
-what the training data do not, two of three are fitted too: short ones, so that what they show is in every part."""
 
 
 def prepared(
@@ -71,15 +62,15 @@ def _within(experiment: Experiment, between: tuple[float, float]) -> np.ndarray:
 
 def _held_blocks(experiment: Experiment) -> np.ndarray:
     """Samples of the blocks that are held out. # (n,)."""
-    block = np.floor(BLOCKS * np.arange(experiment.time.size) / experiment.time.size)
-    return np.isin(block, HELD_BLOCKS)
+    block = np.floor(DATA.blocks * np.arange(experiment.time.size) / experiment.time.size)
+    return block % DATA.held_every == DATA.held_every - 1
 
 
 def short_blocks(experiment: Experiment) -> np.ndarray:
-    """In which of `SHORT_BLOCKS` each sample that counts lies. # (n,)."""
+    """In which of `DATA.short_blocks` each sample that counts lies. # (n,)."""
     so_far = np.cumsum(experiment.used) - 1
     count = max(int(experiment.used.sum()), 1)
-    return np.asarray(np.floor(SHORT_BLOCKS * np.maximum(so_far, 0) / count).astype(int))
+    return np.asarray(np.floor(DATA.short_blocks * np.maximum(so_far, 0) / count).astype(int))
 
 
 def halves(held_out: Sequence[Experiment]) -> tuple[tuple[Experiment, ...], tuple[Experiment, ...]]:

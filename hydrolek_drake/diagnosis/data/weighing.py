@@ -6,17 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.data.joints_together import felt_together
-from hydrolek_drake.diagnosis.evidence.noise import FAR
 from hydrolek_drake.diagnosis.lost_commands.windows import arrivals
+from hydrolek_drake.diagnosis.settings import DATA, NOISE
 from hydrolek_drake.diagnosis.structures.as_rig import rig_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.channel import faithful
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.replay.noise import noise_level
-
-OTHERS_UNKNOWN = 0.1
-"""What other joints do to one is known to this share: their areas and masses are the rig's own, unfitted, and their
-speeds come from smoothed angles."""
 
 
 def weighted_by(
@@ -27,11 +23,11 @@ def weighted_by(
     A recorded signal's own movement passes for noise where it is fast; most of it is gone in the residual.
     The error of the integration is told from a second rollout with half the step: the method is of second
     order, so the coarser one is wrong by 4/3 of their difference. What joints that move at the same time do
-    is told by rolling out all joints where the model is near the noise, and known to `OTHERS_UNKNOWN` elsewhere.
+    is told by rolling out all joints where the model is near the noise, and known to `DATA.others_unknown` elsewhere.
     """
     problem = bench.problem(hypothesis.effects, bench.fine, experiments)
     records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
-    if hypothesis.fit.over_noise < FAR and any(e.others is not None for e in experiments):
+    if hypothesis.fit.over_noise < NOISE.far and any(e.others is not None for e in experiments):
         experiments = felt_together(rig_of(bench.rig, hypothesis), experiments)
     better = []
     arrived = arrivals(hypothesis.effects, hypothesis.values, experiments)
@@ -49,7 +45,7 @@ def weighted_by(
             if experiment.others_error is not None:
                 error = np.hypot(error, experiment.others_error[number])
             if alone is not None:
-                error = np.hypot(error, OTHERS_UNKNOWN * (model - getattr(alone, channel.model)))
+                error = np.hypot(error, DATA.others_unknown * (model - getattr(alone, channel.model)))
             channels.append(
                 replace(
                     channel,

@@ -15,9 +15,6 @@ from hydrolek_drake.diagnosis.data.splitting import short_blocks
 from hydrolek_drake.diagnosis.evidence.judged import Judged
 from hydrolek_drake.identification.experiment import Experiment
 
-UNRELIABLE = 2.0
-"""A difference of less than so many standard errors does not tell two structures apart."""
-
 
 def with_differences(judged: Sequence[Judged], held_out: Sequence[Experiment]) -> tuple[Judged, ...]:
     """The same, each with how far it is behind the first.

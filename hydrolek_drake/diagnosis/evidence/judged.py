@@ -6,22 +6,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.noise import NOISE_KNOWN
 from hydrolek_drake.diagnosis.search.cost import cost
-from hydrolek_drake.diagnosis.search.gains import FIDELITY
+from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
-
-EFFECT_COST = 4.5
-"""Log-odds against each further effect at least: with some twenty to choose from, chance has to be paid for."""
-
-PARAMETER_COST = 2.0
-"""Log-odds against each further parameter, so that a special case is preferred to what contains it."""
-
-SMALL = 3.0
-"""Held-out residuals above so many times the noise are no small deviation from a model that is right: they speak
-against it as they are, unless it explains the training data. Then a joint may have stuck or slipped where a hair's
-breadth decides, and is off from there on; whether other values of its parameters follow both is tried."""
 
 
 @dataclass(frozen=True)
@@ -57,8 +45,8 @@ class Judged:
 
     @property
     def ahead(self) -> float:
-        """The same; where it is far off, what the model leaves of both data fitted together, see `SMALL`."""
-        if self.over_noise <= SMALL:
+        """The same; where it is far off, what the model leaves of both data fitted together, see `NOISE.far`."""
+        if self.over_noise <= NOISE.far:
             return self.over_noise
         return self.unaccounted
 
@@ -70,8 +58,8 @@ class Judged:
     @property
     def support(self) -> float:
         """Log-likelihood of held-out and training data, less the cost of its effects and parameters in each."""
-        effect = max(EFFECT_COST, 0.5 * FIDELITY * self.held_out_counted)
-        added = effect * len(self.hypothesis.effects) + PARAMETER_COST * self.hypothesis.extra
+        effect = max(EVIDENCE.effect_cost, 0.5 * GAINS.fidelity * self.held_out_counted)
+        added = effect * len(self.hypothesis.effects) + EVIDENCE.parameter_cost * self.hypothesis.extra
         return -self.half_chi_squared - 0.5 * self.spread - added - 0.5 * cost(self.hypothesis)
 
     @property
@@ -97,7 +85,7 @@ def dispersion(best: Judged) -> float:
     fit = best.hypothesis.fit
     counted = best.held_out_counted + fit.counted
     left = 2.0 * best.half_chi_squared + fit.chi_squared
-    return max(1.0, (left - (1.0 + NOISE_KNOWN) ** 2 * counted) / len(fit.unit))
+    return max(1.0, (left - NOISE.at**2 * counted) / len(fit.unit))
 
 
 def probability_of(effect_path: str, judged: Sequence[Judged]) -> float:

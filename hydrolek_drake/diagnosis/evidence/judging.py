@@ -16,21 +16,18 @@ from dataclasses import replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.compared import with_differences
-from hydrolek_drake.diagnosis.evidence.judged import SMALL, Judged, with_probabilities
+from hydrolek_drake.diagnosis.evidence.judged import Judged, with_probabilities
 from hydrolek_drake.diagnosis.evidence.nuisance import own_of_recordings, with_stands
-from hydrolek_drake.diagnosis.evidence.predictive import NEARBY, OUT_OF_REACH, pays, predictive, predicts
+from hydrolek_drake.diagnosis.evidence.predictive import pays, predictive, predicts
 from hydrolek_drake.diagnosis.fitting.race import Entrant, problem_with, race
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
 from hydrolek_drake.diagnosis.search.cost import cost
-from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.settings import EVIDENCE, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.lockstep import Place, descend, with_slopes
 from hydrolek_drake.identification.rolling import Request, residuals_at
-
-MOST_JUDGED = 8
-"""At most so many structures are judged."""
 
 
 def judge_structures(
@@ -64,12 +61,12 @@ def _contenders(found: Tried) -> list[Hypothesis]:
     near = _in_doubt(ranked, best)
     lesser = [h for h in ranked if h.ids < best.ids and len(h.ids) == len(best.ids) - 1]
     unique = {h.ids: h for h in (best, found.baseline, *lesser, *near)}
-    return list(unique.values())[:MOST_JUDGED]
+    return list(unique.values())[: EVIDENCE.most_judged]
 
 
 def _in_doubt(hypotheses: Sequence[Hypothesis], best: Hypothesis) -> list[Hypothesis]:
     """Those that the training data leave in doubt beside the best one."""
-    doubt = max(OUT_OF_REACH, 0.05 * best.fit.objective)
+    doubt = max(EVIDENCE.out_of_reach, 0.05 * best.fit.objective)
     return [h for h in hypotheses if 0.5 * (cost(h) - cost(best)) < doubt]
 
 
@@ -102,7 +99,7 @@ def _predicted(
         slopes = np.concatenate([_of_the_machine(place, h) for place in some])
         chi_squared, spread = predictive(residuals, slopes, h.fit)
         one = replace(own, held_out=residuals, chi_squared=chi_squared, spread=spread)
-        is_far = one.over_noise > SMALL or float(residuals @ residuals) - chi_squared > NEARBY
+        is_far = one.over_noise > NOISE.far or float(residuals @ residuals) - chi_squared > EVIDENCE.nearby
         far.append(is_far and any(h is d for d in doubtful) and not own_of_recordings(h).any())
         judged.append(one)
     chosen = [i for i, is_far in enumerate(far) if is_far]

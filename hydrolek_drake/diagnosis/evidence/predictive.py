@@ -11,19 +11,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged, with_probabilities
-from hydrolek_drake.diagnosis.search.gains import GAIN_NEEDED, gain_needed
+from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.settings import GAINS
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
-
-NEARBY = 100.0
-"""If uncertain parameters account for more than this of the held-out squared residuals, they have to move so far that
-the first order may not hold: r' (I + J S J')^-1 r is then what both data leave, fitted together, beyond what the
-training data leave alone."""
-
-OUT_OF_REACH = 150.0
-"""Half the squared residuals by which a hypothesis is beyond all doubt behind the best."""
 
 
 def judge_as_fitted(
@@ -104,4 +97,4 @@ def _to_pay(hypothesis: Hypothesis, other: Hypothesis) -> float:
     if own and not special:
         return gain_needed(other.fit) * len(own)
     contained = [any(s.is_special_case_of(c) for c in own) for s in special]
-    return GAIN_NEEDED * len(own) if special and all(contained) and len(own) == len(special) else -math.inf
+    return GAINS.needed * len(own) if special and all(contained) and len(own) == len(special) else -math.inf

@@ -14,8 +14,8 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.data.joints_together import felt_together
 from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.intervals.curvature import CONFIDENCE, Interval, covariance_of, intervals_of
-from hydrolek_drake.diagnosis.search.settings import LAST_STEP
+from hydrolek_drake.diagnosis.intervals.curvature import Interval, covariance_of, intervals_of
+from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
@@ -23,19 +23,6 @@ from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.identification.profile import Profile, profile
 from hydrolek_drake.identification.secant_descent import SecantDescent
-
-WORTH = 0.1
-"""Squares that a step must promise: it moves a number by a third of its standard deviation at most otherwise."""
-
-LOWER = 1.0
-"""Another place is lower if it leaves so many squares less: it is a standard deviation away, or another
-local minimum."""
-
-MOST_ROUNDS = 3
-"""So often the fit begins anew in a lower local minimum."""
-
-FIRST = 2.0
-"""Standard deviations on either side: a little beyond what curvature has for the interval."""
 
 
 class LastNumbers:
@@ -50,12 +37,12 @@ class LastNumbers:
         """
         self._bench = bench
         self._begun = hypothesis
-        self._step = bench.fine if bench.together else min(hypothesis.step, LAST_STEP * bench.fine)
+        self._step = bench.fine if bench.together else min(hypothesis.step, FITS.last_step * bench.fine)
         self.problem = self._problem(bench.training)
         self._moving = bench.movable(hypothesis.effects, self.problem.parameters)
         self._descent = SecantDescent(
             self.problem,
-            worth=WORTH,
+            worth=EVIDENCE.worth,
             stop=bench.interrupted,
             moving=self._moving,
             slopes=self.problem.jacobian_without_jumps,
@@ -70,9 +57,9 @@ class LastNumbers:
         bench, before = self._bench, self.problem.evaluations
         fit = self._descent.from_start(self._begun.fit.unit)
         profiles = self._profiles(fit)
-        for _ in range(MOST_ROUNDS):
+        for _ in range(FITS.anew):
             lowest = max(profiles, key=lambda p: p.improved, default=None)
-            if lowest is None or lowest.improved < LOWER:
+            if lowest is None or lowest.improved < EVIDENCE.lower:
                 break
             fit = self._descent.from_start(lowest.lowest)
             profiles = self._profiles(fit)
@@ -114,7 +101,13 @@ class LastNumbers:
 
         deviation = float(np.sqrt(covariance[index, index])) / max(1.0, fit.over_noise)
         return profile(
-            self.problem, fit.unit, index, deviation, confidence=CONFIDENCE, first=FIRST, others=following
+            self.problem,
+            fit.unit,
+            index,
+            deviation,
+            confidence=EVIDENCE.confidence,
+            first=EVIDENCE.deviations,
+            others=following,
         )
 
     def ahead(self, fitted: Hypothesis, held_out: Sequence[Experiment]) -> np.ndarray:

@@ -8,16 +8,11 @@ import numpy as np
 from scipy.stats import chi2
 
 from hydrolek_drake.diagnosis.fitting.projection import Across
-from hydrolek_drake.diagnosis.intervals.curvature import CONFIDENCE, Interval
+from hydrolek_drake.diagnosis.intervals.curvature import Interval
+from hydrolek_drake.diagnosis.settings import EVIDENCE
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench, moments_of
 from hydrolek_drake.identification.parameter_set import Free
 from hydrolek_drake.identification.rolling import Request, residuals_at
-
-GRID = 120
-"""So many moments are tried over the range: four a second of a recording of half a minute, less than a move takes."""
-
-CLOSER = 12
-"""So many times closer together about the fitted one."""
 
 
 def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis, cores: int) -> dict[str, Interval]:
@@ -33,12 +28,14 @@ def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis, cores: int) -
     """
     found = {}
     for free in moments_of(hypothesis.effects):
-        value, apart = hypothesis.values[free.path], (free.upper - free.lower) / GRID
-        tried = np.linspace(free.lower, free.upper, GRID + 1)
-        near = np.clip(value + apart * np.linspace(-2.0, 2.0, 4 * CLOSER + 1), free.lower, free.upper)
+        value, apart = hypothesis.values[free.path], (free.upper - free.lower) / EVIDENCE.moments
+        tried = np.linspace(free.lower, free.upper, EVIDENCE.moments + 1)
+        near = np.clip(
+            value + apart * np.linspace(-2.0, 2.0, 4 * EVIDENCE.closer + 1), free.lower, free.upper
+        )
         moments = np.unique([*tried, *near, value])
         errors = _errors(bench, hypothesis, free, moments, cores)
-        unlike = chi2.ppf(CONFIDENCE, 1) * max(1.0, hypothesis.fit.over_noise) ** 2
+        unlike = chi2.ppf(EVIDENCE.confidence, 1) * max(1.0, hypothesis.fit.over_noise) ** 2
         alike = np.flatnonzero(errors <= errors.min() + unlike)
         low, high = max(alike[0] - 1, 0), min(alike[-1] + 1, len(moments) - 1)
         found[free.path] = Interval(value, min(moments[low], value), max(moments[high], value))

@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from hydrolek_drake.diagnosis.intervals.curvature import NORMAL, Interval, covariance_of
-from hydrolek_drake.diagnosis.laws.law import SCAN_S, FoundLaw
+from hydrolek_drake.diagnosis.laws.law import FoundLaw
+from hydrolek_drake.diagnosis.settings import LOCATING
 
 
 def amplitude_intervals(found: FoundLaw) -> list[Interval]:
@@ -33,7 +34,7 @@ def amplitude_intervals(found: FoundLaw) -> list[Interval]:
 
 def frequency_interval(found: FoundLaw) -> Interval:
     """Frequency of a periodic law with its 95 % interval [Hz]."""
-    return _interval(float(found.values[2]), float(covariance_of(found.fit)[-1, -1]) / SCAN_S**2)
+    return _interval(float(found.values[2]), float(covariance_of(found.fit)[-1, -1]) / LOCATING.scan_s**2)
 
 
 def _interval(value: float, variance: float) -> Interval:

@@ -6,14 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.evidence.noise import NOISE_KNOWN
 from hydrolek_drake.diagnosis.evidence.nuisance import with_stands
 from hydrolek_drake.diagnosis.intervals.curvature import intervals_of
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
-from hydrolek_drake.diagnosis.laws.law import FRICTIONS, SCAN_S, FoundLaw, Law
+from hydrolek_drake.diagnosis.laws.law import FRICTIONS, FoundLaw, Law
 from hydrolek_drake.diagnosis.laws.terms import Term
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
-from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.settings import LOCATING, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
@@ -106,7 +105,7 @@ def _told(h: Hypothesis, terms: Sequence[LawTerm], order: list[int], rest: list[
         if term.input.one_sided:
             scales[paths.index(term.size_path)] = 2.0
         if term.term is None:
-            scales[paths.index(f"{term.path}.frequency")] = 1.0 / (SCAN_S * 2.0 * term.breadth)
+            scales[paths.index(f"{term.path}.frequency")] = 1.0 / (LOCATING.scan_s * 2.0 * term.breadth)
     turned = [*rest, *order]
     slopes = h.fit.jacobian * scales
     return replace(
@@ -136,7 +135,7 @@ def likeliest_side(judged: Sequence[Judged]) -> Judged:
     if stage not in SIDES:
         return best
     wanted = "cylinder" if brakes else "load"
-    most = _left(best) * (1.0 + 2.0 * NOISE_KNOWN)
+    most = _left(best) * NOISE.above
     near = (j for j in judged if _side(j) == (wanted, brakes) and _left(j) <= most)
     return next(near, best)
 

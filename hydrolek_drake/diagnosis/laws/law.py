@@ -16,10 +16,6 @@ from hydrolek_drake.physics.law import PLACED
 from hydrolek_drake.replay.display import shown
 from hydrolek_drake.rollout.rollout import Signals
 
-SCAN_S = 12.0
-"""Frequencies are first looked for in so many seconds."""
-
-
 FRICTIONS = ("sign(v)", "v", "v |v|")
 """Factors of a term that changes its sign with the speed."""
 

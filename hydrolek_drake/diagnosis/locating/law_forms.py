@@ -5,17 +5,9 @@ import numpy as np
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.laws.terms import TERMS, Span, law_record
 from hydrolek_drake.diagnosis.locating.unknown_input import Seen, Unknown
+from hydrolek_drake.diagnosis.settings import LOCATING
 from hydrolek_drake.rollout.one_point import law_along, stroke_and_lever
 from hydrolek_drake.rollout.rollout import Signals
-
-HIGHEST_HZ = 8.0
-"""Frequencies up to this one are looked for; joints hardly follow faster ones."""
-
-LOWEST = 3.0
-"""Cycles at least within a recording; what is slower is no vibration."""
-
-PEAKS = 2
-"""So many frequencies of each input are followed."""
 
 STEADY = ("capacity_a", "capacity_b", "back_a", "back_b", "ramp", "coil_time", "flow_force")
 """Inputs that say how something is built, which no disturbance shakes."""
@@ -49,7 +41,7 @@ def terms_seen(seen: Seen, record: np.void, joint: str, span: Span) -> list[tupl
 def _periodic(unknown: Unknown, joint: str, span: Span) -> list[tuple[float, LawTerm]]:
     """Sines that promise most at an input."""
     length = float(np.ptp(unknown.times))
-    frequencies = np.arange(LOWEST / length, HIGHEST_HZ, 0.25 / length)
+    frequencies = np.arange(LOCATING.lowest / length, LOCATING.highest_hz, 0.25 / length)
     gains, pairs = np.zeros(frequencies.size), []
     for k, frequency in enumerate(frequencies):
         angle = 2.0 * np.pi * frequency * unknown.times
@@ -57,7 +49,7 @@ def _periodic(unknown: Unknown, joint: str, span: Span) -> list[tuple[float, Law
         pairs.append(multiples)
     padded = np.concatenate([[-np.inf], gains, [-np.inf]])
     peaks = np.flatnonzero((padded[1:-1] > padded[:-2]) & (padded[1:-1] >= padded[2:]))
-    best = sorted(peaks, key=lambda k: -gains[k])[:PEAKS]
+    best = sorted(peaks, key=lambda k: -gains[k])[: LOCATING.peaks]
     return [
         (
             float(gains[k]),

@@ -8,23 +8,13 @@ from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.laws.inputs import Input, inputs_of
 from hydrolek_drake.diagnosis.laws.terms import Span, span_of
 from hydrolek_drake.diagnosis.locating.law_forms import STEADY, terms_seen
-from hydrolek_drake.diagnosis.locating.unknown_input import (
-    OBSERVER_S,
-    Estimate,
-    Slightly,
-    near,
-    unknown_inputs,
-)
+from hydrolek_drake.diagnosis.locating.unknown_input import Estimate, Slightly, near, unknown_inputs
 from hydrolek_drake.diagnosis.lost_commands.seen import lost_seen
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
+from hydrolek_drake.diagnosis.settings import LOCATING
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.rollout.rollout import Signals
-
-EACH = 3
-"""So many terms of each input are offered, and the best of all beyond these."""
-
-OFFERED = 20
 
 
 def terms_for(
@@ -46,8 +36,8 @@ def terms_for(
     inputs = _inputs(bench, joint, scales[joint])
     has = {c.input.probe for c in parent.effects if isinstance(c, LawTerm)}
     inputs = tuple(each for each in inputs if not has or each.probe in has)
-    values = near(bench, parent, OBSERVER_S, cores)
-    seen = unknown_inputs(bench, parent, values, [Slightly(i) for i in inputs], OBSERVER_S, cores)
+    values = near(bench, parent, LOCATING.observer_s, cores)
+    seen = unknown_inputs(bench, parent, values, [Slightly(i) for i in inputs], LOCATING.observer_s, cores)
     parameters = bench.parameters(parent.effects)
     record = parameters.records(parameters.unit(values))[bench.training[0].index]
     span = _span(bench, seen.signals, record, joint)
@@ -58,8 +48,8 @@ def terms_for(
     rest: list[LawTerm] = []
     for term in ranked:
         taken[term.input.probe] = taken.get(term.input.probe, 0) + 1
-        (first if taken[term.input.probe] <= EACH else rest).append(term)
-    terms = [*first, *rest][: max(OFFERED, len(first))]
+        (first if taken[term.input.probe] <= LOCATING.each else rest).append(term)
+    terms = [*first, *rest][: max(LOCATING.offered, len(first))]
     if parent.effects or len(scales) > 1:
         return tuple(terms)
     command = next(each for each in _inputs(bench, joint, scales[joint]) if each.probe == "command")
@@ -91,8 +81,8 @@ def estimates_for(
         cores: that roll out at the same time.
     """
     inputs = [Slightly(i) for i in _inputs(bench, joint, scales) if i.probe not in STEADY]
-    values = near(bench, nominal, OBSERVER_S, cores)
-    seen = unknown_inputs(bench, nominal, values, inputs, OBSERVER_S, cores)
+    values = near(bench, nominal, LOCATING.observer_s, cores)
+    seen = unknown_inputs(bench, nominal, values, inputs, LOCATING.observer_s, cores)
     return tuple(sorted((u.estimated() for u in seen.unknowns), key=lambda e: -e.evidence))
 
 

@@ -13,19 +13,15 @@ from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.laws.law import FoundLaw, Law
 from hydrolek_drake.diagnosis.laws.terms import Term
 from hydrolek_drake.diagnosis.lost_commands.search import lost_in
-from hydrolek_drake.diagnosis.lost_commands.windows import (
-    LONGEST_S,
-    LostWindows,
-    Windows,
-    arrivals,
-    recording_of,
-)
-from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows, Windows, arrivals, recording_of
+from hydrolek_drake.diagnosis.settings import DROPOUTS, Settings
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.rollout.rollout import Signals
 
-LOST = Input("command", "command", "time for which a command is lost", "s", LONGEST_S, one_sided=True)
+LOST = Input(
+    "command", "command", "time for which a command is lost", "s", DROPOUTS.longest_s, one_sided=True
+)
 """What is told of them: how long one lasts."""
 
 

@@ -4,11 +4,11 @@ import math
 from collections.abc import Sequence
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
-from hydrolek_drake.diagnosis.evidence.compared import UNRELIABLE
 from hydrolek_drake.diagnosis.evidence.judged import Judged
 from hydrolek_drake.diagnosis.intervals.of_laws import amplitude_intervals, frequency_interval
 from hydrolek_drake.diagnosis.laws.law import FoundLaw
 from hydrolek_drake.diagnosis.report.numbers import quantity, with_interval
+from hydrolek_drake.diagnosis.settings import EVIDENCE
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.replay.display import ratio, shown
@@ -86,7 +86,7 @@ def behind(judged: Judged) -> str:
     """How far a structure is behind the most probable one on held-out data, with its standard error."""
     if not math.isfinite(judged.behind_error) or judged.behind_error == 0.0:
         return ""
-    doubt = " ?" if abs(judged.behind) < UNRELIABLE * judged.behind_error else ""
+    doubt = " ?" if abs(judged.behind) < EVIDENCE.deviations * judged.behind_error else ""
     return f"{judged.behind:.3g} \u00b1 {judged.behind_error:.2g}{doubt}"
 
 

@@ -80,7 +80,7 @@ def test_what_does_not_predict_better_is_not_named(effect) -> None:
 
 
 def test_what_strayed_far_off_ahead_predicts_by_what_it_leaves_of_both(effect) -> None:
-    """A joint stuck where a hair decides: fitted to both data the model leaves the noise, see `evidence.SMALL`."""
+    """A joint stuck where a hair decides: fitted to both data the model leaves the noise, see `NOISE.far`."""
     nominal = _judged((), 2.9, ahead=3.7)
     strayed = _judged((effect["sensor.hysteresis"],), 0.9, ahead=5.5)
     assert not predicts(strayed, [nominal, strayed])

@@ -16,7 +16,7 @@ from hydrolek_drake.diagnosis.laws.inputs import inputs_of
 from hydrolek_drake.diagnosis.laws.terms import Term, span_of
 from hydrolek_drake.diagnosis.lost_commands.found import LostCommands
 from hydrolek_drake.diagnosis.report.words import known_to
-from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters

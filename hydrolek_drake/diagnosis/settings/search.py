@@ -1,24 +1,50 @@
-"""Every constant of the search among structures, with the principle or measurement it comes from."""
+"""How structures are fitted and searched."""
 
 import math
 from dataclasses import dataclass
 
-LAST_STEP = 0.5
-"""Last fits use this fraction of the rig's own step, so that the step's error cannot decide."""
 
-AT_BOUND = 1e-3
-"""A fitted parameter this close to an end of its range (in ranges) cannot move on."""
+@dataclass(frozen=True)
+class Fits:
+    """How a structure is fitted."""
 
-WIDER = 4.0
-"""A range that proves too narrow is widened so many times; a law that acts near a place reaches so much farther or less
-far than where its fit begins."""
+    observers_s: tuple[float, ...] = (0.1, 0.5, 3.0)
+    """Time constants of observers [s], each five or six times the one before: what they forget makes few local
+    minima, what they remember tells slow things."""
+
+    coarse: float = 2.0
+    """Steps so many times the rig's own lead fits until their end, and tell what an addition changes where they are on
+    both sides of a difference."""
+
+    last_step: float = 0.5
+    """Last fits use this fraction of the rig's own step, so that the step's error cannot decide."""
+
+    tolerance: float = 1e-3
+    """Differences by less than this share are none: a number so near an end of its range (in ranges) cannot move on,
+    and two fits of a structure whose squares are so nearly the same stand in the same minimum."""
+
+    negligible: float = 1e-6
+    """A share that changes nothing which a rollout shows: fits begin so far within their ranges, from where steps to
+    both sides can be made, and so much of an effect does nothing."""
+
+    wider: float = 4.0
+    """A range that proves too narrow is widened so many times; a law that acts near a place reaches so much farther
+    or less far than where its fit begins."""
+
+    sizes: tuple[float, ...] = (1.0, 0.1, 0.01)
+    """Sizes at which an effect is tried, as multiples of where its search begins."""
+
+    strides: tuple[float, ...] = (0.25, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 1.02, 1.05, 1.1, 1.25, 1.5, 2.0, 4.0)
+    """Multiples of a size without a slope at which it is tried elsewhere: closer together the nearer they are."""
+
+    places: int = 16
+    """So many places without a slope are tried side by side: two tables of lanes."""
+
+    anew: int = 3
+    """So often is a fit begun anew at most: with data weighed by a better one, or in a lower local minimum."""
 
 
-SIZES = (1.0, 0.1, 0.01)
-"""Sizes at which an effect is tried, as multiples of where its search begins."""
-
-TELLING = 2.0
-"""What an addition changes is told by rollouts with steps so many times the rig's own on both sides of a difference."""
+FITS = Fits()
 
 
 @dataclass(frozen=True)
@@ -46,9 +72,12 @@ class Rung:
     each: int = 2
 
 
+_FAST, _MIDDLE, _SLOW = FITS.observers_s
+
+
 @dataclass(frozen=True)
 class Settings:
-    """Constants of the search."""
+    """The search among structures, which may be asked for with other numbers."""
 
     starts: int = 2
     """So many places of each addition are fitted from on each way."""
@@ -66,15 +95,15 @@ class Settings:
     """So many of them from more than one start."""
 
     free: tuple[Rung, ...] = (
-        Rung(math.inf, 2.0, 20.0, 5, 8),
-        Rung(math.inf, 2.0, math.inf, 12, 4, elsewhere=True),
+        Rung(math.inf, FITS.coarse, 20.0, 5, 8),
+        Rung(math.inf, FITS.coarse, math.inf, 12, 4, elsewhere=True),
     )
     """A race of free rollouts, from where the structure before it led."""
 
     continued: tuple[Rung, ...] = (
-        Rung(0.1, 2.0, 20.0, 4, 12),
-        Rung(0.5, 2.0, math.inf, 8, 8, elsewhere=True),
-        Rung(3.0, 2.0, math.inf, 12, 4, elsewhere=True),
+        Rung(_FAST, FITS.coarse, 20.0, 4, 12),
+        Rung(_MIDDLE, FITS.coarse, math.inf, 8, 8, elsewhere=True),
+        Rung(_SLOW, FITS.coarse, math.inf, 12, 4, elsewhere=True),
     )
     """A race by continuation, from the rig's own numbers: prediction errors of an observer forget, so that they have
     few local minima (Ljung, System Identification, 1999, chapter 7); free rollouts see what is slow."""
@@ -86,23 +115,20 @@ class Settings:
     """The end of both races."""
 
     nominal: tuple[Rung, ...] = (
-        Rung(0.1, 2.0, math.inf, 8, 4),
-        Rung(0.5, 2.0, math.inf, 8, 4),
-        Rung(3.0, 1.0, math.inf, 12, 4),
+        Rung(_FAST, FITS.coarse, math.inf, 8, 4),
+        Rung(_MIDDLE, FITS.coarse, math.inf, 8, 4),
+        Rung(_SLOW, 1.0, math.inf, 12, 4),
     )
     """The nominal model by continuation."""
 
     near: tuple[Rung, ...] = (
-        Rung(0.5, 1.0, math.inf, 6, 4, each=4),
+        Rung(_MIDDLE, 1.0, math.inf, 6, 4, each=4),
         Rung(math.inf, 1.0, math.inf, 20, 1, share=1e-4),
     )
     """Fits from places near one that ended."""
 
     near_spreads: tuple[float, ...] = (0.003, 0.01, 0.03)
     """Standard deviations of their distances from it in each parameter [ranges]."""
-
-    near_each: int = 5
-    """So many places at each of them: with the one in their middle two tables of lanes."""
 
     near_rounds: int = 6
     """So often they are looked for at most."""
@@ -113,7 +139,7 @@ class Settings:
     led: Rung = Rung(math.inf, 1.0, math.inf, 6, 1)
     """The same of a structure that is far from the noise, or was led by another fit: it is fitted again later."""
 
-    last: Rung = Rung(math.inf, LAST_STEP, math.inf, 4, 8, share=1e-4)
+    last: Rung = Rung(math.inf, FITS.last_step, math.inf, 4, 8, share=1e-4)
     """The last fits, with half of the rig's own step, so that the error of the integration cannot decide."""
 
     nearer: float = 0.8
@@ -133,4 +159,12 @@ class Settings:
     small ones."""
 
     most_additions: int = 3
+    """So many additions a structure has at most."""
+
     beam: int = 2
+    """So many structures with the same number of additions are enlarged."""
+
+    @property
+    def near_each(self) -> int:
+        """So many places near a fit at each distance: with the one in their middle two tables of lanes."""
+        return (FITS.places - 1) // len(self.near_spreads)
