@@ -8,17 +8,14 @@ from dataclasses import dataclass, replace
 
 from threadpoolctl import threadpool_limits
 
-from hydrolek_drake.diagnosis.answer import INTERRUPTED
-from hydrolek_drake.diagnosis.data.splitting import prepared
 from hydrolek_drake.diagnosis.evidence.conclusion import Conclusion
 from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.evidence.predictive import judge_given_up
-from hydrolek_drake.diagnosis.experiment.proposal import Proposal, propose
-from hydrolek_drake.diagnosis.experiment.visible import Visible, visible_sizes
-from hydrolek_drake.diagnosis.inquiry import Inquiry
+from hydrolek_drake.diagnosis.evidence.judging import judge_given_up
+from hydrolek_drake.diagnosis.evidence.proposal import Proposal, propose
+from hydrolek_drake.diagnosis.inquiry import INTERRUPTED, Inquiry
 from hydrolek_drake.diagnosis.intervals.curvature import Interval, intervals_of
-from hydrolek_drake.diagnosis.intervals.last_numbers import with_last_numbers
-from hydrolek_drake.diagnosis.intervals.moments import intervals_of_moments
+from hydrolek_drake.diagnosis.intervals.last_numbers import intervals_of_moments, with_last_numbers
+from hydrolek_drake.diagnosis.intervals.visible import Visible, visible_sizes
 from hydrolek_drake.diagnosis.laws.law import FoundLaw
 from hydrolek_drake.diagnosis.locating.place import Location, locate, locate_law
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
@@ -26,6 +23,7 @@ from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import FITS, Settings
 from hydrolek_drake.diagnosis.structures.as_rig import enlarged_rig, room_for_law
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
+from hydrolek_drake.diagnosis.structures.splitting import prepared
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.natural_scales import natural_scales

@@ -1,4 +1,9 @@
-"""Hypotheses held against data that nothing was fitted to, and how probable that makes each."""
+"""Structures held against data that nothing was fitted to: how probable that makes each, and how surely.
+
+Residuals that lie close together err alike, so that the difference of two log-densities is summed over blocks of the
+recordings, and its standard error is told by how these differ (Vehtari, Gelman, Gabry, Practical Bayesian model
+evaluation, Statistics and Computing 27, 2017, section 5.1, with blocks in place of single values).
+"""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -9,7 +14,9 @@ import numpy as np
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.addition import Addition
+from hydrolek_drake.diagnosis.structures.splitting import short_blocks
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
+from hydrolek_drake.identification.experiment import Experiment
 
 
 @dataclass(frozen=True)
@@ -23,7 +30,7 @@ class Judged:
         probability: among all that were judged.
         chi_squared: r' (I + J S J')^-1 r; None for r' r.
         spread: log det (I + J S J').
-        behind: log-density of the held-out data less than that of the most probable (`compared`).
+        behind: log-density of the held-out data less than that of the most probable (`with_differences`).
         behind_error: standard error of that.
         stands: recording (`windows.recording_of`) -> additions and place in the unit cube there (`nuisance`).
     """
@@ -91,3 +98,31 @@ def dispersion(best: Judged) -> float:
 def probability_of(effect_path: str, judged: Sequence[Judged]) -> float:
     """Probability that an effect is there: of all hypotheses that hold it."""
     return sum(j.probability for j in judged if effect_path in j.hypothesis.ids)
+
+
+def with_differences(judged: Sequence[Judged], held_out: Sequence[Experiment]) -> tuple[Judged, ...]:
+    """The same, each with how far it is behind the first.
+
+    Args:
+        judged: structures with residuals on the held-out data, the most probable first.
+        held_out: these data.
+    """
+    blocks = _blocks(held_out)
+    best = 0.5 * judged[0].held_out ** 2
+    told = []
+    for each in judged:
+        sums = np.bincount(blocks[blocks >= 0], (0.5 * each.held_out**2 - best)[blocks >= 0])
+        sums = sums[np.unique(blocks[blocks >= 0])]
+        error = math.sqrt(sums.size * float(np.var(sums, ddof=1))) if sums.size > 1 else math.inf
+        told.append(replace(each, behind=float(sums.sum()), behind_error=error))
+    return tuple(told)
+
+
+def _blocks(held_out: Sequence[Experiment]) -> np.ndarray:
+    """Number of the block of each residual; -1 of one that does not count. # (values,)."""
+    parts, first = [], 0
+    for experiment in held_out:
+        own = np.where(experiment.used, short_blocks(experiment) + first, -1)
+        parts.append(np.tile(own, len(experiment.channels)))
+        first = max(int(own.max(initial=-1)) + 1, first)
+    return np.concatenate(parts)

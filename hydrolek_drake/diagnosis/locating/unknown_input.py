@@ -31,7 +31,6 @@ from hydrolek_drake.diagnosis.settings import FITS, LOCATING
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.lockstep import Place, descend, with_slopes
-from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rollout.lane_view import LANES
 from hydrolek_drake.rollout.lanes import roll_out_lanes
 from hydrolek_drake.rollout.rollout import Signals
@@ -67,23 +66,6 @@ class Trial(Protocol):
             moved: at which knots. # (k,) truth values
         """
         ...
-
-
-@dataclass(frozen=True)
-class Slightly:
-    """An input that is moved so little that all answers to it are linear; its unit is its scale."""
-
-    input: Input
-    share: ClassVar[float] = LOCATING.amplitude
-    spacing_s: ClassVar[float] = LOCATING.knots_s
-
-    def run(
-        self, experiment: Experiment, records: np.ndarray, step: float, pull: float | None, moved: np.ndarray
-    ) -> Run:
-        """See `Trial`."""
-        rows = np.zeros((moved.size, len(PROBES)))
-        rows[moved, PROBES.index(self.input.probe)] = LOCATING.amplitude * self.input.scale
-        return experiment.run(records, step, (LOCATING.knots_s, rows), pull)
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.race import (
     Entrant,
     Runner,
@@ -21,7 +22,6 @@ from hydrolek_drake.diagnosis.lost_commands.windows import (
     joined,
     recording_of,
 )
-from hydrolek_drake.diagnosis.search.tracing import trace
 from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench

@@ -8,9 +8,14 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.report.as_json import MOST_LISTED, detectable, effects_json, fit_json, models_of
-from hydrolek_drake.diagnosis.report.numbers import quantity, with_interval
 from hydrolek_drake.diagnosis.report.panels import columns, course_panel
-from hydrolek_drake.diagnosis.report.words import behind, headline, off_zero_sentences
+from hydrolek_drake.diagnosis.report.words import (
+    behind,
+    headline,
+    off_zero_sentences,
+    quantity,
+    with_interval,
+)
 from hydrolek_drake.diagnosis.settings import EVIDENCE
 from hydrolek_drake.identification.thinning import STEPS
 from hydrolek_drake.replay.confirmation import Confirmation

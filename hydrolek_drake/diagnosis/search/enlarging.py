@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.local_search import has_other_minima, searched_near
 from hydrolek_drake.diagnosis.fitting.race import (
     Entrant,
@@ -19,9 +20,9 @@ from hydrolek_drake.diagnosis.lost_commands.search import with_windows
 from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.search.openings import Opening, observed
-from hydrolek_drake.diagnosis.search.tracing import names_of, trace
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import GAINS, NOISE, Rung, Settings
+from hydrolek_drake.diagnosis.structures.addition import names_of
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, widenings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 

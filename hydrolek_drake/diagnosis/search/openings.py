@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.race import problem_of
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.search.promise import Promise, promises_at
-from hydrolek_drake.diagnosis.search.tracing import names_of, trace
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import FITS, GAINS, NOISE, Rung, Settings
-from hydrolek_drake.diagnosis.structures.addition import Sized
+from hydrolek_drake.diagnosis.structures.addition import Sized, names_of
 from hydrolek_drake.diagnosis.structures.candidates import redundant
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.lockstep import Place, descend

@@ -31,7 +31,7 @@ class Promise:
         gain: fall of the squares that it promises.
         starts: full path -> value of its parameters, the most promising first.
         visible_from: size (SI) whose gain would be `GAINS.visible`, in proportion to the sizes that were tried; a first
-            estimate, see `experiment.visible`.
+            estimate, see `intervals.visible`.
     """
 
     candidate: Sized

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.data.splitting import halves, mixed
 from hydrolek_drake.diagnosis.settings import DATA
+from hydrolek_drake.diagnosis.structures.splitting import halves, mixed
 
 
 def test_what_reports_is_nothing_that_chose(bench, recorded) -> None:

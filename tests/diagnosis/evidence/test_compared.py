@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.data.splitting import halves
-from hydrolek_drake.diagnosis.evidence.compared import with_differences
-from hydrolek_drake.diagnosis.evidence.judged import Judged
+from hydrolek_drake.diagnosis.evidence.judged import Judged, with_differences
 from hydrolek_drake.diagnosis.settings import EVIDENCE
+from hydrolek_drake.diagnosis.structures.splitting import halves
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from hydrolek_drake.diagnosis.experiment.visible import visible_sizes
+from hydrolek_drake.diagnosis.intervals.visible import visible_sizes
 from hydrolek_drake.diagnosis.search.openings import opened
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import GAINS, Settings

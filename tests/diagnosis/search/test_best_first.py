@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from hydrolek_drake.diagnosis.answer import BY_BOTH, INTERRUPTED
+from hydrolek_drake.diagnosis.inquiry import BY_BOTH, INTERRUPTED
 from hydrolek_drake.diagnosis.settings import NOISE, Settings
 
 COULOMB, STRIBECK = "cylinder.coulomb_friction", "cylinder.stribeck_friction"

@@ -6,8 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from hydrolek_drake.diagnosis.intervals.curvature import Interval
-from hydrolek_drake.diagnosis.report.numbers import quantity
-from hydrolek_drake.diagnosis.report.words import effect_sentence
+from hydrolek_drake.diagnosis.report.words import effect_sentence, quantity
 from hydrolek_drake.diagnosis.settings import FITS
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.identification.natural_scales import natural_scales
