@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 
 from threadpoolctl import threadpool_limits
 
-from hydrolek_drake.diagnosis.evidence.conclusion import Conclusion
-from hydrolek_drake.diagnosis.evidence.judged import Judged
+from hydrolek_drake.diagnosis.evidence.judged import Conclusion, Judged
 from hydrolek_drake.diagnosis.evidence.judging import judge_given_up
 from hydrolek_drake.diagnosis.evidence.proposal import Proposal, propose
 from hydrolek_drake.diagnosis.inquiry import INTERRUPTED, Inquiry

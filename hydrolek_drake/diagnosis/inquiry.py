@@ -3,8 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from hydrolek_drake.diagnosis.evidence.conclusion import Conclusion, conclude
-from hydrolek_drake.diagnosis.evidence.judged import Judged
+from hydrolek_drake.diagnosis.evidence.judged import Conclusion, Judged, conclude
 from hydrolek_drake.diagnosis.evidence.judging import judge_as_fitted, judge_structures, left_of
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.laws.found import law_of, likeliest_side, lost_of, terms_of

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.conclusion import Conclusion
+from hydrolek_drake.diagnosis.evidence.judged import Conclusion
 from hydrolek_drake.diagnosis.fitting.projection import Across
 from hydrolek_drake.diagnosis.fitting.race import hypothesis_of
 from hydrolek_drake.diagnosis.settings import EXPERIMENTS, GAINS

@@ -5,8 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.evidence.conclusion import conclude
-from hydrolek_drake.diagnosis.evidence.judged import Judged, dispersion, probability_of, with_probabilities
+from hydrolek_drake.diagnosis.evidence.judged import (
+    Judged,
+    conclude,
+    dispersion,
+    probability_of,
+    with_probabilities,
+)
 from hydrolek_drake.diagnosis.evidence.judging import pays, predicts
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis

@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.evidence.conclusion import Conclusion
-from hydrolek_drake.diagnosis.evidence.judged import Judged
+from hydrolek_drake.diagnosis.evidence.judged import Conclusion, Judged
 from hydrolek_drake.diagnosis.evidence.proposal import propose
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
