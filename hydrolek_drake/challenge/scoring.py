@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrolek_drake.challenge.build import BENCH
 from hydrolek_drake.challenge.drawing import SHOWS
-from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE
+from hydrolek_drake.diagnosis.settings import NOISE
 
 BINS = (0.0, 0.5, 0.7, 0.9, 0.99, 1.0 + 1e-9)
 """Edges of the probabilities for the calibration."""
@@ -152,7 +152,7 @@ def _beyond_a_refit(result: Mapping[str, Any]) -> bool:
     Of an effect that other nominal numbers stand for just as well, the data hold nothing.
     """
     left = (result["baseline_over_noise"], result["baseline_holdout_over_noise"])
-    return any(each is not None and each > ABOVE_NOISE for each in left)
+    return any(each is not None and each > NOISE.above for each in left)
 
 
 def _told(right: Sequence[bool]) -> dict[str, Any]:

@@ -8,24 +8,21 @@ from dataclasses import dataclass, replace
 
 from threadpoolctl import threadpool_limits
 
-from hydrolek_drake.diagnosis.answer import INTERRUPTED
-from hydrolek_drake.diagnosis.data.splitting import prepared
-from hydrolek_drake.diagnosis.evidence.conclusion import Conclusion
-from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.evidence.predictive import judge_given_up
-from hydrolek_drake.diagnosis.experiment.proposal import Proposal, propose
-from hydrolek_drake.diagnosis.experiment.visible import Visible, visible_sizes
-from hydrolek_drake.diagnosis.inquiry import Inquiry
+from hydrolek_drake.diagnosis.evidence.judged import Conclusion, Judged
+from hydrolek_drake.diagnosis.evidence.judging import judge_given_up
+from hydrolek_drake.diagnosis.evidence.proposal import Proposal, propose
+from hydrolek_drake.diagnosis.inquiry import INTERRUPTED, Inquiry
 from hydrolek_drake.diagnosis.intervals.curvature import Interval, intervals_of
-from hydrolek_drake.diagnosis.intervals.last_numbers import with_last_numbers
-from hydrolek_drake.diagnosis.intervals.moments import intervals_of_moments
+from hydrolek_drake.diagnosis.intervals.last_numbers import intervals_of_moments, with_last_numbers
+from hydrolek_drake.diagnosis.intervals.visible import Visible, visible_sizes
 from hydrolek_drake.diagnosis.laws.law import FoundLaw
 from hydrolek_drake.diagnosis.locating.place import Location, locate, locate_law
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
-from hydrolek_drake.diagnosis.search.settings import LAST_STEP, Settings
 from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.settings import FITS, Settings
 from hydrolek_drake.diagnosis.structures.as_rig import enlarged_rig, room_for_law
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
+from hydrolek_drake.diagnosis.structures.splitting import prepared
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.natural_scales import natural_scales
@@ -88,7 +85,7 @@ class Diagnosis:
     def step(self) -> float:
         """Integration step of the last fits [s]."""
         assert self.bench is not None
-        return LAST_STEP * self.bench.fine
+        return FITS.last_step * self.bench.fine
 
     def fitted_rig(self) -> Rig:
         """The rig with the named effects and the law switched on and every parameter estimated anew."""
@@ -160,7 +157,7 @@ def _diagnosed(
     if law is not None:
         parameters = bench.parameters(best.effects)
         records = parameters.records(parameters.unit(law.parameters))
-        law = law.held_against(held_out, records, LAST_STEP * bench.fine)
+        law = law.held_against(held_out, records, FITS.last_step * bench.fine)
     places: tuple[Location, ...] = ()
     proposal: Proposal | None = None
     visible: tuple[Visible, ...] = ()

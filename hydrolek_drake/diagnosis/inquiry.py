@@ -3,29 +3,71 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from hydrolek_drake.diagnosis.answer import BY_BOTH, INTERRUPTED, Answer, Known
-from hydrolek_drake.diagnosis.data.splitting import halves, mixed
-from hydrolek_drake.diagnosis.data.weighing import weighted_by
-from hydrolek_drake.diagnosis.evidence.conclusion import POSSIBLE, Conclusion, conclude
-from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.evidence.judging import judge_structures, left_of
-from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, MORE_AHEAD
-from hydrolek_drake.diagnosis.evidence.predictive import judge_as_fitted
+from hydrolek_drake.diagnosis.evidence.judged import Conclusion, Judged, conclude
+from hydrolek_drake.diagnosis.evidence.judging import judge_as_fitted, judge_structures, left_of
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
-from hydrolek_drake.diagnosis.laws.found import law_of, likeliest_side, terms_of
+from hydrolek_drake.diagnosis.laws.found import law_of, likeliest_side, lost_of, terms_of
 from hydrolek_drake.diagnosis.laws.law import FoundLaw
 from hydrolek_drake.diagnosis.locating.terms_for import estimates_for, terms_for
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
-from hydrolek_drake.diagnosis.lost_commands.found import lost_of
 from hydrolek_drake.diagnosis.lost_commands.search import lost_in
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.best_first import search_structures
-from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.settings import EVIDENCE, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.splitting import halves, mixed
+from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiment import Experiment
+
+INTERRUPTED = "interrupted: this is what was known by then; run it again for the whole answer"
+
+BY_BOTH = (
+    "the model that explains the training data best fails on the held-out data, and another fit explains both: two "
+    "thirds of the held-out data were fitted too, and the rest was held out"
+)
+
+
+@dataclass(frozen=True)
+class Known:
+    """What one search and its judgement gave.
+
+    Attributes:
+        bench: data and problems.
+        found: all that was tried.
+        held_out: data that nothing was fitted to, weighted by the best structure.
+        judged: structures held against them, the most probable first.
+        conclusion: what both say.
+        interrupted: whether the search was ended by the user.
+    """
+
+    bench: Workbench
+    found: Tried
+    held_out: tuple[Experiment, ...]
+    judged: tuple[Judged, ...]
+    conclusion: Conclusion
+    interrupted: bool
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What is told.
+
+    Attributes:
+        known: the search that counts, and its judgement.
+        conclusion: what the data say.
+        law: for physics in no list, the law found for it, if one was.
+        remarks: how it came about, for the report.
+        estimates: courses of unknown inputs around the nominal model, the likeliest first, where they were asked for.
+    """
+
+    known: Known
+    conclusion: Conclusion
+    law: FoundLaw | None = None
+    remarks: tuple[str, ...] = ()
+    estimates: tuple[Estimate, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -77,7 +119,7 @@ class Inquiry:
         if (
             not known.interrupted
             and len(self.scales) == 1
-            and known.found.baseline.fit.over_noise > ABOVE_NOISE
+            and known.found.baseline.fit.over_noise > NOISE.above
         ):
             self.say("estimating what enters at each stage")
             [(joint, scales)] = self.scales.items()
@@ -138,7 +180,7 @@ class Inquiry:
         rivals = []
         for other in known.judged:
             theirs = terms_of(other.hypothesis)
-            possible = other.probability > POSSIBLE or other is known.judged[0]
+            possible = other.probability > EVIDENCE.significance or other is known.judged[0]
             if theirs and possible and theirs[0].input.stage not in stages:
                 stages.add(theirs[0].input.stage)
                 rivals.append(theirs[0].input.stage)
@@ -171,8 +213,8 @@ def _beside(known: Known, best: Judged) -> Judged:
 def _astray(known: Known) -> bool:
     """Whether the best structure explains the training data and goes astray on the held-out ones."""
     best = known.judged[0]
-    at_noise = best.hypothesis.fit.over_noise <= MORE_AHEAD
-    return at_noise and best.over_noise > MORE_AHEAD
+    at_noise = best.hypothesis.fit.over_noise <= NOISE.ahead
+    return at_noise and best.over_noise > NOISE.ahead
 
 
 def _begun_from(found: Tried) -> Tried:

@@ -8,10 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.answer import Answer
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
-from hydrolek_drake.diagnosis.inquiry import Inquiry
-from hydrolek_drake.diagnosis.search.settings import Rung
+from hydrolek_drake.diagnosis.inquiry import Answer, Inquiry
+from hydrolek_drake.diagnosis.settings import Rung
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment

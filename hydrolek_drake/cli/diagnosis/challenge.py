@@ -62,8 +62,8 @@ def challenge(
     from hydrolek_drake.challenge.results import earlier_scores, write_results
     from hydrolek_drake.challenge.scoring import score, summaries_markdown
     from hydrolek_drake.cli.output import console, progress
-    from hydrolek_drake.diagnosis.answer import INTERRUPTED
     from hydrolek_drake.diagnosis.diagnosis import diagnose
+    from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
     from hydrolek_drake.diagnosis.report.as_json import as_json
     from hydrolek_drake.files import read_kept, write_whole
     from hydrolek_drake.recordings import read_recording

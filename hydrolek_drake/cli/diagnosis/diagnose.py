@@ -66,8 +66,8 @@ def diagnose(
     output = console()
     loaded, (train, held) = rig_and_recordings(rig, set_, recordings, holdout)
 
-    from hydrolek_drake.diagnosis.answer import INTERRUPTED
     from hydrolek_drake.diagnosis.diagnosis import diagnose as run_diagnosis
+    from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
     from hydrolek_drake.diagnosis.report.files import write_report
     from hydrolek_drake.diagnosis.report.table import summary
     from hydrolek_drake.runs.report import prepare_folder

@@ -1,1 +1,1 @@
-"""How probable structures are, by data that none of them was fitted to, and the verdict."""
+"""How probable structures are, by data that none of them was fitted to, the verdict, and what would decide."""

@@ -1,4 +1,9 @@
-"""Hypotheses held against data that nothing was fitted to, and how probable that makes each."""
+"""Structures held against data that nothing was fitted to: how probable that makes each, how surely, and the verdict.
+
+Residuals that lie close together err alike, so that the difference of two log-densities is summed over blocks of the
+recordings, and its standard error is told by how these differ (Vehtari, Gelman, Gabry, Practical Bayesian model
+evaluation, Statistics and Computing 27, 2017, section 5.1, with blocks in place of single values).
+"""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -6,22 +11,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.noise import NOISE_KNOWN
 from hydrolek_drake.diagnosis.search.cost import cost
-from hydrolek_drake.diagnosis.search.gains import FIDELITY
+from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.addition import Addition
+from hydrolek_drake.diagnosis.structures.splitting import short_blocks
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
-
-EFFECT_COST = 4.5
-"""Log-odds against each further effect at least: with some twenty to choose from, chance has to be paid for."""
-
-PARAMETER_COST = 2.0
-"""Log-odds against each further parameter, so that a special case is preferred to what contains it."""
-
-SMALL = 3.0
-"""Held-out residuals above so many times the noise are no small deviation from a model that is right: they speak
-against it as they are, unless it explains the training data. Then a joint may have stuck or slipped where a hair's
-breadth decides, and is off from there on; whether other values of its parameters follow both is tried."""
+from hydrolek_drake.identification.experiment import Experiment
 
 
 @dataclass(frozen=True)
@@ -35,7 +30,7 @@ class Judged:
         probability: among all that were judged.
         chi_squared: r' (I + J S J')^-1 r; None for r' r.
         spread: log det (I + J S J').
-        behind: log-density of the held-out data less than that of the most probable (`compared`).
+        behind: log-density of the held-out data less than that of the most probable (`with_differences`).
         behind_error: standard error of that.
         stands: recording (`windows.recording_of`) -> additions and place in the unit cube there (`nuisance`).
     """
@@ -57,8 +52,8 @@ class Judged:
 
     @property
     def ahead(self) -> float:
-        """The same; where it is far off, what the model leaves of both data fitted together, see `SMALL`."""
-        if self.over_noise <= SMALL:
+        """The same; where it is far off, what the model leaves of both data fitted together, see `NOISE.far`."""
+        if self.over_noise <= NOISE.far:
             return self.over_noise
         return self.unaccounted
 
@@ -70,8 +65,8 @@ class Judged:
     @property
     def support(self) -> float:
         """Log-likelihood of held-out and training data, less the cost of its effects and parameters in each."""
-        effect = max(EFFECT_COST, 0.5 * FIDELITY * self.held_out_counted)
-        added = effect * len(self.hypothesis.effects) + PARAMETER_COST * self.hypothesis.extra
+        effect = max(EVIDENCE.effect_cost, 0.5 * GAINS.fidelity * self.held_out_counted)
+        added = effect * len(self.hypothesis.effects) + EVIDENCE.parameter_cost * self.hypothesis.extra
         return -self.half_chi_squared - 0.5 * self.spread - added - 0.5 * cost(self.hypothesis)
 
     @property
@@ -97,9 +92,89 @@ def dispersion(best: Judged) -> float:
     fit = best.hypothesis.fit
     counted = best.held_out_counted + fit.counted
     left = 2.0 * best.half_chi_squared + fit.chi_squared
-    return max(1.0, (left - (1.0 + NOISE_KNOWN) ** 2 * counted) / len(fit.unit))
+    return max(1.0, (left - NOISE.at**2 * counted) / len(fit.unit))
 
 
 def probability_of(effect_path: str, judged: Sequence[Judged]) -> float:
     """Probability that an effect is there: of all hypotheses that hold it."""
     return sum(j.probability for j in judged if effect_path in j.hypothesis.ids)
+
+
+def with_differences(judged: Sequence[Judged], held_out: Sequence[Experiment]) -> tuple[Judged, ...]:
+    """The same, each with how far it is behind the first.
+
+    Args:
+        judged: structures with residuals on the held-out data, the most probable first.
+        held_out: these data.
+    """
+    blocks = _blocks(held_out)
+    best = 0.5 * judged[0].held_out ** 2
+    told = []
+    for each in judged:
+        sums = np.bincount(blocks[blocks >= 0], (0.5 * each.held_out**2 - best)[blocks >= 0])
+        sums = sums[np.unique(blocks[blocks >= 0])]
+        error = math.sqrt(sums.size * float(np.var(sums, ddof=1))) if sums.size > 1 else math.inf
+        told.append(replace(each, behind=float(sums.sum()), behind_error=error))
+    return tuple(told)
+
+
+def _blocks(held_out: Sequence[Experiment]) -> np.ndarray:
+    """Number of the block of each residual; -1 of one that does not count. # (values,)."""
+    parts, first = [], 0
+    for experiment in held_out:
+        own = np.where(experiment.used, short_blocks(experiment) + first, -1)
+        parts.append(np.tile(own, len(experiment.channels)))
+        first = max(int(own.max(initial=-1)) + 1, first)
+    return np.concatenate(parts)
+
+
+@dataclass(frozen=True)
+class Conclusion:
+    """What the data say.
+
+    Attributes:
+        verdict: none, missing_physics, ambiguous or unlisted_physics.
+        best: the most probable hypothesis.
+        probability: effect's path -> probability that it is there.
+        groups: ids of effects that the data cannot tell apart.
+    """
+
+    verdict: str
+    best: Judged
+    probability: dict[str, float]
+    groups: tuple[tuple[str, ...], ...]
+
+
+def conclude(judged: Sequence[Judged]) -> Conclusion:
+    """The verdict that judged hypotheses allow, the most probable first."""
+    best = judged[0]
+    paths = {path for j in judged for path in j.hypothesis.ids}
+    probability = {path: probability_of(path, judged) for path in paths}
+    groups = _groups(best, judged)
+    ahead = NOISE.explained_ahead if best.hypothesis.effects else NOISE.explained
+    if best.hypothesis.fit.over_noise > NOISE.explained or best.over_noise > ahead:
+        return Conclusion("unlisted_physics", best, probability, groups if best.hypothesis.effects else ())
+    if not best.hypothesis.effects:
+        return Conclusion(
+            "none" if best.probability >= EVIDENCE.sure else "ambiguous", best, probability, groups
+        )
+    verdict = "missing_physics" if best.probability >= EVIDENCE.sure or not groups else "ambiguous"
+    return Conclusion(verdict, best, probability, groups)
+
+
+def _groups(best: Judged, judged: Sequence[Judged]) -> tuple[tuple[str, ...], ...]:
+    """Effects by which possible hypotheses differ from the best one."""
+    groups = []
+    for other in judged[1:]:
+        if other.probability < EVIDENCE.significance:
+            continue
+        mine = _only(best.hypothesis, other.hypothesis)
+        theirs = _only(other.hypothesis, best.hypothesis)
+        group = tuple(sorted({*mine, *theirs})) or ()
+        if len(group) > 1 and group not in groups:
+            groups.append(group)
+    return tuple(groups)
+
+
+def _only(one: Hypothesis, other: Hypothesis) -> list[str]:
+    return [c.id for c in one.effects if c.size_path not in other.ids]

@@ -10,27 +10,105 @@ first order may not hold, the structure is fitted to both data, and what both le
 alone stands for the first term.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.compared import with_differences
-from hydrolek_drake.diagnosis.evidence.judged import SMALL, Judged, with_probabilities
+from hydrolek_drake.diagnosis.evidence.judged import Judged, with_differences, with_probabilities
 from hydrolek_drake.diagnosis.evidence.nuisance import own_of_recordings, with_stands
-from hydrolek_drake.diagnosis.evidence.predictive import NEARBY, OUT_OF_REACH, pays, predictive, predicts
 from hydrolek_drake.diagnosis.fitting.race import Entrant, problem_with, race
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
-from hydrolek_drake.diagnosis.search.cost import cost
-from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE, Settings
+from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.lockstep import Place, descend, with_slopes
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
-MOST_JUDGED = 8
-"""At most so many structures are judged."""
+
+def judge_as_fitted(
+    bench: Workbench, hypotheses: Sequence[Hypothesis], held_out: Sequence[Experiment]
+) -> list[Judged]:
+    """The same in haste, after an interrupt: one rollout each, and what is uncertain of the parameters counts as error.
+
+    Args:
+        bench: rollouts.
+        hypotheses: as they were fitted when the search ended.
+        held_out: recordings that nothing was fitted to.
+    """
+    return with_probabilities(_looked_at(bench, hypotheses, held_out))
+
+
+def judge_given_up(bench: Workbench, found: Tried, held_out: Sequence[Experiment]) -> list[Judged]:
+    """What the held-out data say of hypotheses that were not fitted to the end, the best first."""
+    left = [h for key, h in found.given_up.items() if key not in found.hypotheses]
+    return sorted(_looked_at(bench, left, held_out), key=lambda j: j.half_chi_squared)
+
+
+def _looked_at(
+    bench: Workbench, hypotheses: Sequence[Hypothesis], held_out: Sequence[Experiment]
+) -> list[Judged]:
+    """What hypotheses leave of the held-out data as they are fitted."""
+    counted = sum(experiment.counted for experiment in held_out)
+    return bench.side_by_side(
+        lambda h: Judged(h, bench.residuals(h, held_out, bench.fine), counted), hypotheses
+    )
+
+
+def predictive(residuals: np.ndarray, jacobian: np.ndarray, fit: Fit) -> tuple[float, float]:
+    """Squared residuals r' (I + J S J')^-1 r and spread log det (I + J S J') of held-out data.
+
+    Args:
+        residuals: r. # (values,)
+        jacobian: J. # (values, n)
+        fit: to the training data; S is the inverse of its information, with a range's variance for a parameter of
+            which nothing else is known.
+    """
+    known = fit.jacobian.T @ fit.jacobian + fit.prior_jacobian.T @ fit.prior_jacobian
+    free = np.diag(fit.prior_jacobian) == 0.0
+    known[free, free] += 1.0 / SPREAD**2
+    both = known + jacobian.T @ jacobian
+    pulled = jacobian.T @ residuals
+    chi_squared = float(residuals @ residuals - pulled @ np.linalg.solve(both, pulled))
+    spread = float(np.linalg.slogdet(both)[1] - np.linalg.slogdet(known)[1])
+    return chi_squared, spread
+
+
+def pays(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
+    """Whether every further effect also lowers the error of the training data by what chance could not.
+
+    The same is asked of an effect in place of its special case. Two fits of nearly the same model end in slightly
+    different places; on held-out data that can look like the gain of an effect that does next to nothing.
+    """
+    return all(
+        other.fit.objective - hypothesis.fit.objective >= _to_pay(hypothesis, other) for other in others
+    )
+
+
+def predicts(judged: Judged, others: Sequence[Judged]) -> bool:
+    """Whether a hypothesis predicts the held-out data better than everything that it contains.
+
+    What lowers the error of the training data alone stands for something else there, such as an error of the step.
+    """
+    return all(
+        other.ahead > judged.ahead
+        for other in others
+        if _to_pay(judged.hypothesis, other.hypothesis) > -math.inf
+    )
+
+
+def _to_pay(hypothesis: Hypothesis, other: Hypothesis) -> float:
+    """Fall of the squared residuals that a hypothesis owes to another one that it contains; else minus infinity."""
+    own = [c for c in hypothesis.effects if c.size_path not in other.ids]
+    special = [c for c in other.effects if c.size_path not in hypothesis.ids]
+    if own and not special:
+        return gain_needed(other.fit) * len(own)
+    contained = [any(s.is_special_case_of(c) for c in own) for s in special]
+    return GAINS.needed * len(own) if special and all(contained) and len(own) == len(special) else -math.inf
 
 
 def judge_structures(
@@ -64,12 +142,12 @@ def _contenders(found: Tried) -> list[Hypothesis]:
     near = _in_doubt(ranked, best)
     lesser = [h for h in ranked if h.ids < best.ids and len(h.ids) == len(best.ids) - 1]
     unique = {h.ids: h for h in (best, found.baseline, *lesser, *near)}
-    return list(unique.values())[:MOST_JUDGED]
+    return list(unique.values())[: EVIDENCE.most_judged]
 
 
 def _in_doubt(hypotheses: Sequence[Hypothesis], best: Hypothesis) -> list[Hypothesis]:
     """Those that the training data leave in doubt beside the best one."""
-    doubt = max(OUT_OF_REACH, 0.05 * best.fit.objective)
+    doubt = max(EVIDENCE.out_of_reach, 0.05 * best.fit.objective)
     return [h for h in hypotheses if 0.5 * (cost(h) - cost(best)) < doubt]
 
 
@@ -102,7 +180,7 @@ def _predicted(
         slopes = np.concatenate([_of_the_machine(place, h) for place in some])
         chi_squared, spread = predictive(residuals, slopes, h.fit)
         one = replace(own, held_out=residuals, chi_squared=chi_squared, spread=spread)
-        is_far = one.over_noise > SMALL or float(residuals @ residuals) - chi_squared > NEARBY
+        is_far = one.over_noise > NOISE.far or float(residuals @ residuals) - chi_squared > EVIDENCE.nearby
         far.append(is_far and any(h is d for d in doubtful) and not own_of_recordings(h).any())
         judged.append(one)
     chosen = [i for i, is_far in enumerate(far) if is_far]

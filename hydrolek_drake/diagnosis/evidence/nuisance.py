@@ -14,14 +14,11 @@ from hydrolek_drake.diagnosis.fitting.race import problem_with
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.lost_commands.search import windows_ahead
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows, recording_of
-from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.settings import EVIDENCE, Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.lockstep import Place, descend
-
-PHASES = 12
-"""Where a periodic law may stand when a recording begins is first tried at so many places."""
 
 
 def with_stands(
@@ -89,7 +86,7 @@ def _in_phase(
     moving = np.isin(np.arange(len(paths)), (sine, cosine))
     amplitude = np.hypot(unit[sine] - 0.5, unit[cosine] - 0.5)
     begun = []
-    for angle in 2.0 * np.pi * np.arange(PHASES) / PHASES:
+    for angle in 2.0 * np.pi * np.arange(EVIDENCE.phases) / EVIDENCE.phases:
         turned = unit.copy()
         turned[sine], turned[cosine] = 0.5 + amplitude * np.cos(angle), 0.5 + amplitude * np.sin(angle)
         begun.append(Place(problem, moving, turned))

@@ -10,11 +10,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE
+from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
-from hydrolek_drake.diagnosis.search.gains import gain_needed
-from hydrolek_drake.diagnosis.search.settings import Settings
-from hydrolek_drake.diagnosis.search.tracing import trace
+from hydrolek_drake.diagnosis.search.cost import gain_needed
+from hydrolek_drake.diagnosis.settings import NOISE, Settings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
 
@@ -44,7 +43,7 @@ def searched_near(bench: Workbench, structure: Hypothesis, settings: Settings, c
         trace(f"    near {best.label}: {best.fit.over_noise:.4f} to {now.fit.over_noise:.4f}")
         gain = best.fit.objective - now.fit.objective
         best = now if gain > 0.0 else best
-        if best.fit.over_noise <= AT_NOISE or gain < gain_needed(best.fit):
+        if best.fit.over_noise <= NOISE.at or gain < gain_needed(best.fit):
             break
     return best
 

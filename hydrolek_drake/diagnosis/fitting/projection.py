@@ -6,7 +6,7 @@ change of the residuals is its part across the columns of J.
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.search.settings import AT_BOUND
+from hydrolek_drake.diagnosis.settings import FITS
 from hydrolek_drake.identification.least_squares import Fit
 
 
@@ -16,7 +16,7 @@ class Across:
     def __init__(self, fit: Fit) -> None:
         """Orthonormal basis of the columns; those that say nothing or cannot move on are left out."""
         norms = np.linalg.norm(fit.jacobian, axis=0)
-        use = (norms > 0.0) & (np.abs(fit.unit - 0.5) < 0.5 - AT_BOUND)
+        use = (norms > 0.0) & (np.abs(fit.unit - 0.5) < 0.5 - FITS.tolerance)
         kept = fit.with_prior[:, use] / norms[use]
         if kept.shape[1]:
             left, singular, _ = np.linalg.svd(kept, full_matrices=False)

@@ -9,17 +9,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR
 from hydrolek_drake.diagnosis.fitting.line_search import Along, searched_along
-from hydrolek_drake.diagnosis.search.settings import Rung
+from hydrolek_drake.diagnosis.settings import FITS, NOISE, Rung
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.lockstep import Place, descend, fit_of, with_slopes
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
-
-EDGE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,10 +152,6 @@ def hypotheses_of(bench: Workbench, runners: Sequence[Runner], rung: Rung) -> li
     return [hypothesis_of(r.effects, r.place, rung.coarse * bench.fine) for r in runners]
 
 
-STRIDES = (0.25, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 1.02, 1.05, 1.1, 1.25, 1.5, 2.0, 4.0)
-MOMENTS = 16
-
-
 def tried_elsewhere(bench: Workbench, runners: Sequence[Runner], cores: int) -> list[Runner]:
     """The same with what has no slope tried elsewhere, and fitted on where that helped."""
     now = list(runners)
@@ -186,10 +179,12 @@ def _ways(runner: Runner, number: int) -> list[Along]:
         index = paths.index(candidate.size_path)
         free = runner.place.problem.parameters.free[index]
         value = free.from_unit(float(runner.place.unit[index]))
-        places = np.clip([free.to_unit(value * stride) for stride in STRIDES], EDGE, 1.0 - EDGE)
+        places = np.clip(
+            [free.to_unit(value * stride) for stride in FITS.strides], FITS.negligible, 1.0 - FITS.negligible
+        )
         ways.append(Along(index, places))
-    grid = (np.arange(MOMENTS) + 0.5) / MOMENTS
-    near = np.array([-1.0, -0.3, -0.1, -0.03, 0.03, 0.1, 0.3, 1.0]) / MOMENTS
+    grid = (np.arange(FITS.places) + 0.5) / FITS.places
+    near = np.array([-1.0, -0.3, -0.1, -0.03, 0.03, 0.1, 0.3, 1.0]) / FITS.places
     for free in candidate.searched:
         index = paths.index(free.path)
         ways.append(Along(index, np.clip(np.concatenate([grid, runner.place.unit[index] + near]), 0.0, 1.0)))
@@ -225,7 +220,7 @@ def _led(
 
 def _inside(unit: np.ndarray, moving: np.ndarray) -> np.ndarray:
     """A place a little within the ranges, from where steps to both sides can be made."""
-    return np.where(moving, np.clip(unit, EDGE, 1.0 - EDGE), unit)
+    return np.where(moving, np.clip(unit, FITS.negligible, 1.0 - FITS.negligible), unit)
 
 
 def _told_apart(runner: Runner) -> float:
@@ -235,11 +230,7 @@ def _told_apart(runner: Runner) -> float:
     goes on.
     """
     count = runner.place.problem.counted
-    return max(runner.place.objective, AT_NOISE**2 * count + 2.0 * math.sqrt(2.0 * count))
-
-
-SAME = 1e-3
-"""Two fits of a structure whose squares differ by less than this share stand in the same minimum."""
+    return max(runner.place.objective, NOISE.at**2 * count + 2.0 * math.sqrt(2.0 * count))
 
 
 def _distinct(runners: Sequence[Runner], count: int) -> list[Runner]:
@@ -249,7 +240,7 @@ def _distinct(runners: Sequence[Runner], count: int) -> list[Runner]:
     for runner in runners:
         before = kept.setdefault(runner.key, [])
         squares = runner.place.objective
-        if len(before) < count and (not before or squares > (1.0 + SAME) * before[-1]):
+        if len(before) < count and (not before or squares > (1.0 + FITS.tolerance) * before[-1]):
             before.append(squares)
             chosen.append(runner)
     return chosen
@@ -258,9 +249,9 @@ def _distinct(runners: Sequence[Runner], count: int) -> list[Runner]:
 def _in_reach(runners: Sequence[Runner]) -> list[Runner]:
     """Those that may still come to where the best one is: nothing is below the noise."""
     best = runners[0].place
-    if best.objective > AT_NOISE**2 * best.problem.counted:
+    if best.objective > NOISE.at**2 * best.problem.counted:
         return list(runners)
-    return [r for r in runners if r.place.objective <= FAR**2 * best.objective]
+    return [r for r in runners if r.place.objective <= NOISE.far**2 * best.objective]
 
 
 def problem_of(bench: Workbench, effects: tuple[Addition, ...], rung: Rung) -> Problem:

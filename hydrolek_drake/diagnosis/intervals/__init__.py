@@ -1,1 +1,1 @@
-"""How far numbers are known."""
+"""How far numbers are known, and from which size on an effect would have been seen."""

@@ -5,13 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import norm
 
+from hydrolek_drake.diagnosis.settings import EVIDENCE
 from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.parameter_set import ParameterSet
 
-CONFIDENCE = 0.95
-"""Share of repetitions in which an interval holds the true value."""
-
-NORMAL = float(norm.ppf(0.5 + 0.5 * CONFIDENCE))
+NORMAL = float(norm.ppf(0.5 + 0.5 * EVIDENCE.confidence))
 """Half of such an interval in standard deviations."""
 
 

@@ -5,37 +5,32 @@ standard deviations from the bottom there, and where a joint sticks and slips or
 local minimum says little of how far it reaches, and nothing of a deeper one beside it. So each number of the effects is
 gone along on both sides, all others following, until the likelihood has fallen by what its interval allows; what lies
 lower on the way is where the fit begins anew (profile likelihood: Raue et al., Bioinformatics 25, 2009, 1923).
+
+The moment at which something happens, such as a load that is picked up, has no slope: within an integration step
+residuals do not change with it at all, and from one move of the joint to the next they have local minima. So its
+interval is that of the likelihood ratio over many moments.
 """
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.stats import chi2
 
-from hydrolek_drake.diagnosis.data.joints_together import felt_together
 from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.intervals.curvature import CONFIDENCE, Interval, covariance_of, intervals_of
-from hydrolek_drake.diagnosis.search.settings import LAST_STEP
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.fitting.projection import Across
+from hydrolek_drake.diagnosis.intervals.curvature import Interval, covariance_of, intervals_of
+from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS
+from hydrolek_drake.diagnosis.structures.weighing import felt_together
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench, moments_of
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.parameter_set import Free
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.identification.profile import Profile, profile
+from hydrolek_drake.identification.rolling import Request, residuals_at
 from hydrolek_drake.identification.secant_descent import SecantDescent
-
-WORTH = 0.1
-"""Squares that a step must promise: it moves a number by a third of its standard deviation at most otherwise."""
-
-LOWER = 1.0
-"""Another place is lower if it leaves so many squares less: it is a standard deviation away, or another
-local minimum."""
-
-MOST_ROUNDS = 3
-"""So often the fit begins anew in a lower local minimum."""
-
-FIRST = 2.0
-"""Standard deviations on either side: a little beyond what curvature has for the interval."""
 
 
 class LastNumbers:
@@ -50,12 +45,12 @@ class LastNumbers:
         """
         self._bench = bench
         self._begun = hypothesis
-        self._step = bench.fine if bench.together else min(hypothesis.step, LAST_STEP * bench.fine)
+        self._step = bench.fine if bench.together else min(hypothesis.step, FITS.last_step * bench.fine)
         self.problem = self._problem(bench.training)
         self._moving = bench.movable(hypothesis.effects, self.problem.parameters)
         self._descent = SecantDescent(
             self.problem,
-            worth=WORTH,
+            worth=EVIDENCE.worth,
             stop=bench.interrupted,
             moving=self._moving,
             slopes=self.problem.jacobian_without_jumps,
@@ -70,9 +65,9 @@ class LastNumbers:
         bench, before = self._bench, self.problem.evaluations
         fit = self._descent.from_start(self._begun.fit.unit)
         profiles = self._profiles(fit)
-        for _ in range(MOST_ROUNDS):
+        for _ in range(FITS.anew):
             lowest = max(profiles, key=lambda p: p.improved, default=None)
-            if lowest is None or lowest.improved < LOWER:
+            if lowest is None or lowest.improved < EVIDENCE.lower:
                 break
             fit = self._descent.from_start(lowest.lowest)
             profiles = self._profiles(fit)
@@ -114,7 +109,13 @@ class LastNumbers:
 
         deviation = float(np.sqrt(covariance[index, index])) / max(1.0, fit.over_noise)
         return profile(
-            self.problem, fit.unit, index, deviation, confidence=CONFIDENCE, first=FIRST, others=following
+            self.problem,
+            fit.unit,
+            index,
+            deviation,
+            confidence=EVIDENCE.confidence,
+            first=EVIDENCE.deviations,
+            others=following,
         )
 
     def ahead(self, fitted: Hypothesis, held_out: Sequence[Experiment]) -> np.ndarray:
@@ -142,3 +143,42 @@ def with_last_numbers(
     ahead = last.ahead(there, told)
     bench.training = tuple(training)  # an interrupt before leaves all as it was
     return replace(best, hypothesis=there, held_out=ahead), intervals, tuple(told)
+
+
+def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis, cores: int) -> dict[str, Interval]:
+    """Full path -> moment with its 95 % interval: all moments that the residuals do not tell from the best one.
+
+    A moment has no slope, so its interval is that of the likelihood ratio, all else changed along its tangents (Seber,
+    Wild, Nonlinear Regression, 1989, chapter 5).
+
+    Args:
+        bench: data and problems.
+        hypothesis: a fitted model.
+        cores: that roll out at the same time.
+    """
+    found = {}
+    for free in moments_of(hypothesis.effects):
+        value, apart = hypothesis.values[free.path], (free.upper - free.lower) / EVIDENCE.moments
+        tried = np.linspace(free.lower, free.upper, EVIDENCE.moments + 1)
+        near = np.clip(
+            value + apart * np.linspace(-2.0, 2.0, 4 * EVIDENCE.closer + 1), free.lower, free.upper
+        )
+        moments = np.unique([*tried, *near, value])
+        errors = _errors(bench, hypothesis, free, moments, cores)
+        unlike = chi2.ppf(EVIDENCE.confidence, 1) * max(1.0, hypothesis.fit.over_noise) ** 2
+        alike = np.flatnonzero(errors <= errors.min() + unlike)
+        low, high = max(alike[0] - 1, 0), min(alike[-1] + 1, len(moments) - 1)
+        found[free.path] = Interval(value, min(moments[low], value), max(moments[high], value))
+    return found
+
+
+def _errors(
+    bench: Workbench, hypothesis: Hypothesis, free: Free, moments: np.ndarray, cores: int
+) -> np.ndarray:
+    """Squared residuals that each moment leaves after the best change of all else. # (moments,)."""
+    problem = bench.problem(hypothesis.effects, bench.fine)
+    across, off = Across(hypothesis.fit), hypothesis.fit.off_prior
+    units = [problem.parameters.unit({**hypothesis.values, free.path: moment}) for moment in moments]
+    [found] = residuals_at([Request(problem, tuple(units))], bench.pool, cores)
+    left = [across(np.concatenate([residuals, off])) for residuals in found]
+    return np.nan_to_num(np.array([float(each @ each) for each in left]), nan=np.inf)

@@ -13,16 +13,10 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.laws.terms import Span, Term, law_record
-from hydrolek_drake.diagnosis.search.settings import AT_BOUND, WIDER
+from hydrolek_drake.diagnosis.settings import FITS, GAINS, LOCATING
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.physics.law import PLACED, TERM_NAMES
 from hydrolek_drake.rigs import Rig
-
-SIZES = (0.3, 0.1, 0.03, 0.003)
-"""Amplitudes at which a term is tried, in scales of its input."""
-
-BREADTH_HZ = 0.06
-"""Half of the range in which the frequency of a periodic term is fitted about where it was seen."""
 
 
 @dataclass(frozen=True)
@@ -44,11 +38,11 @@ class LawTerm:
     joint: str
     span: Span = field(compare=False, repr=False)
     frequency: float = 0.0
-    breadth: float = BREADTH_HZ
+    breadth: float = LOCATING.breadth_hz
     seen: tuple[float, ...] | None = field(default=None, compare=False)
 
-    cost: ClassVar[float] = 2.0
-    """In effects: where it enters and what it depends on are both chosen among many."""
+    cost: ClassVar[float] = GAINS.law
+    """In effects."""
 
     tried: ClassVar[tuple[float, ...]] = (1.0,)
     weakens: ClassVar[bool] = False
@@ -104,7 +98,7 @@ class LawTerm:
             ranges = {
                 "centre": Free(f"{self.path}.centre", -1.0, 1.0),
                 "reach": Free(
-                    f"{self.path}.reach", self.term.reach / WIDER, self.term.reach * WIDER, log=True
+                    f"{self.path}.reach", self.term.reach / FITS.wider, self.term.reach * FITS.wider, log=True
                 ),
             }
             found += [ranges[name] for name in PLACED.get(self.term.place, ())]
@@ -121,9 +115,11 @@ class LawTerm:
         signs = (1.0,) if self.input.one_sided else (1.0, -1.0)
         if self.term is None:
             turns = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
-            sizes: list[tuple[float, ...]] = [(SIZES[1] * sine, SIZES[1] * cosine) for sine, cosine in turns]
+            sizes: list[tuple[float, ...]] = [
+                (LOCATING.sizes[1] * sine, LOCATING.sizes[1] * cosine) for sine, cosine in turns
+            ]
         else:
-            sizes = [(sign * size,) for size in SIZES for sign in signs]
+            sizes = [(sign * size,) for size in LOCATING.sizes for sign in signs]
         if self.seen is not None:
             sizes = [tuple(size * seen for seen in self.seen) for size in (1.0, 0.3, 3.0)] + sizes[-2:]
         paths = [self.size_path, f"{self.path}.cosine"]
@@ -156,9 +152,9 @@ class LawTerm:
     def widened(self, values: Mapping[str, float]) -> "LawTerm":
         """The same with a larger scale, where an amplitude lies at the end of what is searched."""
         sizes = [free for free in self.free if free.path in (self.size_path, f"{self.path}.cosine")]
-        if all(abs(values[free.path]) < (1.0 - AT_BOUND) * free.upper for free in sizes):
+        if all(abs(values[free.path]) < (1.0 - FITS.tolerance) * free.upper for free in sizes):
             return self
-        return replace(self, input=replace(self.input, scale=WIDER * self.input.scale))
+        return replace(self, input=replace(self.input, scale=FITS.wider * self.input.scale))
 
     def row(self, values: Mapping[str, float]) -> np.ndarray:
         """As the physics takes it. # (1,) of `physics.law.LAW`."""

@@ -1,23 +1,26 @@
-"""A structure's terms of laws, as the report tells them."""
+"""What is told of physics in no list: the law that a structure's terms are together, or commands that got lost."""
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar
 
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.evidence.noise import NOISE_KNOWN
 from hydrolek_drake.diagnosis.evidence.nuisance import with_stands
 from hydrolek_drake.diagnosis.intervals.curvature import intervals_of
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
-from hydrolek_drake.diagnosis.laws.law import FRICTIONS, SCAN_S, FoundLaw, Law
+from hydrolek_drake.diagnosis.laws.inputs import Input
+from hydrolek_drake.diagnosis.laws.law import FRICTIONS, FoundLaw, Law
 from hydrolek_drake.diagnosis.laws.terms import Term
-from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
-from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.lost_commands.search import lost_in
+from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows, Windows, arrivals, recording_of
+from hydrolek_drake.diagnosis.settings import DROPOUTS, LOCATING, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.physics.law import PLACED
+from hydrolek_drake.rollout.rollout import Signals
 
 
 def terms_of(hypothesis: Hypothesis) -> list[LawTerm]:
@@ -99,14 +102,14 @@ def _as_fitted(term: LawTerm, h: Hypothesis) -> Term:
 
 
 def _told(h: Hypothesis, terms: Sequence[LawTerm], order: list[int], rest: list[int]) -> Fit:
-    """The fit with the terms' parameters last, on the scales that `intervals.of_laws` takes them in."""
+    """The fit with the terms' parameters last, on the scales that `laws.law` takes them in."""
     scales = np.ones(len(h.fit.unit))
     for term in terms:
         paths = list(h.values)
         if term.input.one_sided:
             scales[paths.index(term.size_path)] = 2.0
         if term.term is None:
-            scales[paths.index(f"{term.path}.frequency")] = 1.0 / (SCAN_S * 2.0 * term.breadth)
+            scales[paths.index(f"{term.path}.frequency")] = 1.0 / (LOCATING.scan_s * 2.0 * term.breadth)
     turned = [*rest, *order]
     slopes = h.fit.jacobian * scales
     return replace(
@@ -136,7 +139,7 @@ def likeliest_side(judged: Sequence[Judged]) -> Judged:
     if stage not in SIDES:
         return best
     wanted = "cylinder" if brakes else "load"
-    most = _left(best) * (1.0 + 2.0 * NOISE_KNOWN)
+    most = _left(best) * NOISE.above
     near = (j for j in judged if _side(j) == (wanted, brakes) and _left(j) <= most)
     return next(near, best)
 
@@ -151,3 +154,114 @@ def _side(judged: Judged) -> tuple[str, bool]:
 def _left(judged: Judged) -> float:
     """Squares that a structure leaves of all data."""
     return judged.hypothesis.fit.objective + float(judged.held_out @ judged.held_out)
+
+
+LOST = Input(
+    "command", "command", "time for which a command is lost", "s", DROPOUTS.longest_s, one_sided=True
+)
+"""What is told of them: how long one lasts."""
+
+
+@dataclass(frozen=True)
+class LostCommands(FoundLaw):
+    """Commands that got lost, fitted.
+
+    Attributes:
+        windows: recording (`windows.recording_of`) -> when.
+        called: recording -> its name.
+        neutral: command that acts meanwhile [V].
+    """
+
+    windows: Mapping[str, Windows] = field(default_factory=dict)
+    called: Mapping[str, str] = field(default_factory=dict)
+    neutral: float = 0.0
+
+    of_the_machine: ClassVar[bool] = False
+    remark: ClassVar[str] = (
+        "This is the recordings' own: the fitted rig runs as if every command had arrived."
+    )
+
+    @property
+    def condition(self) -> str:
+        """When it acts."""
+        return "while commands are lost"
+
+    @property
+    def acts(self) -> tuple[tuple[float, float], ...]:
+        """When commands were lost in the first training recording [s]."""
+        return tuple((begin, end) for begin, end in next(iter(self.windows.values())).tolist())
+
+    def more(self) -> dict[str, Any]:
+        """When commands were lost in each recording [s]."""
+        return {"windows_s": {self.called[which]: lost.tolist() for which, lost in self.windows.items()}}
+
+    def equation(self) -> str:
+        """What was lost, and when."""
+        lasted = np.concatenate([np.diff(lost, axis=1).ravel() for lost in self.windows.values()])
+        when = "; ".join(
+            f"in {self.called[which]} at {', '.join(f'{begin:.2f}' for begin in lost[:, 0])} s"
+            for which, lost in self.windows.items()
+            if len(lost)
+        )
+        return f"a command that is lost for {lasted.min():.3g} to {lasted.max():.3g} s at a time ({when})"
+
+    def signals(
+        self, experiment: Experiment, records: np.ndarray, step: float, values: np.ndarray
+    ) -> Signals:
+        """What the machine does under the commands that arrived."""
+        arrived = experiment.without_command(self.windows[recording_of(experiment)], self.neutral)
+        return arrived.simulate(records, step).signals
+
+
+def lost_of(
+    bench: Workbench, judged: Judged, held_out: Sequence[Experiment], settings: Settings, cores: int
+) -> LostCommands:
+    """What is told of the commands that a structure has lost.
+
+    Args:
+        bench: data and problems.
+        judged: a structure with lost commands.
+        held_out: data that it was held against.
+        settings: of the search.
+        cores: that roll out at the same time.
+    """
+    h = judged.hypothesis
+    lost = lost_in(h)
+    assert lost is not None
+    every = lost.windows(h.values)
+    for effects, unit in with_stands(bench, judged, held_out, settings, cores).stands.values():
+        ahead = next(c for c in effects if isinstance(c, LostWindows))
+        every |= ahead.windows(bench.parameters(effects).values(unit))
+    parameters = bench.parameters(h.effects)
+    records = parameters.records(h.fit.unit)
+    first = next(e for e in bench.training if e.joint == lost.joint)
+    [arrived] = arrivals(h.effects, h.values, [first])
+    with_lost, plain = (e.simulate(records, bench.fine).signals.reading for e in (arrived, first))
+    lasted = np.concatenate([np.diff(windows, axis=1).ravel() for windows in every.values()])
+    return LostCommands(
+        law=Law(LOST, (Term(("command",)),), 0.0),
+        values=np.array([float(np.median(lasted))]),
+        parameters={path: value for path, value in h.values.items() if ".lost." not in path},
+        fit=h.fit,
+        held_out_over_noise=judged.over_noise,
+        difference=with_lost - plain,
+        span=lost.span,
+        ahead=tuple(every[recording_of(e)].ravel() for e in held_out if e.joint == lost.joint),
+        joint=lost.joint,
+        intervals={p: known for p, known in intervals_of(parameters, h.fit).items() if ".lost." not in p},
+        windows=every,
+        called=names_of([*bench.training, *held_out]),
+        neutral=lost.neutral,
+    )
+
+
+def names_of(experiments: Sequence[Experiment]) -> dict[str, str]:
+    """Recording -> its name, with a number where several have it."""
+    names: dict[str, str] = {}
+    for experiment in experiments:
+        if recording_of(experiment) not in names:
+            alike = sum(name.partition(" (")[0] == experiment.name for name in names.values())
+            names[recording_of(experiment)] = (
+                experiment.name if not alike else f"{experiment.name} ({alike + 1})"
+            )
+    return names

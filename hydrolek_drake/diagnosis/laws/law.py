@@ -1,4 +1,4 @@
-"""A law for physics in no list, as it was found and is told."""
+"""A law for physics in no list, as it was found and is told, and how far its numbers are known."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -7,18 +7,15 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.intervals.curvature import Interval
+from hydrolek_drake.diagnosis.intervals.curvature import NORMAL, Interval, covariance_of
 from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.laws.terms import CONSTANT, Span, Term, law_record, law_records
+from hydrolek_drake.diagnosis.settings import LOCATING
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.physics.law import PLACED
 from hydrolek_drake.replay.display import shown
 from hydrolek_drake.rollout.rollout import Signals
-
-SCAN_S = 12.0
-"""Frequencies are first looked for in so many seconds."""
-
 
 FRICTIONS = ("sign(v)", "v", "v |v|")
 """Factors of a term that changes its sign with the speed."""
@@ -190,3 +187,36 @@ def records_of(law: Law, span: Span, values: np.ndarray) -> np.ndarray:
     if law.periodic:
         return law_record(law.input.probe, span, None, *values.tolist())
     return law_records(law.input.probe, span, law.at(values).terms, values[: law.sizes].tolist())
+
+
+def amplitude_intervals(found: FoundLaw) -> list[Interval]:
+    """Sizes of a law's terms with their 95 % intervals, or the amplitude of a periodic one (SI).
+
+    Sine and cosine of a periodic one have the amplitude a = sqrt(s^2 + c^2), whose variance is (s, c) C (s, c)' / a^2
+    to first order.
+
+    Args:
+        found: a fitted law; of commands that got lost, which are each found by themselves, nothing is told.
+    """
+    if not found.of_the_machine:
+        return []
+    law = found.law
+    own = covariance_of(found.fit)[-law.size :, -law.size :]
+    covariance = (2.0 * law.input.scale) ** 2 * own[: law.sizes, : law.sizes]
+    if law.periodic:
+        [amplitude] = found.amplitudes
+        along = found.values[: law.sizes] / max(amplitude, np.finfo(float).tiny)
+        variances = [float(along @ covariance @ along)]
+    else:
+        variances = np.diag(covariance).tolist()
+    return [_interval(size, variance) for size, variance in zip(found.amplitudes, variances, strict=True)]
+
+
+def frequency_interval(found: FoundLaw) -> Interval:
+    """Frequency of a periodic law with its 95 % interval [Hz]."""
+    return _interval(float(found.values[2]), float(covariance_of(found.fit)[-1, -1]) / LOCATING.scan_s**2)
+
+
+def _interval(value: float, variance: float) -> Interval:
+    half = NORMAL * math.sqrt(max(variance, 0.0))
+    return Interval(value, value - half, value + half)

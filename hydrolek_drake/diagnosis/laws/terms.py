@@ -60,12 +60,6 @@ _MOVED = (*_FORCES, "sensor")
 _FLOWS = ("supply", "valve")
 _ALL = ("command", "amplifier", "supply", "valve", "fluid", "cylinder", "load", "sensor")
 
-FIRST_REACH = 0.5
-"""Of a friction near a place, where its fit begins."""
-
-TRACK_REACH = 0.25
-"""Of a reading that is wrong near a place: where a wiper mostly stands, it wears a short piece of its track."""
-
 TERMS = (
     Term(_ALL),
     Term(_ALL, time="t/T"),
@@ -81,9 +75,10 @@ TERMS = (
     Term(_FORCES, place="(1 - z^2)", speed="sign(v)"),
     Term(_FORCES, place="((1 + z)/2)^2", speed="sign(v)"),
     Term(_FORCES, place="((1 - z)/2)^2", speed="sign(v)"),
-    *(Term(_FORCES, place=NEAR, speed="sign(v)", centre=0.25 * n, reach=FIRST_REACH) for n in range(-3, 4)),
+    *(Term(_FORCES, place=NEAR, speed="sign(v)", centre=0.25 * n, reach=0.5) for n in range(-3, 4)),
     *(Term(_FORCES, place=past, centre=0.5 * n) for past in (BEYOND, BELOW) for n in range(-1, 2)),
-    *(Term(("sensor",), place=NEAR, centre=0.125 * n, reach=TRACK_REACH) for n in range(-7, 8)),
+    # where a wiper mostly stands, it wears a short piece of its track
+    *(Term(("sensor",), place=NEAR, centre=0.125 * n, reach=0.25) for n in range(-7, 8)),
     Term(_FORCES, place="z", speed="v"),
     Term(("valve", "fluid", *_MOVED), other="p_A"),
     Term(("valve", "fluid", *_MOVED), other="p_B"),

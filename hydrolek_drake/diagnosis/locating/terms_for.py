@@ -1,30 +1,48 @@
-"""Terms of laws that may be added to a structure."""
+"""Terms of laws that may be added: which function of time and movement follows what an unknown input must have been."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.laws.inputs import Input, inputs_of
-from hydrolek_drake.diagnosis.laws.terms import Span, span_of
-from hydrolek_drake.diagnosis.locating.law_forms import STEADY, terms_seen
+from hydrolek_drake.diagnosis.laws.terms import TERMS, Span, law_record, span_of
 from hydrolek_drake.diagnosis.locating.unknown_input import (
-    OBSERVER_S,
     Estimate,
-    Slightly,
+    Seen,
+    Unknown,
     near,
     unknown_inputs,
 )
 from hydrolek_drake.diagnosis.lost_commands.seen import lost_seen
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
+from hydrolek_drake.diagnosis.settings import LOCATING
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.physics.probes import PROBES
+from hydrolek_drake.rollout.one_point import law_along, stroke_and_lever
 from hydrolek_drake.rollout.rollout import Signals
+from hydrolek_drake.rollout.run import Run
 
-EACH = 3
-"""So many terms of each input are offered, and the best of all beyond these."""
 
-OFFERED = 20
+@dataclass(frozen=True)
+class Slightly:
+    """An input that is moved so little that all answers to it are linear; its unit is its scale."""
+
+    input: Input
+    share: ClassVar[float] = LOCATING.amplitude
+    spacing_s: ClassVar[float] = LOCATING.knots_s
+
+    def run(
+        self, experiment: Experiment, records: np.ndarray, step: float, pull: float | None, moved: np.ndarray
+    ) -> Run:
+        """See `unknown_input.Trial`."""
+        rows = np.zeros((moved.size, len(PROBES)))
+        rows[moved, PROBES.index(self.input.probe)] = LOCATING.amplitude * self.input.scale
+        return experiment.run(records, step, (LOCATING.knots_s, rows), pull)
 
 
 def terms_for(
@@ -46,8 +64,8 @@ def terms_for(
     inputs = _inputs(bench, joint, scales[joint])
     has = {c.input.probe for c in parent.effects if isinstance(c, LawTerm)}
     inputs = tuple(each for each in inputs if not has or each.probe in has)
-    values = near(bench, parent, OBSERVER_S, cores)
-    seen = unknown_inputs(bench, parent, values, [Slightly(i) for i in inputs], OBSERVER_S, cores)
+    values = near(bench, parent, LOCATING.observer_s, cores)
+    seen = unknown_inputs(bench, parent, values, [Slightly(i) for i in inputs], LOCATING.observer_s, cores)
     parameters = bench.parameters(parent.effects)
     record = parameters.records(parameters.unit(values))[bench.training[0].index]
     span = _span(bench, seen.signals, record, joint)
@@ -58,8 +76,8 @@ def terms_for(
     rest: list[LawTerm] = []
     for term in ranked:
         taken[term.input.probe] = taken.get(term.input.probe, 0) + 1
-        (first if taken[term.input.probe] <= EACH else rest).append(term)
-    terms = [*first, *rest][: max(OFFERED, len(first))]
+        (first if taken[term.input.probe] <= LOCATING.each else rest).append(term)
+    terms = [*first, *rest][: max(LOCATING.offered, len(first))]
     if parent.effects or len(scales) > 1:
         return tuple(terms)
     command = next(each for each in _inputs(bench, joint, scales[joint]) if each.probe == "command")
@@ -91,8 +109,8 @@ def estimates_for(
         cores: that roll out at the same time.
     """
     inputs = [Slightly(i) for i in _inputs(bench, joint, scales) if i.probe not in STEADY]
-    values = near(bench, nominal, OBSERVER_S, cores)
-    seen = unknown_inputs(bench, nominal, values, inputs, OBSERVER_S, cores)
+    values = near(bench, nominal, LOCATING.observer_s, cores)
+    seen = unknown_inputs(bench, nominal, values, inputs, LOCATING.observer_s, cores)
     return tuple(sorted((u.estimated() for u in seen.unknowns), key=lambda e: -e.evidence))
 
 
@@ -112,3 +130,82 @@ def _span(bench: Workbench, signals: tuple[Signals, ...], record: np.void, joint
         bench.training[0].channels[0].unit,
         "m" if bench.rig.variant(joint, "cylinder") == "cylinder" else "rad",
     )
+
+
+STEADY = ("capacity_a", "capacity_b", "back_a", "back_b", "ramp", "coil_time", "flow_force")
+"""Inputs that say how something is built, which no disturbance shakes."""
+
+
+def terms_seen(seen: Seen, record: np.void, joint: str, span: Span) -> list[tuple[float, LawTerm]]:
+    """Every term that has a physical meaning, with the fall of the squares that it promises, the best first.
+
+    Args:
+        seen: unknown inputs.
+        record: the joint's parameters.
+        joint: its name.
+        span: what laws are told in.
+    """
+    rows, moments = _movement(seen, record)
+    found: list[tuple[float, LawTerm]] = []
+    for unknown in seen.unknowns:
+        for term in TERMS:
+            if not term.meant_for(unknown.input):
+                continue
+            values = law_along(law_record(unknown.input.probe, span, term, 1.0)[0], rows)
+            gain, multiple = unknown.gain_of(_at_knots(unknown.times, moments, values))
+            if unknown.input.one_sided and multiple < 0.0:
+                gain = 0.0
+            found.append((gain, LawTerm(unknown.input, term, joint, span, seen=(multiple,))))
+        if unknown.input.probe not in STEADY:
+            found += _periodic(unknown, joint, span)
+    return sorted(found, key=lambda each: -each[0])
+
+
+def _periodic(unknown: Unknown, joint: str, span: Span) -> list[tuple[float, LawTerm]]:
+    """Sines that promise most at an input."""
+    length = float(np.ptp(unknown.times))
+    frequencies = np.arange(LOCATING.lowest / length, LOCATING.highest_hz, 0.25 / length)
+    gains, pairs = np.zeros(frequencies.size), []
+    for k, frequency in enumerate(frequencies):
+        angle = 2.0 * np.pi * frequency * unknown.times
+        gains[k], multiples = unknown.gain_of_pair(np.sin(angle), np.cos(angle))
+        pairs.append(multiples)
+    padded = np.concatenate([[-np.inf], gains, [-np.inf]])
+    peaks = np.flatnonzero((padded[1:-1] > padded[:-2]) & (padded[1:-1] >= padded[2:]))
+    best = sorted(peaks, key=lambda k: -gains[k])[: LOCATING.peaks]
+    return [
+        (
+            float(gains[k]),
+            LawTerm(unknown.input, None, joint, span, float(frequencies[k]), seen=tuple(pairs[k].tolist())),
+        )
+        for k in best
+    ]
+
+
+def _movement(seen: Seen, record: np.void) -> tuple[np.ndarray, np.ndarray]:
+    """What laws may depend on, as rows, and when."""
+    parts = [_seen_by_laws(signals, record) for signals in seen.signals]
+    rows = np.concatenate(parts)
+    return rows, rows[:, 0]
+
+
+def _at_knots(knots: np.ndarray, moments: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """A course at the knots; recordings follow one another, each with its own clock."""
+    begins = [0, *(np.flatnonzero(np.diff(moments) < 0.0) + 1), len(moments)]
+    firsts = [0, *(np.flatnonzero(np.diff(knots) < 0.0) + 1), len(knots)]
+    parts = [
+        np.interp(knots[a:b], moments[i:j], values[i:j])
+        for a, b, i, j in zip(firsts[:-1], firsts[1:], begins[:-1], begins[1:], strict=True)
+    ]
+    return np.concatenate(parts)
+
+
+def _seen_by_laws(run: Signals, record: np.void) -> np.ndarray:
+    """What a law may depend on (`physics.law.Seen` as rows), where the rollout is finite."""
+    there = np.isfinite(run.position)
+    t, q, w, p_a, p_b, x = (
+        each[there]
+        for each in (run.time, run.position, run.velocity, run.pressure_a, run.pressure_b, run.spool)
+    )
+    stroke, lever = np.array([stroke_and_lever(angle, record) for angle in q.tolist()]).T
+    return np.stack([t, q, w, stroke, lever * w, p_a, p_b, x], axis=1)

@@ -27,27 +27,14 @@ from hydrolek_drake.diagnosis.fitting.race import hypothesis_of
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.lost_commands.windows import arrivals
+from hydrolek_drake.diagnosis.settings import FITS, LOCATING
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.lockstep import Place, descend, with_slopes
-from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rollout.lane_view import LANES
 from hydrolek_drake.rollout.lanes import roll_out_lanes
 from hydrolek_drake.rollout.rollout import Signals
 from hydrolek_drake.rollout.run import Run
-
-KNOTS_S = 0.05
-"""Between knots [s]: a joint hardly follows what is faster."""
-
-OBSERVER_S = 0.3
-"""Time constant of the observer whose innovations tell of unknown inputs [s]: longer than a valve takes to open, and
-far shorter than a move."""
-
-FORGOTTEN = 6.0
-"""So many time constants after an input its trace in the innovations is gone (e^-6)."""
-
-AMPLITUDE = 1e-3
-"""Of a trial, in scales of the input: small enough to be linear."""
 
 
 class Trial(Protocol):
@@ -79,23 +66,6 @@ class Trial(Protocol):
             moved: at which knots. # (k,) truth values
         """
         ...
-
-
-@dataclass(frozen=True)
-class Slightly:
-    """An input that is moved so little that all answers to it are linear; its unit is its scale."""
-
-    input: Input
-    share: ClassVar[float] = AMPLITUDE
-    spacing_s: ClassVar[float] = KNOTS_S
-
-    def run(
-        self, experiment: Experiment, records: np.ndarray, step: float, pull: float | None, moved: np.ndarray
-    ) -> Run:
-        """See `Trial`."""
-        rows = np.zeros((moved.size, len(PROBES)))
-        rows[moved, PROBES.index(self.input.probe)] = AMPLITUDE * self.input.scale
-        return experiment.run(records, step, (KNOTS_S, rows), pull)
 
 
 @dataclass(frozen=True)
@@ -194,10 +164,6 @@ class Seen:
     signals: tuple[Signals, ...]
 
 
-FITTED = 3
-"""Steps by which a structure's own parameters are fitted to innovations before they are asked for unknown inputs."""
-
-
 def near(bench: Workbench, structure: Hypothesis, observer_s: float, cores: int) -> dict[str, float]:
     """Full path -> value of a structure's parameters where an observer's innovations are small.
 
@@ -209,14 +175,16 @@ def near(bench: Workbench, structure: Hypothesis, observer_s: float, cores: int)
         observer_s: time constant of the observer [s].
         cores: that roll out at the same time.
     """
-    problem = bench.problem(structure.effects, 2.0 * bench.fine, bench.training, observer_s)
+    problem = bench.problem(structure.effects, FITS.coarse * bench.fine, bench.training, observer_s)
     moving = bench.movable(structure.effects, problem.parameters)
     starts = [
         problem.parameters.unit(of_additions(structure.values)),
         problem.parameters.unit(structure.values),
     ]
-    begun = [Place(problem, moving, np.clip(start, 1e-6, 1.0 - 1e-6)) for start in starts]
-    ended = descend(begun, FITTED, bench.pool, cores)
+    begun = [
+        Place(problem, moving, np.clip(start, FITS.negligible, 1.0 - FITS.negligible)) for start in starts
+    ]
+    ended = descend(begun, LOCATING.fitted, bench.pool, cores)
     return problem.parameters.values(min(ended, key=lambda place: place.objective).unit)
 
 
@@ -238,7 +206,7 @@ def unknown_inputs(
         observer_s: time constant of the observer [s]; infinite for free rollouts, of which each knot takes one.
         cores: that roll out at the same time.
     """
-    step = 2.0 * bench.fine
+    step = FITS.coarse * bench.fine
     pulled = None if math.isinf(observer_s) else observer_s
     problem = bench.problem(parent.effects, step, bench.training, pulled)
     arrived = arrivals(parent.effects, values, bench.training)
@@ -293,7 +261,9 @@ def _response(
     """How the innovations of a recording answer to each knot, in units of the trial, and the knots' times."""
     time, spacing = experiment.time, trial.spacing_s
     count = int(np.ceil((time[-1] - time[0]) / spacing)) + 1
-    apart = count + 1 if math.isinf(observer_s) else int(np.ceil(FORGOTTEN * observer_s / spacing)) + 2
+    apart = (
+        count + 1 if math.isinf(observer_s) else int(np.ceil(LOCATING.forgotten * observer_s / spacing)) + 2
+    )
     pull = None if math.isinf(observer_s) else observer_s
     runs = [
         trial.run(experiment, records, step, pull, np.arange(count) % apart == first)

@@ -5,8 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.conclusion import EXPLAINED
-from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE
+from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.race import (
     Entrant,
     Runner,
@@ -16,15 +15,14 @@ from hydrolek_drake.diagnosis.fitting.race import (
     tried_elsewhere,
 )
 from hydrolek_drake.diagnosis.laws.additions import of_additions
-from hydrolek_drake.diagnosis.lost_commands.seen import GAIN, REMEMBERS_S, lost_seen
+from hydrolek_drake.diagnosis.lost_commands.seen import lost_seen
 from hydrolek_drake.diagnosis.lost_commands.windows import (
     NONE,
     LostWindows,
     joined,
     recording_of,
 )
-from hydrolek_drake.diagnosis.search.settings import Settings
-from hydrolek_drake.diagnosis.search.tracing import trace
+from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
@@ -59,7 +57,10 @@ def with_windows(
         cores: that roll out at the same time.
         reached: what other structures leave, over the noise.
     """
-    rungs = (*(rung for rung in settings.continued if rung.observer_s >= REMEMBERS_S), settings.again)
+    rungs = (
+        *(rung for rung in settings.continued if rung.observer_s >= DROPOUTS.remembers_s),
+        settings.again,
+    )
     own, now, fits = of_additions(parent.values), lost, []
     values = parent.values
     for _ in range(settings.lost_rounds):
@@ -72,13 +73,13 @@ def with_windows(
         fits.append(fitted)
         trace(f"    windows {list(map(len, needed.seen.values()))}: {fitted.fit.over_noise:.4f}")
         more = None
-        if fitted.fit.over_noise > AT_NOISE:
+        if fitted.fit.over_noise > NOISE.at:
             known = needed.windows(needed.begun())
             more = _seen_beside(bench, fitted, needed, known, bench.training, cores)
         now, values = more or needed, _without_windows(fitted)
         if more is None:
             break
-    return [fit for fit in fits if fit.fit.over_noise <= EXPLAINED]
+    return [fit for fit in fits if fit.fit.over_noise <= NOISE.explained]
 
 
 def _without_windows(structure: Hypothesis) -> dict[str, float]:
@@ -130,7 +131,7 @@ def _exchanged(structure: Hypothesis, other: LostWindows) -> tuple[Addition, ...
 
 def _by_chance(structure: Hypothesis) -> float:
     """Fall of the squares that a window may promise by chance."""
-    return GAIN * max(structure.fit.chi_squared / max(structure.fit.counted, 1), 1.0)
+    return GAINS.certain**2 * max(structure.fit.chi_squared / max(structure.fit.counted, 1), 1.0)
 
 
 def _rises(bench: Workbench, best: Hypothesis, now: LostWindows, cores: int) -> np.ndarray:
@@ -205,6 +206,6 @@ def windows_ahead(
         now = replace(more, seen={which: joined(windows[which])})
         left = place.objective / max(experiment.counted, 1)
         trace(f"    windows ahead {now.seen[which].round(3).tolist()}: {left**0.5:.4f}")
-        if left**0.5 <= AT_NOISE:
+        if left**0.5 <= NOISE.at:
             break
     return now

@@ -10,9 +10,7 @@ from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.laws.terms import Span
 from hydrolek_drake.diagnosis.locating.unknown_input import Unknown, near, unknown_inputs
 from hydrolek_drake.diagnosis.lost_commands.windows import (
-    LONGEST_S,
     NONE,
-    SHORTEST_S,
     LostWindows,
     Windows,
     in_order,
@@ -20,26 +18,10 @@ from hydrolek_drake.diagnosis.lost_commands.windows import (
     recording_of,
     too_much,
 )
+from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.rollout.run import Run
-
-WINDOW_KNOTS_S = 0.02
-"""Between knots [s]: about one sample of a controller."""
-
-MOST_KNOTS = 15
-"""A window is tried over so many spacings of knots at most."""
-
-GAIN = 25.0
-"""Fall of the squares, over what is left of each value on average, that a window must promise: five standard
-deviations, since hundreds are tried."""
-
-REMEMBERS_S = 3.0
-"""Time constant of the observer [s]. A joint that misses its command for a few milliseconds is off by little, and for
-good: a fast observer forgets it before it can be told from noise."""
-
-WHOLE = 1.2
-"""Multiple of a command that may be missing: there is no more in it to be lost but for the observer's own error."""
 
 
 @dataclass(frozen=True)
@@ -49,14 +31,14 @@ class Lost:
     input: Input
     neutral: float
     share: ClassVar[float] = 1.0
-    spacing_s: ClassVar[float] = WINDOW_KNOTS_S
+    spacing_s: ClassVar[float] = DROPOUTS.sample_s
 
     def run(
         self, experiment: Experiment, records: np.ndarray, step: float, pull: float | None, moved: np.ndarray
     ) -> Run:
         """See `unknown_input.Trial`."""
-        begins = experiment.time[0] + WINDOW_KNOTS_S * np.flatnonzero(moved)
-        windows = np.stack([begins, begins + WINDOW_KNOTS_S], axis=1)
+        begins = experiment.time[0] + DROPOUTS.sample_s * np.flatnonzero(moved)
+        windows = np.stack([begins, begins + DROPOUTS.sample_s], axis=1)
         return experiment.without_command(windows, self.neutral).run(records, step, pull_time=pull)
 
 
@@ -88,9 +70,9 @@ def lost_seen(
     Returns:
         All windows; None where there are none beyond the known ones, or more of a recording would be lost than can be.
     """
-    around = values or near(bench, structure, REMEMBERS_S, cores)
+    around = values or near(bench, structure, DROPOUTS.remembers_s, cores)
     trials = [Lost(command, neutral)]
-    [unknown] = unknown_inputs(bench, structure, around, trials, REMEMBERS_S, cores).unknowns
+    [unknown] = unknown_inputs(bench, structure, around, trials, DROPOUTS.remembers_s, cores).unknowns
     experiments = bench.training
     firsts = [0, *(np.flatnonzero(np.diff(unknown.times) < 0.0) + 1), unknown.times.size]
     counted = sum(e.counted for e in experiments)
@@ -101,8 +83,8 @@ def lost_seen(
         own = []
         for knot, spacings, multiple in chosen:
             if first <= knot < last:
-                length = min(multiple * spacings * WINDOW_KNOTS_S, LONGEST_S)
-                middle = float(unknown.times[knot]) + 0.5 * spacings * WINDOW_KNOTS_S
+                length = min(multiple * spacings * DROPOUTS.sample_s, DROPOUTS.longest_s)
+                middle = float(unknown.times[knot]) + 0.5 * spacings * DROPOUTS.sample_s
                 own.append((middle - 0.5 * length, middle + 0.5 * length))
         before = known.get(recording_of(experiment), NONE)
         seen[recording_of(experiment)] = joined(in_order(before, np.array(sorted(own)).reshape(-1, 2)))
@@ -116,7 +98,9 @@ def lost_seen(
 def _picked(unknown: Unknown, counted: int) -> tuple[list[tuple[int, int, float]], float]:
     """Windows that promise most: first knot, spacings, and which share of them is lost; and what all promise."""
     size = unknown.times.size
-    firsts, spacings = (grid.ravel() for grid in np.meshgrid(np.arange(size), np.arange(1, MOST_KNOTS + 1)))
+    firsts, spacings = (
+        grid.ravel() for grid in np.meshgrid(np.arange(size), np.arange(1, DROPOUTS.most_knots + 1))
+    )
     inside = firsts + spacings <= size
     firsts, spacings = firsts[inside], spacings[inside]
     ends = firsts + spacings
@@ -128,11 +112,11 @@ def _picked(unknown: Unknown, counted: int) -> tuple[list[tuple[int, int, float]
     for _ in range(size):
         sum_of_pull = np.concatenate([[0.0], pull.cumsum()])
         along = sum_of_pull[firsts] - sum_of_pull[ends]
-        multiples = np.clip(along / powers, 0.0, WHOLE)
+        multiples = np.clip(along / powers, 0.0, DROPOUTS.whole)
         gains = multiples * (2.0 * along - multiples * powers)
         gains[list(chosen)] = 0.0
         best = int(gains.argmax())
-        if gains[best] < GAIN * max(left / max(counted, 1), 1.0):
+        if gains[best] < GAINS.certain**2 * max(left / max(counted, 1), 1.0):
             break
         chosen[best] = float(multiples[best])
         own = slice(firsts[best], ends[best])
@@ -141,6 +125,6 @@ def _picked(unknown: Unknown, counted: int) -> tuple[list[tuple[int, int, float]
     windows = [
         (int(firsts[which]), int(spacings[which]), multiple)
         for which, multiple in chosen.items()
-        if multiple * WINDOW_KNOTS_S > SHORTEST_S
+        if multiple * DROPOUTS.sample_s > DROPOUTS.shortest_s
     ]
     return windows, unknown.left - left

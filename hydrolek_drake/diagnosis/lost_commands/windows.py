@@ -15,26 +15,12 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.laws.terms import Span
+from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.rollout.run import Run
-
-LONGEST_S = 0.5
-"""A command that is lost for longer is a recording of two pieces."""
-
-MOVES_S = 0.3
-"""A window is fitted within so much to either side of where it was seen: a move hardly changes meanwhile."""
-
-SHORTEST_S = 1e-3
-"""Shorter windows are no time that a rollout resolves."""
-
-TOUCHING_S = 0.02
-"""Windows that lie no farther apart than about one sample of a controller are one."""
-
-MOST_SHARE = 0.1
-"""So much of a recording may be lost at most: a line that loses more is not in use."""
 
 Windows = np.ndarray
 """Begin and end of each [s], increasing. # (k, 2)"""
@@ -62,8 +48,8 @@ class LostWindows:
     span: Span
     share: float
 
-    cost: ClassVar[float] = 2.0
-    """In effects, as of terms of laws; each window must pay for itself besides."""
+    cost: ClassVar[float] = GAINS.law
+    """In effects, as of terms of laws."""
 
     sudden: ClassVar[bool] = False
     moments: ClassVar[tuple[Free, ...]] = ()
@@ -90,8 +76,8 @@ class LostWindows:
             for number, (begin, end) in enumerate(windows.tolist()):
                 middle = 0.5 * (begin + end)
                 name = f"{self.path}.{which}.{number}"
-                found.append(Free(f"{name}.middle", middle - MOVES_S, middle + MOVES_S))
-                found.append(Free(f"{name}.half", 0.0, 0.5 * LONGEST_S))
+                found.append(Free(f"{name}.middle", middle - DROPOUTS.moves_s, middle + DROPOUTS.moves_s))
+                found.append(Free(f"{name}.half", 0.0, 0.5 * DROPOUTS.longest_s))
         return tuple(found)
 
     @property
@@ -129,7 +115,7 @@ class LostWindows:
     def widened(self, values: Mapping[str, float]) -> "LostWindows":
         """The same about where the windows lie now, if one lies at the end of where it may."""
         ends = [abs(values[free.path] - 0.5 * (free.lower + free.upper)) for free in self.free[::2]]
-        if max(ends, default=0.0) < 0.99 * MOVES_S:
+        if max(ends, default=0.0) < 0.99 * DROPOUTS.moves_s:
             return self
         return replace(self, seen=self.windows(values))
 
@@ -189,9 +175,9 @@ def joined(windows: Windows) -> Windows:
     """The same time in windows that do not touch, in their order; those too short to be resolved are left out."""
     apart: list[list[float]] = []
     for begin, end in windows[np.argsort(windows[:, 0])].tolist():
-        if end - begin < SHORTEST_S:
+        if end - begin < DROPOUTS.shortest_s:
             continue
-        if apart and begin < apart[-1][1] + TOUCHING_S:
+        if apart and begin < apart[-1][1] + DROPOUTS.sample_s:
             apart[-1][1] = max(apart[-1][1], end)
         else:
             apart.append([begin, end])
@@ -199,8 +185,8 @@ def joined(windows: Windows) -> Windows:
 
 
 def too_much(windows: Windows, experiment: Experiment) -> bool:
-    """Whether more of a recording would be lost than `MOST_SHARE`."""
-    return bool(np.diff(windows, axis=1).sum() > MOST_SHARE * np.ptp(experiment.time))
+    """Whether more of a recording would be lost than `DROPOUTS.most_share`."""
+    return bool(np.diff(windows, axis=1).sum() > DROPOUTS.most_share * np.ptp(experiment.time))
 
 
 class WithWindows(ParameterSet):

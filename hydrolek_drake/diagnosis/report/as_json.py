@@ -7,10 +7,8 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
-from hydrolek_drake.diagnosis.intervals.of_laws import amplitude_intervals, frequency_interval
-from hydrolek_drake.diagnosis.laws.law import FoundLaw
+from hydrolek_drake.diagnosis.laws.law import FoundLaw, amplitude_intervals, frequency_interval
 from hydrolek_drake.diagnosis.locating.place import left_at
-from hydrolek_drake.diagnosis.report.numbers import quantity
 from hydrolek_drake.diagnosis.report.panels import after
 from hydrolek_drake.diagnosis.report.reliability import kind_of, reliability
 from hydrolek_drake.diagnosis.report.words import (
@@ -20,6 +18,7 @@ from hydrolek_drake.diagnosis.report.words import (
     law_sentence,
     off_zero_sentences,
     path_of,
+    quantity,
     unit_at,
     where_sentence,
 )

@@ -7,11 +7,16 @@ from collections.abc import Collection, Iterable, Sequence
 import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
-from hydrolek_drake.diagnosis.intervals.curvature import CONFIDENCE
 from hydrolek_drake.diagnosis.report.as_json import MOST_LISTED, detectable, effects_json, fit_json, models_of
-from hydrolek_drake.diagnosis.report.numbers import quantity, with_interval
 from hydrolek_drake.diagnosis.report.panels import columns, course_panel
-from hydrolek_drake.diagnosis.report.words import behind, headline, off_zero_sentences
+from hydrolek_drake.diagnosis.report.words import (
+    behind,
+    headline,
+    off_zero_sentences,
+    quantity,
+    with_interval,
+)
+from hydrolek_drake.diagnosis.settings import EVIDENCE
 from hydrolek_drake.identification.thinning import STEPS
 from hydrolek_drake.replay.confirmation import Confirmation
 from hydrolek_drake.replay.display import ratio, three_digits
@@ -267,7 +272,7 @@ def _intervals(diagnosis: Diagnosis) -> str:
     return (
         "The numbers of the model that is named were then fitted until no step promises a tenth of a square, and the "
         "interval of each of its effects' reaches to where the likelihood, all others fitted anew, has fallen by what "
-        f"chance lets it fall in {100 * CONFIDENCE:g} % of repetitions. "
+        f"chance lets it fall in {100 * EVIDENCE.confidence:g} % of repetitions. "
     )
 
 

@@ -11,7 +11,7 @@ from functools import cache
 from typing import Any
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
-from hydrolek_drake.diagnosis.evidence.noise import NOISE_KNOWN
+from hydrolek_drake.diagnosis.settings import NOISE
 from hydrolek_drake.yaml_files import package_yaml
 
 
@@ -40,7 +40,7 @@ def kind_of(diagnosis: Diagnosis, path: str) -> str:
     """
     best = diagnosis.best.hypothesis
     without = [j.hypothesis.fit.over_noise for j in diagnosis.judged if path not in j.hypothesis.ids]
-    hardly = min(without, default=float("inf")) < (1.0 + NOISE_KNOWN) * best.fit.over_noise
+    hardly = min(without, default=float("inf")) < NOISE.at * best.fit.over_noise
     if hardly:
         return "hardly_needed"
     return "beside_unknown" if diagnosis.verdict == "unlisted_physics" else "needed"

@@ -4,23 +4,19 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Protocol
 
-from hydrolek_drake.diagnosis.data.weighing import weighted_by
-from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR, MORE_AHEAD
+from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.enlarging import continued_nominal, enlarged
 from hydrolek_drake.diagnosis.search.openings import Opening, opened, surely_above
-from hydrolek_drake.diagnosis.search.settings import Settings
-from hydrolek_drake.diagnosis.search.tracing import trace
 from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.settings import FITS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
-
-MOST_WEIGHED = 3
-"""So often the data are weighed by the nominal model at most."""
 
 EFFECTS, LAWS = "effects", "laws"
 """What structures are enlarged by."""
@@ -85,7 +81,7 @@ def search_structures(
         say(f"{next_.kind} beside {' + '.join(c.id for c in next_.parent.effects) or 'the nominal model'}")
         done.add(next_.key)
         better = enlarged(bench, next_, candidates, found, settings, cores)
-        if better and found.best.fit.over_noise > AT_NOISE:
+        if better and found.best.fit.over_noise > NOISE.at:
             done.discard(next_.key)
         _weigh(bench, found, settings, cores)
         if found.rounds_without_gain(settings.patience):
@@ -120,7 +116,7 @@ def _open(
             listed = all(isinstance(c, Candidate) for c in h.effects)
             if listed and (h.ids, EFFECTS) not in done:
                 items.append((h, EFFECTS))
-            elif laws and best.fit.over_noise > MORE_AHEAD:
+            elif laws and best.fit.over_noise > NOISE.ahead:
                 items.append((h, LAWS))
     return [(h, kind) for h, kind in items if (h.ids, kind) not in done]
 
@@ -139,7 +135,7 @@ def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> 
     rungs = (settings.led,) if known else (*settings.free, *settings.ended)
     best = _as_weighed(bench, race(bench, [Entrant((), known)], rungs, cores)[0], settings, cores)
     trace(f"nominal {best.fit.over_noise:.4f}")
-    if not known and AT_NOISE < best.fit.over_noise < FAR:
+    if not known and NOISE.at < best.fit.over_noise < NOISE.far:
         better = continued_nominal(bench, best, found, settings, cores)
         best = best if better is None else _as_weighed(bench, better, settings, cores)
     found.nominal_continued = found.nominal_continued or bool(known)
@@ -154,11 +150,11 @@ def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> 
 def _as_weighed(bench: Workbench, structure: Hypothesis, settings: Settings, cores: int) -> Hypothesis:
     """A structure fitted on, the data weighed by it; again where its noise fell, since a worse fit had told it."""
     now = structure
-    for _ in range(MOST_WEIGHED):
+    for _ in range(FITS.anew):
         bench.training = tuple(weighted_by(bench, now, bench.training))
-        rung = settings.again if now.fit.over_noise < FAR else settings.led
+        rung = settings.again if now.fit.over_noise < NOISE.far else settings.led
         before, now = now, race(bench, [Entrant(now.effects, now.values)], (rung,), cores)[0]
-        if now.fit.over_noise > 1.0 / AT_NOISE or now.fit.over_noise < AT_NOISE * before.fit.over_noise:
+        if now.fit.over_noise > 1.0 / NOISE.at or now.fit.over_noise < NOISE.at * before.fit.over_noise:
             break
     return now
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.laws.additions import of_additions
-from hydrolek_drake.diagnosis.search.tracing import trace
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Workbench
 from hydrolek_drake.identification.continuation import Continuation

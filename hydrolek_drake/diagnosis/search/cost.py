@@ -1,8 +1,8 @@
-"""What a structure costs."""
+"""What a structure costs, and what a further addition must bring before it is believed."""
 
 import math
 
-from hydrolek_drake.diagnosis.search.gains import gain_needed
+from hydrolek_drake.diagnosis.settings import GAINS
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 from hydrolek_drake.identification.least_squares import Fit
 
@@ -22,3 +22,11 @@ def misfit(fit: Fit) -> float:
     """
     share = fit.objective / max(fit.counted, 1)
     return fit.counted * (1.0 + math.log(share)) if share > 1.0 else fit.objective
+
+
+def gain_needed(fit: Fit) -> float:
+    """Fall of the squared residuals that one more effect must bring.
+
+    It is more than chance would bring, and more than what is known but roughly may leave.
+    """
+    return max(GAINS.needed, GAINS.fidelity * fit.counted, fit.unsure)

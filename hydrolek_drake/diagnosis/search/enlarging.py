@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE, FAR, MORE_AHEAD
+from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.local_search import has_other_minima, searched_near
 from hydrolek_drake.diagnosis.fitting.race import (
     Entrant,
@@ -18,11 +18,11 @@ from hydrolek_drake.diagnosis.fitting.race import (
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.lost_commands.search import with_windows
 from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
-from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
+from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.search.openings import Opening, observed
-from hydrolek_drake.diagnosis.search.settings import Rung, Settings
-from hydrolek_drake.diagnosis.search.tracing import names_of, trace
 from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.settings import GAINS, NOISE, Rung, Settings
+from hydrolek_drake.diagnosis.structures.addition import names_of
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, widenings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
@@ -49,17 +49,17 @@ def enlarged(
         Whether the structure itself was fitted better meanwhile, and should be enlarged again.
     """
     parent = opening.parent
-    enough = MORE_AHEAD if can_be_cut(bench) else AT_NOISE
+    enough = NOISE.ahead if can_be_cut(bench) else NOISE.at
     runners = _led_on(bench, opening, candidates, settings, cores)
     if runners and _over_noise(runners[0]) > enough:
         runners = [*_farther(bench, runners[0], settings, cores), *runners]
-        if enough > AT_NOISE:
+        if enough > NOISE.at:
             runners = [*_by_parts(bench, runners, enough, settings, cores), *runners]
     if runners and _over_noise(runners[0]) > enough and not runners[0].place.ended:
         runners = [*run(bench, runners[:1], settings.ended, cores, _traced("first to the end")), *runners[1:]]
     better = None
     reached = min((_over_noise(r) for r in runners), default=math.inf)
-    if reached > enough and parent.fit.over_noise > AT_NOISE:
+    if reached > enough and parent.fit.over_noise > NOISE.at:
         if not parent.effects and not found.nominal_continued:
             better = continued_nominal(bench, parent, found, settings, cores)
             if better is not None:
@@ -70,10 +70,10 @@ def enlarged(
     for each in fits:
         found.keep(each)
     sudden = any(c.sudden for c in found.best.effects)
-    if found.best.fit.over_noise > AT_NOISE and sudden and has_other_minima(found.best, fits):
+    if found.best.fit.over_noise > NOISE.at and sudden and has_other_minima(found.best, fits):
         found.keep(searched_near(bench, found.best, settings, cores))
     reached = found.best.fit.over_noise
-    if opening.lost is not None and reached > AT_NOISE and opening.lost.share >= settings.lost:
+    if opening.lost is not None and reached > NOISE.at and opening.lost.share >= settings.lost:
         for each in with_windows(bench, parent, opening.lost, settings, cores, reached):
             found.keep(each)
     _widened(bench, found, settings, cores)
@@ -87,11 +87,11 @@ def _led_on(
     """A race of free rollouts from where the structure was fitted, the best first."""
     parent = opening.parent
     begun, needed = Start(parent.effects, parent.values), gain_needed(parent.fit)
-    near = parent.fit.over_noise <= AT_NOISE
+    near = parent.fit.over_noise <= NOISE.at
     entrants = [
         begun.with_addition(p.candidate, start)
         for number, p in enumerate(opening.free[: settings.entrants])
-        if not near or p.gain > PROMISING * needed
+        if not near or p.gain > GAINS.promising * needed
         for start in p.starts[: None if number < settings.doubled else 1]
     ]
     entrants += [
@@ -101,7 +101,7 @@ def _led_on(
     ]
     if not entrants:
         return []
-    heats = _steps(settings.free, parent.fit.over_noise < FAR)
+    heats = _steps(settings.free, parent.fit.over_noise < NOISE.far)
     return run(bench, entered(bench, entrants, heats[0], cores), heats, cores, _traced("free"))
 
 
@@ -116,7 +116,7 @@ def _continued(bench: Workbench, opening: Opening, settings: Settings, cores: in
         for start in p.starts[: None if p.candidate.sudden else 1]
         for begun in (own, fitted)
     ]
-    heats = _steps(settings.continued, parent.fit.over_noise < FAR)
+    heats = _steps(settings.continued, parent.fit.over_noise < NOISE.far)
     return run(bench, entered(bench, entrants, heats[0], cores), heats, cores, _traced("observed"))
 
 
@@ -138,7 +138,7 @@ def _by_parts(
     """Structures fitted part by part, one after the other until one leaves no more than is enough; the best first."""
     first: dict[frozenset[str], Runner] = {}
     for runner in runners:
-        if _over_noise(runner) <= FAR * _over_noise(runners[0]):
+        if _over_noise(runner) <= NOISE.far * _over_noise(runners[0]):
             first.setdefault(runner.key, runner)
     ended: list[Runner] = []
     for runner in list(first.values())[: settings.parted]:
@@ -209,11 +209,11 @@ def _lessened(
     ]
     rung = replace(settings.again, keep=len(entrants))
     fitted = race(bench, entrants, (rung,), cores)
-    near = not found.nominal_continued and found.baseline.fit.over_noise < FAR
+    near = not found.nominal_continued and found.baseline.fit.over_noise < NOISE.far
     if len(best.effects) > 1 or near:  # others were fitted so before, or are beyond doubt
         own = [Entrant(each.effects, of_additions(each.values)) for each in entrants]
         fitted += race(
-            bench, own, (*_steps(settings.continued, best.fit.over_noise < FAR), settings.again), cores
+            bench, own, (*_steps(settings.continued, best.fit.over_noise < NOISE.far), settings.again), cores
         )
     for each in fitted:
         found.keep(each)

@@ -6,16 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.noise import ABOVE_NOISE, AT_NOISE
+from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.race import problem_of
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
-from hydrolek_drake.diagnosis.search.gains import PROMISING, gain_needed
+from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.search.promise import Promise, promises_at
-from hydrolek_drake.diagnosis.search.settings import TELLING, Rung, Settings
-from hydrolek_drake.diagnosis.search.tracing import names_of, trace
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.structures.addition import Sized
+from hydrolek_drake.diagnosis.settings import FITS, GAINS, NOISE, Rung, Settings
+from hydrolek_drake.diagnosis.structures.addition import Sized, names_of
 from hydrolek_drake.diagnosis.structures.candidates import redundant
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.lockstep import Place, descend
@@ -94,12 +93,12 @@ def opened(
         return Opening(parent, kind, (), (), (), sizes, math.inf)
     exact = Rung(math.inf, 1.0, math.inf, 0, 1)
     place = descend([_place(bench, parent, exact, parent.fit.unit)], 0, bench.pool, cores)[0]
-    free = promises_at(bench, place, parent.effects, own, TELLING * bench.fine, settings, cores)
+    free = promises_at(bench, place, parent.effects, own, FITS.coarse * bench.fine, settings, cores)
     if kind == "effects":
         found.left = free
     pulled: list[Promise] = []
     shares = [_share(free[0].gain, parent.fit.objective, parent.fit.counted)]
-    asked = parent.fit.over_noise > AT_NOISE and not alone
+    asked = parent.fit.over_noise > NOISE.at and not alone
     if asked and _worth_while(parent, own[0].cost, free[0].gain):
         pulled, share = observed(bench, parent, own, settings, cores)
         shares.append(share)
@@ -118,7 +117,7 @@ def opened(
         + "; pulled "
         + ", ".join(f"{p.candidate.id} {p.gain:.0f}" for p in pulled[:4])
     )
-    at_noise = left <= AT_NOISE**2 * count
+    at_noise = left <= NOISE.at**2 * count
     return Opening(parent, kind, own, tuple(free), tuple(pulled), sizes, expected, at_noise, lost)
 
 
@@ -128,12 +127,12 @@ def surely_above(structure: Hypothesis) -> float:
     Noise is known to but a share. A nominal model that leaves more may be bent so that what it lacks promises nothing;
     one with an addition that leaves less than twice that, and beside which nothing promises anything, is right.
     """
-    return ABOVE_NOISE if structure.effects else AT_NOISE
+    return NOISE.above if structure.effects else NOISE.at
 
 
 def _worth_while(parent: Hypothesis, addition_cost: float, promised: float) -> bool:
     """See `Opening.worth_while`."""
-    needed = PROMISING * addition_cost * gain_needed(parent.fit)
+    needed = GAINS.promising * addition_cost * gain_needed(parent.fit)
     return parent.fit.over_noise > surely_above(parent) or promised >= needed
 
 
@@ -149,7 +148,7 @@ def observed(
     """What additions promise to an observer around the rig's own numbers, and the share that the best one takes."""
     first = settings.continued[0]
     parameters = bench.parameters(parent.effects)
-    unit = np.clip(parameters.unit(of_additions(parent.values)), 1e-6, 1.0 - 1e-6)
+    unit = np.clip(parameters.unit(of_additions(parent.values)), FITS.negligible, 1.0 - FITS.negligible)
     near = descend([_place(bench, parent, first, unit)], 2, bench.pool, cores)[0]
     pulled = promises_at(bench, near, parent.effects, own, first.coarse * bench.fine, settings, cores)
     return pulled, _share(pulled[0].gain, near.objective, near.problem.counted)

@@ -14,8 +14,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.fitting.projection import Across, gain_of
 from hydrolek_drake.diagnosis.fitting.race import hypothesis_of, problem_with
-from hydrolek_drake.diagnosis.search.gains import VISIBLE
-from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.settings import GAINS, Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition, Sized
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.lockstep import Place
@@ -31,8 +30,8 @@ class Promise:
         candidate: the addition.
         gain: fall of the squares that it promises.
         starts: full path -> value of its parameters, the most promising first.
-        visible_from: size (SI) whose gain would be `VISIBLE`, in proportion to the sizes that were tried; a first
-            estimate, see `experiment.visible`.
+        visible_from: size (SI) whose gain would be `GAINS.visible`, in proportion to the sizes that were tried; a first
+            estimate, see `intervals.visible`.
     """
 
     candidate: Sized
@@ -129,17 +128,19 @@ def _local_minima(rated: list) -> list:
 
 
 def _visible_from(candidate: Sized, rated: list) -> float:
-    """Size whose gain would be `VISIBLE`, in proportion to the larger sizes that were tried; a first estimate."""
+    """Size whose gain would be `GAINS.visible`, in proportion to the larger sizes that were tried; a first estimate."""
     sizes = [(each[3][candidate.size_path], float(each[4] @ each[4])) for each in rated]
     largest = max((abs(size) for size, _ in sizes), default=0.0)
     if candidate.weakens:
         least = min((abs(size) for size, _ in sizes), default=0.0)
         told = [
-            size * (power / VISIBLE) ** 0.5 for size, power in sizes if 0.0 < power and size <= 10.0 * least
+            size * (power / GAINS.visible) ** 0.5
+            for size, power in sizes
+            if 0.0 < power and size <= 10.0 * least
         ]
         return max(told, default=0.0)
     told = [
-        abs(size) * (VISIBLE / power) ** 0.5
+        abs(size) * (GAINS.visible / power) ** 0.5
         for size, power in sizes
         if 0.0 < power and abs(size) >= 0.1 * largest
     ]

@@ -1,6 +1,6 @@
 """What may be added to the nominal model: an effect, a term of a law, or commands that got lost."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 from hydrolek_drake.identification.parameter_set import Free
@@ -104,3 +104,8 @@ class Sized(Addition, Protocol):
     def starts(self) -> tuple[dict[str, float], ...]:
         """Full path -> value, where searches begin."""
         ...
+
+
+def names_of(effects: Sequence[Addition]) -> str:
+    """A structure in a line of the log."""
+    return "+".join(c.id for c in effects) or "nominal"

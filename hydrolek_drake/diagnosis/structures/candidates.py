@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
-from hydrolek_drake.diagnosis.search.settings import AT_BOUND, SIZES, WIDER
+from hydrolek_drake.diagnosis.settings import FITS
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.effects import EFFECTS, Effect
 from hydrolek_drake.effects.scales import Scales
@@ -42,7 +42,7 @@ class Candidate:
     @property
     def tried(self) -> tuple[float, ...]:
         """Multiples of its starts at which it is tried; those of one without a slope are close enough."""
-        return (1.0,) if self.sudden else SIZES
+        return (1.0,) if self.sudden else FITS.sizes
 
     @property
     def weakens(self) -> bool:
@@ -114,7 +114,7 @@ class Candidate:
         """
         others = [f for f in self.free if f.path != self.size_path and f not in self.moments]
         places = [(free, free.to_unit(values[free.path])) for free in others]
-        return [free for free, place in places if not AT_BOUND < place < 1.0 - AT_BOUND]
+        return [free for free, place in places if not FITS.tolerance < place < 1.0 - FITS.tolerance]
 
     def widened(self, values: Mapping[str, float]) -> "Candidate":
         """The same effect, searched further where a parameter lies at an end, as far as it can be at all.
@@ -133,17 +133,17 @@ class Candidate:
         lowest, highest = self.utmost.get(free.path, (free.lower, free.upper))
         place = free.to_unit(value)
         size = free.path == self.size_path
-        if place > 1.0 - AT_BOUND and not (size and self.effect.weakens):
-            upper = min(free.upper * WIDER, highest)
+        if place > 1.0 - FITS.tolerance and not (size and self.effect.weakens):
+            upper = min(free.upper * FITS.wider, highest)
             mirrored = size and free.lower < 0.0
             return replace(
-                free, lower=max(free.lower * WIDER, lowest) if mirrored else free.lower, upper=upper
+                free, lower=max(free.lower * FITS.wider, lowest) if mirrored else free.lower, upper=upper
             )
-        if place < AT_BOUND and free.lower < 0.0:
-            upper = min(free.upper * WIDER, highest) if size else free.upper
-            return replace(free, lower=max(free.lower * WIDER, lowest), upper=upper)
-        if place < AT_BOUND and free.lower > 0.0 and (not size or self.effect.weakens):
-            return replace(free, lower=max(free.lower / WIDER, lowest))
+        if place < FITS.tolerance and free.lower < 0.0:
+            upper = min(free.upper * FITS.wider, highest) if size else free.upper
+            return replace(free, lower=max(free.lower * FITS.wider, lowest), upper=upper)
+        if place < FITS.tolerance and free.lower > 0.0 and (not size or self.effect.weakens):
+            return replace(free, lower=max(free.lower / FITS.wider, lowest))
         return free
 
 

@@ -183,7 +183,7 @@ class Workbench:
 
     @staticmethod
     def movable(effects: Sequence[Addition], parameters: ParameterSet) -> np.ndarray:
-        """Parameters that least squares can move: all but moments, see `intervals.moments`. # (n,)."""
+        """Parameters that least squares can move: all but moments, see `intervals.last_numbers`. # (n,)."""
         held = {free.path for free in moments_of(effects)}
         return np.array([path not in held for path in parameters.paths])
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.data.quality import reasons_against
+from hydrolek_drake.diagnosis.structures.splitting import reasons_against
 from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording, read_recording
 

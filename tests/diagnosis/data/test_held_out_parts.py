@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.data.splitting import SHORT_BLOCKS, halves, mixed
+from hydrolek_drake.diagnosis.settings import DATA
+from hydrolek_drake.diagnosis.structures.splitting import halves, mixed
 
 
 def test_what_reports_is_nothing_that_chose(bench, recorded) -> None:
@@ -10,7 +11,7 @@ def test_what_reports_is_nothing_that_chose(bench, recorded) -> None:
     [chosen], [kept] = halves([held_out])
     assert not np.any(chosen.used & kept.used)
     np.testing.assert_array_equal(chosen.used | kept.used, held_out.used)
-    assert abs(chosen.counted - kept.counted) <= held_out.counted / SHORT_BLOCKS
+    assert abs(chosen.counted - kept.counted) <= held_out.counted / DATA.short_blocks
 
 
 def test_parts_of_a_part_are_cut_by_what_counts(bench, recorded) -> None:
@@ -26,6 +27,6 @@ def test_where_held_out_data_are_fitted_too_what_reports_had_not_chosen_before(b
     [fitted] = training
     parts = np.stack([fitted.used, chosen.used, kept.used])
     np.testing.assert_array_equal(parts.sum(axis=0), held_out.used)
-    assert abs(fitted.counted - 2 / 3 * held_out.counted) <= held_out.counted / SHORT_BLOCKS
+    assert abs(fitted.counted - 2 / 3 * held_out.counted) <= held_out.counted / DATA.short_blocks
     [_], [before] = halves([held_out])
     assert np.all(before.used[kept.used])

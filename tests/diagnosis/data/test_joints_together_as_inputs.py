@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.data.joints_together import felt_together
+from hydrolek_drake.diagnosis.structures.weighing import felt_together
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.recorded import experiments_of
 

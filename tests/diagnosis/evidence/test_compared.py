@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.data.splitting import halves
-from hydrolek_drake.diagnosis.evidence.compared import UNRELIABLE, with_differences
-from hydrolek_drake.diagnosis.evidence.judged import Judged
+from hydrolek_drake.diagnosis.evidence.judged import Judged, with_differences
+from hydrolek_drake.diagnosis.settings import EVIDENCE
+from hydrolek_drake.diagnosis.structures.splitting import halves
 
 
 @pytest.fixture
@@ -29,7 +29,7 @@ def test_a_difference_is_that_of_the_squares_and_its_error_that_of_the_blocks(he
     assert second.behind == pytest.approx(0.5 * squares)
     # sum of n terms 0.3 e + 0.045 with independent e
     assert second.behind_error == pytest.approx(0.3 * np.sqrt(best.held_out_counted), rel=0.7)
-    assert second.behind > UNRELIABLE * second.behind_error
+    assert second.behind > EVIDENCE.deviations * second.behind_error
 
 
 def test_of_two_that_differ_by_chance_few_are_told_apart(held_out) -> None:
@@ -40,5 +40,5 @@ def test_of_two_that_differ_by_chance_few_are_told_apart(held_out) -> None:
     for _ in range(100):
         one, other = (_judged(held_out, rng.standard_normal(size)) for _ in range(2))
         _, second = with_differences([one, other], held_out)
-        told += abs(second.behind) >= UNRELIABLE * second.behind_error
+        told += abs(second.behind) >= EVIDENCE.deviations * second.behind_error
     assert told <= 17  # 8 expected, and three standard deviations of a count

@@ -5,9 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.evidence.conclusion import conclude
-from hydrolek_drake.diagnosis.evidence.judged import Judged, dispersion, probability_of, with_probabilities
-from hydrolek_drake.diagnosis.evidence.predictive import pays, predicts
+from hydrolek_drake.diagnosis.evidence.judged import (
+    Judged,
+    conclude,
+    dispersion,
+    probability_of,
+    with_probabilities,
+)
+from hydrolek_drake.diagnosis.evidence.judging import pays, predicts
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 from hydrolek_drake.identification.least_squares import Fit
@@ -80,7 +85,7 @@ def test_what_does_not_predict_better_is_not_named(effect) -> None:
 
 
 def test_what_strayed_far_off_ahead_predicts_by_what_it_leaves_of_both(effect) -> None:
-    """A joint stuck where a hair decides: fitted to both data the model leaves the noise, see `evidence.SMALL`."""
+    """A joint stuck where a hair decides: fitted to both data the model leaves the noise, see `NOISE.far`."""
     nominal = _judged((), 2.9, ahead=3.7)
     strayed = _judged((effect["sensor.hysteresis"],), 0.9, ahead=5.5)
     assert not predicts(strayed, [nominal, strayed])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.evidence.predictive import predictive
+from hydrolek_drake.diagnosis.evidence.judging import predictive
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD
 from hydrolek_drake.identification.least_squares import Fit
 

@@ -6,11 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.data.weighing import weighted_by
-from hydrolek_drake.diagnosis.evidence.conclusion import Conclusion
-from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.experiment.proposal import propose
+from hydrolek_drake.diagnosis.evidence.judged import Conclusion, Judged
+from hydrolek_drake.diagnosis.evidence.proposal import propose
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
+from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters

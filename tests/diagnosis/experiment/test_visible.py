@@ -5,11 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from hydrolek_drake.diagnosis.experiment.visible import visible_sizes
-from hydrolek_drake.diagnosis.search.gains import VISIBLE
+from hydrolek_drake.diagnosis.intervals.visible import visible_sizes
 from hydrolek_drake.diagnosis.search.openings import opened
-from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.settings import GAINS, Settings
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
@@ -57,8 +56,8 @@ def test_a_size_that_would_be_seen_is_not_made_up_for_by_the_nominal_model(
         return again.fit.objective - nominal.fit.objective
 
     # the noise adds to the root of a gain, or takes from it, one standard deviation of 1
-    assert gain(2.0) ** 0.5 > VISIBLE**0.5 - 2.0
-    assert max(gain(0.2), 0.0) ** 0.5 < VISIBLE**0.5 + 2.0
+    assert gain(2.0) ** 0.5 > GAINS.visible**0.5 - 2.0
+    assert max(gain(0.2), 0.0) ** 0.5 < GAINS.visible**0.5 + 2.0
 
 
 def test_friction_that_rises_at_rest_is_seen_by_what_it_adds_to_coulomb_friction(healthy) -> None:

@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
-from hydrolek_drake.diagnosis.search.settings import Rung
+from hydrolek_drake.diagnosis.settings import Rung
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales

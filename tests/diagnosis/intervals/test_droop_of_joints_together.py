@@ -6,10 +6,10 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.data.joints_together import felt_together
 from hydrolek_drake.diagnosis.evidence.judged import Judged
 from hydrolek_drake.diagnosis.intervals.last_numbers import with_last_numbers
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
+from hydrolek_drake.diagnosis.structures.weighing import felt_together
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters

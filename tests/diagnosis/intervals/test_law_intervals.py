@@ -9,14 +9,13 @@ from scipy.stats import chi2
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged
 from hydrolek_drake.diagnosis.intervals.curvature import NORMAL
-from hydrolek_drake.diagnosis.intervals.of_laws import amplitude_intervals, frequency_interval
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
-from hydrolek_drake.diagnosis.laws.found import law_of
+from hydrolek_drake.diagnosis.laws.found import LostCommands, law_of
 from hydrolek_drake.diagnosis.laws.inputs import inputs_of
+from hydrolek_drake.diagnosis.laws.law import amplitude_intervals, frequency_interval
 from hydrolek_drake.diagnosis.laws.terms import Term, span_of
-from hydrolek_drake.diagnosis.lost_commands.found import LostCommands
 from hydrolek_drake.diagnosis.report.words import known_to
-from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters

@@ -4,7 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from hydrolek_drake.diagnosis.intervals.moments import intervals_of_moments
+from hydrolek_drake.diagnosis.intervals.last_numbers import intervals_of_moments
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales

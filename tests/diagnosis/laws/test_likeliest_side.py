@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.evidence.noise import NOISE_KNOWN
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.laws.found import likeliest_side
 from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.laws.terms import Term
+from hydrolek_drake.diagnosis.settings import NOISE
 
 RUBS, PUSHES = Term((), speed="sign(v)"), Term((), place="z")
 LEFT = 1000.0
@@ -42,5 +42,5 @@ def _judged(stage: str, form: Term | None, left: float) -> Judged:
 def test_a_friction_is_named_at_the_rod_and_what_pushes_or_shakes_at_the_load(
     first, second, behind, stage
 ) -> None:
-    judged = [_judged(*first, LEFT), _judged(*second, LEFT * (1.0 + behind * 2.0 * NOISE_KNOWN))]
+    judged = [_judged(*first, LEFT), _judged(*second, LEFT * (1.0 + behind * 2.0 * NOISE.known))]
     assert likeliest_side(judged).hypothesis.effects[0].input.stage == stage

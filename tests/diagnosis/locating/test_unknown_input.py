@@ -5,12 +5,12 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.data.weighing import weighted_by
 from hydrolek_drake.diagnosis.laws.inputs import inputs_of
 from hydrolek_drake.diagnosis.laws.law import FRICTIONS
 from hydrolek_drake.diagnosis.laws.terms import TERMS, law_record, span_of
-from hydrolek_drake.diagnosis.locating.law_forms import terms_seen
-from hydrolek_drake.diagnosis.locating.unknown_input import Slightly, unknown_inputs
+from hydrolek_drake.diagnosis.locating.terms_for import Slightly, terms_seen
+from hydrolek_drake.diagnosis.locating.unknown_input import unknown_inputs
+from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.lost_commands.found import names_of
+from hydrolek_drake.diagnosis.laws.found import names_of
 from hydrolek_drake.diagnosis.lost_commands.windows import joined, recording_of
 from hydrolek_drake.diagnosis.report.words import law_sentence, where_sentence
 from hydrolek_drake.diagnosis.structures.as_rig import enlarged_rig

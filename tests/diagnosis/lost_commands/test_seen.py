@@ -10,7 +10,7 @@ from hydrolek_drake.diagnosis.laws.terms import span_of
 from hydrolek_drake.diagnosis.lost_commands.search import with_windows
 from hydrolek_drake.diagnosis.lost_commands.seen import lost_seen
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
-from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters

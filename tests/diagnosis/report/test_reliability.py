@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from hydrolek_drake.diagnosis.evidence.noise import NOISE_KNOWN
 from hydrolek_drake.diagnosis.report.reliability import kind_of, reliability, reliability_data
+from hydrolek_drake.diagnosis.settings import NOISE
 
 ROUNDING = 1e-12  # where all were right, or none, the bound is met with equality
 LEAK, AIR = "joints.j.effects.leak.size", "joints.j.effects.air.size"
@@ -30,7 +30,7 @@ def test_a_share_never_reaches_one_or_zero_and_follows_the_count():
 
 
 def test_an_effect_without_which_the_noise_is_left_too_is_hardly_needed():
-    both, alone = _judged((LEAK, AIR), 1.0), _judged((LEAK,), 1.0 + 0.9 * NOISE_KNOWN)
+    both, alone = _judged((LEAK, AIR), 1.0), _judged((LEAK,), 1.0 + 0.9 * NOISE.known)
     found = _diagnosis("missing_physics", both, alone, _judged((), 40.0))
     assert kind_of(found, AIR) == "hardly_needed"
     assert kind_of(found, LEAK) == "needed"
@@ -39,7 +39,7 @@ def test_an_effect_without_which_the_noise_is_left_too_is_hardly_needed():
 @pytest.mark.parametrize(("share", "kind"), [(0.9, "hardly_needed"), (1.1, "needed")])
 def test_the_boundary_is_what_the_noise_is_uncertain_by(share, kind):
     found = _diagnosis(
-        "missing_physics", _judged((LEAK,), 2.0), _judged((), 2.0 * (1.0 + share * NOISE_KNOWN))
+        "missing_physics", _judged((LEAK,), 2.0), _judged((), 2.0 * (1.0 + share * NOISE.known))
     )
     assert kind_of(found, LEAK) == kind
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from hydrolek_drake.diagnosis.intervals.curvature import Interval
-from hydrolek_drake.diagnosis.report.numbers import quantity, with_interval
+from hydrolek_drake.diagnosis.report.words import quantity, with_interval
 from hydrolek_drake.replay.display import ratio, three_digits
 
 

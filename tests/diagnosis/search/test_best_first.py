@@ -4,9 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from hydrolek_drake.diagnosis.answer import BY_BOTH, INTERRUPTED
-from hydrolek_drake.diagnosis.evidence.conclusion import EXPLAINED
-from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.inquiry import BY_BOTH, INTERRUPTED
+from hydrolek_drake.diagnosis.settings import NOISE, Settings
 
 COULOMB, STRIBECK = "cylinder.coulomb_friction", "cylinder.stribeck_friction"
 FRICTION = "joints.joint.effects.cylinder.coulomb_friction.coulomb_N"
@@ -114,7 +113,7 @@ def test_what_only_the_held_out_data_show_is_found(answer_of) -> None:
     answer = answer_of({FRICTION: 60.0}, FEW, laws=False, pressure_noise_Pa=None, trained={"largest_V": 2.5})
     best = answer.conclusion.best
     assert BY_BOTH in answer.remarks
-    assert [c.id for c in best.hypothesis.effects] == [COULOMB] and best.over_noise < EXPLAINED
+    assert [c.id for c in best.hypothesis.effects] == [COULOMB] and best.over_noise < NOISE.explained
     assert best.hypothesis.values[FRICTION] == pytest.approx(60.0, rel=0.2)
 
 

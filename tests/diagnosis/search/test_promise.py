@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.fitting.projection import gain_of
-from hydrolek_drake.diagnosis.search.gains import GAIN_NEEDED, VISIBLE
 from hydrolek_drake.diagnosis.search.openings import opened
-from hydrolek_drake.diagnosis.search.settings import Settings
 from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.settings import GAINS, Settings
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
@@ -33,7 +32,7 @@ def promises_of(bench, fitted):
 
 def test_nothing_is_seen_where_nothing_is(bench, recorded, promises_of) -> None:
     # chance of more than 12 for one parameter: 0.05 %; some twenty effects, some of them at two or three sizes
-    assert promises_of(recorded(bench, bench, seed=4))[0].gain < GAIN_NEEDED + 4.0
+    assert promises_of(recorded(bench, bench, seed=4))[0].gain < GAINS.needed + 4.0
 
 
 @pytest.mark.parametrize(
@@ -48,7 +47,7 @@ def test_the_visible_size_is_where_the_gain_says_it_is(
     machine = bench.with_values({f"effects.{effect_id}.{parameter}": size})
     seen = {s.candidate.id: s for s in promises_of(recorded(machine, bench, seed=5))}
     # twice the visible size: four times its gain, within the scatter of noise of three deviations
-    expected = 4.0 * VISIBLE
+    expected = 4.0 * GAINS.visible
     assert abs(seen[effect_id].gain ** 0.5 - expected**0.5) < 3.5
 
 

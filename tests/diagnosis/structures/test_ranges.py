@@ -6,9 +6,8 @@ from types import SimpleNamespace
 import pytest
 
 from hydrolek_drake.diagnosis.intervals.curvature import Interval
-from hydrolek_drake.diagnosis.report.numbers import quantity
-from hydrolek_drake.diagnosis.report.words import effect_sentence
-from hydrolek_drake.diagnosis.search.settings import WIDER
+from hydrolek_drake.diagnosis.report.words import effect_sentence, quantity
+from hydrolek_drake.diagnosis.settings import FITS
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.identification.natural_scales import natural_scales
 
@@ -29,18 +28,18 @@ def _ended(candidate, **at):
 def test_a_size_is_widened_away_from_where_the_effect_is_off(candidates) -> None:
     air, drift, base = (candidates[id_] for id_ in ("fluid.entrained_air", "sensor.drift", "base.compliance"))
     wide = air.widened(_ended(air, air_fraction=1.0))
-    assert wide.size.upper == pytest.approx(WIDER * air.size.upper)
+    assert wide.size.upper == pytest.approx(FITS.wider * air.size.upper)
     assert wide.size.lower == air.size.lower == 0.0
     assert air.widened(_ended(air)) == air == air.widened(_ended(air, air_fraction=0.0))
     name = drift.effect.size
     for end in (0.0, 1.0):
         wide = drift.widened(_ended(drift, **{name: end}))
-        assert wide.size.upper == pytest.approx(WIDER * drift.size.upper)
-        assert wide.size.lower == pytest.approx(WIDER * drift.size.lower)
+        assert wide.size.upper == pytest.approx(FITS.wider * drift.size.upper)
+        assert wide.size.lower == pytest.approx(FITS.wider * drift.size.lower)
     assert drift.size.lower < 0.0
     # a base is there the more the softer it is
     wide = base.widened(_ended(base, **{base.effect.size: 0.0}))
-    assert wide.size.lower == pytest.approx(base.size.lower / WIDER)
+    assert wide.size.lower == pytest.approx(base.size.lower / FITS.wider)
     assert wide.size.upper == base.size.upper
     assert base.widened(_ended(base, **{base.effect.size: 1.0})) == base
     others = [free for free in wide.free if free.path != base.size_path]
@@ -51,7 +50,7 @@ def test_what_else_an_effect_has_is_widened_at_either_end(candidates) -> None:
     stribeck, payload = candidates["cylinder.stribeck_friction"], candidates["load.payload"]
     name = "stribeck_velocity_m_per_s"
     fades = next(free for free in stribeck.free if free.path.endswith(name))
-    for end, factors in ((0.0, (1.0 / WIDER, 1.0)), (1.0, (1.0, WIDER))):
+    for end, factors in ((0.0, (1.0 / FITS.wider, 1.0)), (1.0, (1.0, FITS.wider))):
         wide = next(f for f in stribeck.widened(_ended(stribeck, **{name: end})).free if f.path == fades.path)
         assert (wide.lower, wide.upper) == pytest.approx((factors[0] * fades.lower, factors[1] * fades.upper))
     assert payload.widened(_ended(payload, time_s=1.0)) == payload  # the recording is no longer than that

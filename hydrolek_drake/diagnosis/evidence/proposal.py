@@ -11,19 +11,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.conclusion import Conclusion
+from hydrolek_drake.diagnosis.evidence.judged import Conclusion
 from hydrolek_drake.diagnosis.fitting.projection import Across
 from hydrolek_drake.diagnosis.fitting.race import hypothesis_of
+from hydrolek_drake.diagnosis.settings import EXPERIMENTS, GAINS
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.channel import Channel
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.lockstep import Place, with_slopes
 from hydrolek_drake.identification.rolling import Request, residuals_at
-
-DURATION_S = 40.0
-SAMPLE_S = 0.01
-ENOUGH = 5.0
-"""Root of the squared residuals that must be left for a decision: five standard deviations."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +41,7 @@ class Proposal:
 
 def commands_of(amplitude: float) -> dict[str, np.ndarray]:
     """Commands to choose from: words -> voltage every 10 ms over 40 s. # (n,) each."""
-    time = np.arange(0.0, DURATION_S, SAMPLE_S)
+    time = np.arange(0.0, EXPERIMENTS.duration_s, EXPERIMENTS.sample_s)
 
     def steps(levels: Sequence[float], hold: float) -> np.ndarray:
         return np.array(levels)[(time / hold).astype(int) % len(levels)]
@@ -104,7 +100,7 @@ def propose(
     names = " from ".join(_names(h) for h in (first, second))
     told = (
         f"it would tell {names} at {separation:.0f} standard deviations (checked by simulation)"
-        if separation >= ENOUGH
+        if separation >= GAINS.certain
         else f"even it would tell {names} only at {separation:.1f} standard deviations"
     )
     return Proposal(
@@ -117,7 +113,7 @@ def _names(hypothesis: Hypothesis) -> str:
 
 
 def _with_command(template: Experiment, command: np.ndarray) -> Experiment:
-    time = np.arange(command.size) * SAMPLE_S
+    time = np.arange(command.size) * EXPERIMENTS.sample_s
     channels = tuple(
         replace(channel, measured=np.zeros(command.size), model_error=None, blur=None)
         for channel in template.channels

@@ -1,7 +1,7 @@
 """The smallest size of each effect that a recording would have shown.
 
 A size is seen if what it changes, less what the model's own parameters undo of it, has the squared size that one more
-effect must bring (`search.gains.gain_needed`). The change is not in proportion to the size: much of what a large effect
+effect must bring (`search.cost.gain_needed`). The change is not in proportion to the size: much of what a large effect
 does beyond the reach of the parameters is of second order. So the size is sought by rollouts and not by a rule of
 three.
 """
@@ -13,27 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.diagnosis.fitting.projection import Across
-from hydrolek_drake.diagnosis.search.gains import VISIBLE, gain_needed
+from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.search.promise import Promise
-from hydrolek_drake.diagnosis.search.settings import TELLING
+from hydrolek_drake.diagnosis.settings import EXPERIMENTS, FITS, GAINS
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects import EFFECTS
-
-ROUNDS = 6
-"""Sizes that are tried for an effect."""
-
-STRIDE = 5.0
-"""From one to the next, at most."""
-
-NEAR_ENOUGH = 3.0
-"""A size is taken that shows at most so many times what is needed."""
-
-NOTHING = 1e-6
-"""So much of the first estimate does nothing."""
-
-AIM = 1.5
-"""The next size is to show so many times what is needed, so that it is not missed by a hair."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +62,7 @@ def _visible_size(
 ) -> float:
     """That of one effect; NaN if none in its range is seen."""
     path = candidate.size_path
-    problem = bench.problem((*hypothesis.effects, candidate), TELLING * bench.fine)
+    problem = bench.problem((*hypothesis.effects, candidate), FITS.coarse * bench.fine)
     start = promise.starts[0]
     sign = math.copysign(1.0, start[path])
     alone = {**hypothesis.values, **start, **_without_special_cases(candidate)}
@@ -88,21 +73,21 @@ def _visible_size(
         return problem.residuals(problem.parameters.unit({**alone, path: inside}))
 
     # a play without a gap is still a contact that gives way: what counts is what the size does
-    nothing = residuals(promise.visible_from * NOTHING**power)
-    needed = max(VISIBLE, gain_needed(hypothesis.fit))
+    nothing = residuals(promise.visible_from * FITS.negligible**power)
+    needed = max(GAINS.visible, gain_needed(hypothesis.fit))
     unmoved = np.zeros_like(hypothesis.fit.off_prior)
     size, seen = promise.visible_from, math.nan
-    for _ in range(ROUNDS):
+    for _ in range(EXPERIMENTS.rounds):
         change = across(np.concatenate([residuals(size) - nothing, unmoved]))
         shown = float(change @ change) / needed
         if shown >= 1.0:
             seen = size
-            if shown <= NEAR_ENOUGH:
+            if shown <= EXPERIMENTS.near_enough:
                 break
         elif math.isfinite(seen):
             break
-        stride = math.sqrt(AIM / max(shown, np.finfo(float).tiny))
-        size *= min(max(stride, 1.0 / STRIDE), STRIDE) ** power
+        stride = math.sqrt(EXPERIMENTS.aim / max(shown, np.finfo(float).tiny))
+        size *= min(max(stride, 1.0 / EXPERIMENTS.stride), EXPERIMENTS.stride) ** power
     bench.evaluations += problem.evaluations
     return seen
 

@@ -1,25 +1,15 @@
-"""Which data are fitted, and which are held out to decide."""
+"""Which data are fitted, which are held out to decide, and which cannot be diagnosed at all: these are refused."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.data.quality import reasons_against
+from hydrolek_drake.diagnosis.settings import DATA
 from hydrolek_drake.errors import InputError, UninformativeError
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
-
-BLOCKS = 6
-"""Without a held-out recording, each recording is cut into so many blocks ..."""
-
-HELD_BLOCKS = (2, 5)
-"""... of which these are held out: one in the middle and the last."""
-
-SHORT_BLOCKS = 18
-"""Held-out data are cut into so many blocks, of which every other one chooses and those between report. Where they show
-what the training data do not, two of three are fitted too: short ones, so that what they show is in every part."""
 
 
 def prepared(
@@ -71,15 +61,15 @@ def _within(experiment: Experiment, between: tuple[float, float]) -> np.ndarray:
 
 def _held_blocks(experiment: Experiment) -> np.ndarray:
     """Samples of the blocks that are held out. # (n,)."""
-    block = np.floor(BLOCKS * np.arange(experiment.time.size) / experiment.time.size)
-    return np.isin(block, HELD_BLOCKS)
+    block = np.floor(DATA.blocks * np.arange(experiment.time.size) / experiment.time.size)
+    return block % DATA.held_every == DATA.held_every - 1
 
 
 def short_blocks(experiment: Experiment) -> np.ndarray:
-    """In which of `SHORT_BLOCKS` each sample that counts lies. # (n,)."""
+    """In which of `DATA.short_blocks` each sample that counts lies. # (n,)."""
     so_far = np.cumsum(experiment.used) - 1
     count = max(int(experiment.used.sum()), 1)
-    return np.asarray(np.floor(SHORT_BLOCKS * np.maximum(so_far, 0) / count).astype(int))
+    return np.asarray(np.floor(DATA.short_blocks * np.maximum(so_far, 0) / count).astype(int))
 
 
 def halves(held_out: Sequence[Experiment]) -> tuple[tuple[Experiment, ...], tuple[Experiment, ...]]:
@@ -101,3 +91,67 @@ def mixed(
     chosen = [e.split(e.used & (b % 6 == 2)) for e, b in zip(held_out, blocks, strict=True)]
     kept = [e.split(e.used & (b % 6 == 5)) for e, b in zip(held_out, blocks, strict=True)]
     return (*training, *fitted), tuple(chosen), tuple(kept)
+
+
+def reasons_against(recording: Recording, experiments: Sequence[Experiment]) -> list[str]:
+    """Why a recording cannot be diagnosed, one sentence each; empty if it can.
+
+    Args:
+        recording: as read.
+        experiments: its joints.
+    """
+    reasons = []
+    if recording.time.size < DATA.least_samples:
+        reasons.append(
+            f"{recording.name} has {recording.time.size} samples; at least {DATA.least_samples} are needed"
+        )
+    gaps = sum(end - start for f in recording.findings if f.kind == "gap" for start, end in f.spans)
+    if gaps > DATA.most_missing * recording.duration:
+        reasons.append(
+            f"{recording.name}: nothing was recorded for {gaps:.1f} s of {recording.duration:.1f} s, "
+            "so what the machine was told meanwhile is not known"
+        )
+    for experiment in experiments:
+        position = experiment.channels[0]
+        known = np.isfinite(position.measured)
+        missing = 1.0 - float(known.mean())
+        if missing > DATA.most_missing:
+            reasons.append(
+                f"{recording.name}: {position.key} has no value in {100 * missing:.0f} % of the samples"
+            )
+        travel = float(np.nanmax(position.measured) - np.nanmin(position.measured)) if known.any() else 0.0
+        if travel < DATA.least_travel * position.noise:
+            reasons.append(
+                f"{recording.name}: {position.key} hardly moves ({travel:.3g} {position.unit}, "
+                f"noise {position.noise:.2g}), so there is no movement to explain"
+            )
+        saturated = _share(recording, position.key, "saturated")
+        if saturated > DATA.most_saturated:
+            reasons.append(
+                f"{recording.name}: {position.key} sits at its limit for {100 * saturated:.0f} % of the time"
+            )
+        frozen = _frozen_share(experiment)
+        if frozen > DATA.most_frozen:
+            reasons.append(
+                f"{recording.name}: {position.key} repeats one value for {100 * frozen:.0f} % of the time "
+                "without any noise, as a sensor does that has frozen"
+            )
+    return reasons
+
+
+def _share(recording: Recording, key: str, kind: str) -> float:
+    spans = [s for f in recording.findings if f.kind == kind and f.signal == key for s in f.spans]
+    return sum(end - start for start, end in spans) / recording.duration
+
+
+def _frozen_share(experiment: Experiment) -> float:
+    """Share of the time in long runs of one value, of a signal that is noisy elsewhere."""
+    values, time = experiment.channels[0].measured, experiment.time
+    same = np.diff(values) == 0.0
+    if same.mean() > 0.9 or experiment.channels[0].noise <= 0.0:
+        return (
+            float(same.mean()) if same.mean() > 0.98 else 0.0
+        )  # a coarse or noise-free signal repeats itself
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], same, [False]]).astype(int)))
+    spans = [time[end] - time[begin] for begin, end in zip(edges[::2], edges[1::2], strict=True)]
+    return float(sum(span for span in spans if span > DATA.frozen_span_s)) / float(np.ptp(time))

@@ -1,0 +1,261 @@
+"""How structures are fitted and searched, and how physics in no list is looked for beside them."""
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Fits:
+    """How a structure is fitted."""
+
+    observers_s: tuple[float, ...] = (0.1, 0.5, 3.0)
+    """Time constants of observers [s], each five or six times the one before: what they forget makes few local
+    minima, what they remember tells slow things."""
+
+    coarse: float = 2.0
+    """Steps so many times the rig's own lead fits until their end, and tell what an addition changes where they are on
+    both sides of a difference."""
+
+    last_step: float = 0.5
+    """Last fits use this fraction of the rig's own step, so that the step's error cannot decide."""
+
+    tolerance: float = 1e-3
+    """Differences by less than this share are none: a number so near an end of its range (in ranges) cannot move on,
+    and two fits of a structure whose squares are so nearly the same stand in the same minimum."""
+
+    negligible: float = 1e-6
+    """A share that changes nothing which a rollout shows: fits begin so far within their ranges, from where steps to
+    both sides can be made, and so much of an effect does nothing."""
+
+    wider: float = 4.0
+    """A range that proves too narrow is widened so many times; a law that acts near a place reaches so much farther
+    or less far than where its fit begins."""
+
+    sizes: tuple[float, ...] = (1.0, 0.1, 0.01)
+    """Sizes at which an effect is tried, as multiples of where its search begins."""
+
+    strides: tuple[float, ...] = (0.25, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 1.02, 1.05, 1.1, 1.25, 1.5, 2.0, 4.0)
+    """Multiples of a size without a slope at which it is tried elsewhere: closer together the nearer they are."""
+
+    places: int = 16
+    """So many places without a slope are tried side by side: two tables of lanes."""
+
+    anew: int = 3
+    """So often is a fit begun anew at most: with data weighed by a better one, or in a lower local minimum."""
+
+
+FITS = Fits()
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One rung of a race: how a structure is fitted, and how many go on.
+
+    Attributes:
+        observer_s: time constant of the observer [s]; infinite for free rollouts.
+        coarse: integration step over the rig's own.
+        seconds: so much of the recordings is seen.
+        rounds: steps of a fit.
+        keep: so many fits go on.
+        share: fits end where a step takes less than this share of what is left.
+        elsewhere: whether what has no slope is tried elsewhere.
+        each: so many fits of a structure go on at most, in different minima.
+    """
+
+    observer_s: float
+    coarse: float
+    seconds: float
+    rounds: int
+    keep: int
+    share: float = 5e-4
+    elsewhere: bool = False
+    each: int = 2
+
+
+_FAST, _MIDDLE, _SLOW = FITS.observers_s
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The search among structures, which may be asked for with other numbers."""
+
+    starts: int = 2
+    """So many places of each addition are fitted from on each way."""
+
+    scanned: int = 4
+    """The same of those without a slope."""
+
+    parted: int = 3
+    """So many structures of a race are fitted part by part at most."""
+
+    entrants: int = 24
+    """So many additions of those that promise most are fitted; there are fewer effects, and more terms of laws."""
+
+    doubled: int = 8
+    """So many of them from more than one start."""
+
+    free: tuple[Rung, ...] = (
+        Rung(math.inf, FITS.coarse, 20.0, 5, 8),
+        Rung(math.inf, FITS.coarse, math.inf, 12, 4, elsewhere=True),
+    )
+    """A race of free rollouts, from where the structure before it led."""
+
+    continued: tuple[Rung, ...] = (
+        Rung(_FAST, FITS.coarse, 20.0, 4, 12),
+        Rung(_MIDDLE, FITS.coarse, math.inf, 8, 8, elsewhere=True),
+        Rung(_SLOW, FITS.coarse, math.inf, 12, 4, elsewhere=True),
+    )
+    """A race by continuation, from the rig's own numbers: prediction errors of an observer forget, so that they have
+    few local minima (Ljung, System Identification, 1999, chapter 7); free rollouts see what is slow."""
+
+    ended: tuple[Rung, ...] = (
+        Rung(math.inf, 1.0, math.inf, 8, 4),
+        Rung(math.inf, 1.0, math.inf, 32, 4, share=1e-4, elsewhere=True),
+    )
+    """The end of both races."""
+
+    nominal: tuple[Rung, ...] = (
+        Rung(_FAST, FITS.coarse, math.inf, 8, 4),
+        Rung(_MIDDLE, FITS.coarse, math.inf, 8, 4),
+        Rung(_SLOW, 1.0, math.inf, 12, 4),
+    )
+    """The nominal model by continuation."""
+
+    near: tuple[Rung, ...] = (
+        Rung(_MIDDLE, 1.0, math.inf, 6, 4, each=4),
+        Rung(math.inf, 1.0, math.inf, 20, 1, share=1e-4),
+    )
+    """Fits from places near one that ended."""
+
+    near_spreads: tuple[float, ...] = (0.003, 0.01, 0.03)
+    """Standard deviations of their distances from it in each parameter [ranges]."""
+
+    near_rounds: int = 6
+    """So often they are looked for at most."""
+
+    again: Rung = Rung(math.inf, 1.0, math.inf, 32, 1, share=1e-4)
+    """Fits that begin where nearly the same one ended."""
+
+    led: Rung = Rung(math.inf, 1.0, math.inf, 6, 1)
+    """The same of a structure that is far from the noise, or was led by another fit: it is fitted again later."""
+
+    last: Rung = Rung(math.inf, FITS.last_step, math.inf, 4, 8, share=1e-4)
+    """The last fits, with half of the rig's own step, so that the error of the integration cannot decide."""
+
+    nearer: float = 0.8
+    """A structure that leaves this share of what the one left that the data are weighed by tells their noise better."""
+
+    most_expansions: int = 8
+    """So many structures are enlarged at most."""
+
+    patience: int = 3
+    """The search ends once so many rounds have not improved the best structure."""
+
+    lost: float = 0.3
+    """Commands that got lost are fitted if they promise this share of what is left above the noise."""
+
+    lost_rounds: int = 5
+    """So often windows of lost commands are looked for beside those that were fitted: what large ones leave hides
+    small ones."""
+
+    most_additions: int = 3
+    """So many additions a structure has at most."""
+
+    beam: int = 2
+    """So many structures with the same number of additions are enlarged."""
+
+    @property
+    def near_each(self) -> int:
+        """So many places near a fit at each distance: with the one in their middle two tables of lanes."""
+        return (FITS.places - 1) // len(self.near_spreads)
+
+
+@dataclass(frozen=True)
+class Locating:
+    """Unknown inputs at each stage, and laws read from them."""
+
+    knots_s: float = 0.05
+    """Between knots [s]: a joint hardly follows what is faster."""
+
+    observer_s: float = 0.3
+    """Time constant of the observer whose innovations tell of unknown inputs [s]: longer than a valve takes to open,
+    and far shorter than a move."""
+
+    forgotten: float = 6.0
+    """So many time constants after an input its trace in the innovations is gone (e^-6)."""
+
+    amplitude: float = 1e-3
+    """Of a trial, in scales of the input: small enough to be linear."""
+
+    fitted: int = 3
+    """Steps by which a structure's own parameters are fitted to innovations before they are asked for unknown
+    inputs."""
+
+    each: int = 3
+    """So many terms of each input are offered, and the best of all beyond these."""
+
+    offered: int = 20
+    """So many terms are offered in all, about as many as there are effects."""
+
+    highest_hz: float = 8.0
+    """Frequencies up to this one are looked for; joints hardly follow faster ones."""
+
+    lowest: float = 3.0
+    """Cycles at least within a recording; what is slower is no vibration."""
+
+    peaks: int = 2
+    """So many frequencies of each input are followed."""
+
+    breadth_hz: float = 0.06
+    """Half of the range in which the frequency of a periodic term is fitted about where it was seen."""
+
+    scan_s: float = 12.0
+    """Frequencies are told in cycles in so many seconds where their intervals are worked out."""
+
+    sizes: tuple[float, ...] = (0.3, 0.1, 0.03, 0.003)
+    """Amplitudes at which a term is tried, in scales of its input."""
+
+
+LOCATING = Locating()
+
+
+@dataclass(frozen=True)
+class Dropouts:
+    """Commands that got lost: windows in which the machine has none."""
+
+    sample_s: float = 0.02
+    """About one sample of a controller [s]: between knots at which commands may be lost, and windows that lie no
+    farther apart are one."""
+
+    longest_s: float = 0.5
+    """A command that is lost for longer is a recording of two pieces."""
+
+    moves_s: float = 0.3
+    """A move hardly changes within so much: windows are tried up to so long, and fitted within so much to either side
+    of where they were seen."""
+
+    shortest_s: float = 1e-3
+    """Shorter windows are no time that a rollout resolves."""
+
+    most_share: float = 0.1
+    """So much of a recording may be lost at most: a line that loses more is not in use."""
+
+    whole: float = 1.2
+    """Multiple of a command that may be missing: there is no more in it to be lost but for the observer's own error."""
+
+    @property
+    def most_knots(self) -> int:
+        """A window is tried over so many spacings of knots at most."""
+        return round(self.moves_s / self.sample_s)
+
+    @property
+    def remembers_s(self) -> float:
+        """Time constant of the observer [s].
+
+        A joint that misses its command for a few milliseconds is off by little, and for good: a fast observer forgets
+        it before it can be told from noise.
+        """
+        return FITS.observers_s[-1]
+
+
+DROPOUTS = Dropouts()

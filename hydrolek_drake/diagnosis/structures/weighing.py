@@ -1,0 +1,110 @@
+"""How much each measured value counts: weights from the noise and the model error that show beside a model.
+
+Joints of one arm shake each other on their oil, faster than smoothed angles tell. Near the noise that matters: a
+healthy machine would look as if something were missing. A rollout of all joints with a fitted model's values tells it.
+Its motion and flows then stand as known inputs of each joint's own rollout, which gives the same movement at these
+values (`identification.neighbours`), and nearly so at values close by: the fit goes on with them and asks again.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.lost_commands.windows import arrivals
+from hydrolek_drake.diagnosis.settings import DATA, NOISE
+from hydrolek_drake.diagnosis.structures.as_rig import rig_of
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.channel import faithful
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.neighbours import probes_of
+from hydrolek_drake.identification.recorded_together import OneRecording, recordings_of
+from hydrolek_drake.replay.noise import noise_level
+from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rollout.together import Together
+
+
+def weighted_by(
+    bench: Workbench, hypothesis: Hypothesis, experiments: Sequence[Experiment]
+) -> list[Experiment]:
+    """The same experiments with noise, model error and response to the start as they show beside this model.
+
+    A recorded signal's own movement passes for noise where it is fast; most of it is gone in the residual.
+    The error of the integration is told from a second rollout with half the step: the method is of second
+    order, so the coarser one is wrong by 4/3 of their difference. What joints that move at the same time do
+    is told by rolling out all joints where the model is near the noise, and known to `DATA.others_unknown` elsewhere.
+    """
+    problem = bench.problem(hypothesis.effects, bench.fine, experiments)
+    records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
+    if hypothesis.fit.over_noise < NOISE.far and any(e.others is not None for e in experiments):
+        experiments = felt_together(rig_of(bench.rig, hypothesis), experiments)
+    better = []
+    arrived = arrivals(hypothesis.effects, hypothesis.values, experiments)
+    for recorded, experiment in zip(experiments, arrived, strict=True):
+        coarse = experiment.simulate(records, bench.fine).signals
+        fine = experiment.simulate(records, 0.5 * bench.fine).signals
+        alone = None
+        if experiment.others is not None and experiment.others_error is None:
+            alone = replace(experiment, others=None).simulate(records, 0.5 * bench.fine).signals
+        channels = []
+        for number, channel in enumerate(experiment.channels):
+            model = getattr(fine, channel.model)
+            level = noise_level(channel.measured - model)
+            error = 4.0 / 3.0 * np.abs(getattr(coarse, channel.model) - model)
+            if experiment.others_error is not None:
+                error = np.hypot(error, experiment.others_error[number])
+            if alone is not None:
+                error = np.hypot(error, DATA.others_unknown * (model - getattr(alone, channel.model)))
+            channels.append(
+                replace(
+                    channel,
+                    noise=min(channel.noise, max(level, faithful(channel.measured))),
+                    model_error=np.nan_to_num(error),
+                )
+            )
+        response = experiment.responding(records, 0.5 * bench.fine, fine)
+        better.append(replace(recorded, channels=tuple(channels), start_response=response))
+    return better
+
+
+def felt_together(rig: Rig, experiments: Sequence[Experiment]) -> list[Experiment]:
+    """The same experiments, those of joints that move together with what the others do by rolling out all.
+
+    Where that leaves all bounds they stay as they are.
+
+    Args:
+        rig: the machine with the values of a fitted model.
+        experiments: of one or more recordings.
+    """
+    felt: list[Experiment] = []
+    for group in recordings_of(experiments):
+        felt += group if group[0].others is None else _felt(rig, group)
+    return felt
+
+
+def _felt(rig: Rig, group: Sequence[Experiment]) -> list[Experiment]:
+    """The joints of one recording, beside each other."""
+    begin, end = min(float(e.time[0]) for e in group), max(float(e.time[-1]) for e in group)
+    times = begin + DATA.motion_step_s * np.arange(int((end - begin) / DATA.motion_step_s + 1e-6) + 2)
+    records = rig.records()
+    done = OneRecording(rig, group).roll_out(records, times)
+    if done.diverged is not None:
+        return list(group)
+    motions, flows = {}, {}
+    for i, joint in enumerate(done.joints):
+        position, velocity = done.signals["position"][:, i], done.signals["velocity"][:, i]
+        motions[joint] = (position, velocity, np.gradient(velocity, DATA.motion_step_s))
+        flows[joint] = done.signals["drawn"][:, i]
+    firsts = {e.joint: float(e.time[0]) - begin for e in group}
+    probes = probes_of(rig, motions, flows, DATA.motion_step_s, firsts)
+    felt = [replace(e, others=probes[e.joint]) for e in group]
+    return [replace(e, others_error=_apart(e, records, done)) for e in felt]
+
+
+def _apart(experiment: Experiment, records: np.ndarray, done: Together) -> np.ndarray:
+    """By how much a joint's own rollout differs from that of all at the same values. # (channels, n)."""
+    own = experiment.simulate(records).signals
+    column = done.joints.index(experiment.joint)
+    models = [channel.model for channel in experiment.channels]
+    whole = [np.interp(experiment.time, done.time, done.signals[model][:, column]) for model in models]
+    return np.array([getattr(own, model) for model in models]) - np.array(whole)
