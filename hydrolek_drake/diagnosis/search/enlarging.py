@@ -46,7 +46,7 @@ def enlarged(
         cores: that roll out at the same time.
 
     Returns:
-        Whether the structure itself was fitted better meanwhile, and should be enlarged again.
+        Whether the structure itself was fitted so much better meanwhile that it should be enlarged again.
     """
     parent = opening.parent
     enough = NOISE.ahead if can_be_cut(bench) else NOISE.at
@@ -78,7 +78,7 @@ def enlarged(
             found.keep(each)
     _widened(bench, found, settings, cores)
     _lessened(bench, found, candidates, settings, cores)
-    return better is not None
+    return better is not None and better.fit.over_noise <= settings.nearer * parent.fit.over_noise
 
 
 def _led_on(

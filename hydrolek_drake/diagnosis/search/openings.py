@@ -32,7 +32,7 @@ class Opening:
         pulled: what they promise to an observer around the rig's own numbers; empty where nobody has asked.
         sizes: full path -> value of what the structure adds to the nominal model.
         expected: cost of the structure that they promise.
-        at_noise: whether that one is promised to leave no more than noise.
+        left: times the noise that it is promised to leave.
         lost: windows of lost commands that may be added too.
     """
 
@@ -43,7 +43,7 @@ class Opening:
     pulled: tuple[Promise, ...]
     sizes: dict[str, float]
     expected: float
-    at_noise: bool = False
+    left: float = math.inf
     lost: LostWindows | None = None
 
     @property
@@ -55,6 +55,15 @@ class Opening:
     def promising(self) -> float:
         """Largest fall of the squares that is promised, in free rollouts."""
         return self.free[0].gain if self.free else 0.0
+
+    def leads(self, best: Hypothesis, nearer: float) -> bool:
+        """Whether it promises to lead to the noise, or so much nearer to it than the best structure is.
+
+        Args:
+            best: of all so far.
+            nearer: share of what that one leaves.
+        """
+        return self.left <= max(NOISE.at, nearer * best.fit.over_noise)
 
     @property
     def worth_while(self) -> bool:
@@ -117,8 +126,8 @@ def opened(
         + "; pulled "
         + ", ".join(f"{p.candidate.id} {p.gain:.0f}" for p in pulled[:4])
     )
-    at_noise = left <= NOISE.at**2 * count
-    return Opening(parent, kind, own, tuple(free), tuple(pulled), sizes, expected, at_noise, lost)
+    over_noise = math.sqrt(left / count)
+    return Opening(parent, kind, own, tuple(free), tuple(pulled), sizes, expected, over_noise, lost)
 
 
 def surely_above(structure: Hypothesis) -> float:
