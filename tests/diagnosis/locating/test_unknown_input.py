@@ -4,12 +4,13 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
+from scipy.sparse import csc_matrix
 
 from hydrolek_drake.diagnosis.laws.inputs import inputs_of
 from hydrolek_drake.diagnosis.laws.law import FRICTIONS
 from hydrolek_drake.diagnosis.laws.terms import TERMS, law_record, span_of
 from hydrolek_drake.diagnosis.locating.terms_for import Slightly, terms_seen
-from hydrolek_drake.diagnosis.locating.unknown_input import unknown_inputs
+from hydrolek_drake.diagnosis.locating.unknown_input import _squared, unknown_inputs
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.natural_scales import natural_scales
@@ -75,3 +76,16 @@ def test_a_machine_that_lacks_nothing_promises_next_to_nothing(seen_of) -> None:
     assert (
         max(gain for gain, _ in terms_seen(seen, record, "joint", span)) < 0.1 * counted
     )  # the error of the integration
+
+
+@pytest.mark.parametrize("covered", [7, 40, 300])
+def test_products_of_responses_are_those_of_the_whole_matrices(covered: int) -> None:
+    """Responses that overlap with few, with some, and with all others; two channels one after the other."""
+    generator = np.random.default_rng(3)
+    samples, knots = 400, 200
+    whole = np.zeros((2 * samples, knots))
+    for knot in range(knots):
+        rows = np.arange(2 * knot, min(2 * knot + covered, samples))
+        for channel in range(2):
+            whole[channel * samples + rows, knot] = generator.standard_normal(rows.size)
+    np.testing.assert_allclose(_squared(csc_matrix(whole)), whole.T @ whole, rtol=1e-12, atol=1e-12)
