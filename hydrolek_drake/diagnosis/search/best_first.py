@@ -60,7 +60,8 @@ def search_structures(
         wanted = _open(found, done, settings, laws=unlisted is not None)
         for parent, kind in sorted(wanted, key=lambda each: each[1] == LAWS):
             key = (parent.ids, kind)
-            if kind == LAWS and any(o.worth_while and o.leads(found.best, settings.nearer) for o in openings):
+            lead = [o for o in openings if o.worth_while and o.leads(found.best, settings.nearer)]
+            if kind == LAWS and lead and found.gaining:
                 continue  # laws are asked for where effects lead no farther
             if key not in seen or seen[key].parent is not parent:
                 own: Sequence[Sized | LostWindows] = candidates

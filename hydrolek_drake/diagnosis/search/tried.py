@@ -47,6 +47,11 @@ class Tried:
         """The structure that costs least."""
         return min(self.hypotheses.values(), key=cost)
 
+    @property
+    def gaining(self) -> bool:
+        """Whether the last round led to a better structure than the one before it."""
+        return len(self.costs) < 2 or self.costs[-1] <= self.costs[-2] - 2.0
+
     def rounds_without_gain(self, patience: int) -> bool:
         """Whether so many rounds have not changed which structure is best, to within a unit of log-odds."""
         self.costs.append(cost(self.best))
