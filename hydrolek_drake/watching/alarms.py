@@ -122,8 +122,10 @@ def judged(answer: Answer, number: int, rule: AlarmRule, healthy: Healthy) -> Ju
     """
     share = rule.granted(number) / (len(answer.effects) + 1)
     thresholds, beyond = {}, []
+    counts = sorted({told.parameters for told in answer.effects})
+    by_chance = dict(zip(counts, chi2.isf(share, counts).tolist(), strict=True))
     for told in answer.effects:
-        chance = healthy.inflation * float(chi2.isf(share, told.parameters))
+        chance = healthy.inflation * by_chance[told.parameters]
         key = f"{told.joint}.{told.effect}" if told.joint else told.effect
         thresholds[key] = max(chance, answer.needed)
         if told.gain > thresholds[key]:

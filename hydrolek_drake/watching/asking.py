@@ -18,7 +18,7 @@ from hydrolek_drake.watching.knowledge import Knowledge
 from hydrolek_drake.watching.likelihood import SizeTold, of_branches, of_fit
 from hydrolek_drake.watching.reference import Session
 from hydrolek_drake.watching.scanning import Scan, scanned, size_of, strength, strengths
-from hydrolek_drake.watching.settings import EXACT, FITTED, POINTS, RACED, ROUNDS, TRIED, WORTH
+from hydrolek_drake.watching.settings import EXACT, FITTED, NOMINAL, POINTS, RACED, ROUNDS, TRIED, WORTH
 
 OWN_NUMBERS = "machine.own_numbers"
 """Stands for: no effect, but the machine's own numbers changed by more than they were said to drift."""
@@ -89,7 +89,7 @@ def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge 
     weighted = weighted_by(bench, session.hypothesis, experiments)
     problem = session.problem((), weighted, knowledge)
     moving = np.ones(knowledge.mean.size, dtype=bool)
-    nominal = _ended([Place(problem, moving, knowledge.mean)], session)[0]
+    nominal = _ended([Place(problem, moving, knowledge.mean)], session, NOMINAL)[0]
     [nominal] = with_slopes([nominal], bench.pool, cores)
     scans = scanned(session, nominal, weighted, knowledge)
     fitted = _fits(session, nominal, scans, weighted, knowledge)

@@ -31,15 +31,11 @@ class Posterior:
     Attributes:
         mean: places in the unit cube where the fit ended. # (n,)
         information: of them, J'J of the residuals in units of what the fit leaves, and the ranges' weak prior. # (n, n)
-        parts: of each reference recording, its own part J_r'J_r of the information. # (recordings, n, n)
-        pulls: of each reference recording, J_r'r_r, which all others balance. # (recordings, n)
         over_noise: root mean square of what the fit leaves over the noise.
     """
 
     mean: np.ndarray
     information: np.ndarray
-    parts: np.ndarray
-    pulls: np.ndarray
     over_noise: float
 
     @property
@@ -50,18 +46,6 @@ class Posterior:
     def known(self, drift: np.ndarray) -> Knowledge:
         """What a later recording's fit may begin with. # drift: (n,) in ranges."""
         return with_drift(self.mean, self.information / self.scale, drift)
-
-    def known_without(self, number: int, drift: np.ndarray) -> Knowledge:
-        """The same without one of the reference recordings, to first order.
-
-        Its share of the information is taken out, and with it its pull: the others' optimum is where
-        (H - H_r) d = J_r' r_r.
-        """
-        others = self.information - self.parts[number]
-        values, vectors = np.linalg.eigh(0.5 * (others + others.T))
-        others = (vectors * np.maximum(values, 1e-9 * values[-1])) @ vectors.T
-        moved = self.mean + np.linalg.solve(others, self.pulls[number])
-        return with_drift(moved, others / self.scale, drift)
 
 
 class Session:
@@ -128,6 +112,17 @@ class Session:
         """Of a later recording's numbers."""
         return self.posterior.known(self.drift)
 
+    def knowledge_without(self, name: str) -> Knowledge:
+        """The same by all reference recordings but one: the model fitted on to them from where it stands.
+
+        Args:
+            name: of the recording that is left out.
+        """
+        others = [e for e in self.bench.training if e.name != name]
+        bench = self.bench.with_training(others)
+        again = race(bench, [Entrant((), self.hypothesis.values)], (Settings().again,), self.cores)[0]
+        return _posterior(bench, again).known(self.drift)
+
     def problem(
         self, effects: tuple[Candidate, ...], experiments: Sequence[Experiment], known: Knowledge
     ) -> KnownProblem | KnownTogether:
@@ -156,18 +151,7 @@ def _posterior(bench: Workbench, best: Hypothesis) -> Posterior:
     problem = bench.problem((), bench.fine)
     slopes = problem.jacobian_without_jumps(best.fit.unit, best.fit.residuals)
     prior = best.fit.prior_jacobian
-    names = list(dict.fromkeys(e.name for e in problem.experiments))
-    parts = np.zeros((len(names), prior.shape[1], prior.shape[1]))
-    pulls = np.zeros((len(names), prior.shape[1]))
-    first = 0
-    for experiment in problem.experiments:
-        rows = slice(first, first + len(experiment.channels) * experiment.time.size)
-        number, own = names.index(experiment.name), slopes[rows]
-        parts[number] += own.T @ own
-        pulls[number] += own.T @ best.fit.residuals[rows]
-        first = rows.stop
-    information = parts.sum(axis=0) + prior.T @ prior
-    return Posterior(best.fit.unit, information, parts, pulls, best.fit.over_noise)
+    return Posterior(best.fit.unit, slopes.T @ slopes + prior.T @ prior, best.fit.over_noise)
 
 
 def _drifts(paths: Sequence[str], drift: Mapping[str, float]) -> np.ndarray:

@@ -15,9 +15,14 @@ FALSE_ALARMS = 0.01
 COARSE = TELLING
 """Scans and the slopes that lead fits are told by rollouts with steps so many times the rig's own."""
 
+NOMINAL = 12
+"""Marquardt steps of the nominal model's fit at most: it begins where the reference ended, and mostly ends sooner."""
+
 ROUNDS = 5
-"""Marquardt steps of the nominal model's fit at most, and of the best effects' once more: they begin where the
-reference, or another fit, ended."""
+"""Marquardt steps of the best effects at most, which go on from other fits."""
+
+LEFT_OUT = 6
+"""So many reference recordings are each asked by what the others tell: enough to see how a healthy machine varies."""
 
 RACED = 3
 """Steps of every fitted effect, which tell the best ones."""

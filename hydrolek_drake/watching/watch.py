@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from threadpoolctl import threadpool_limits
@@ -25,7 +25,7 @@ from hydrolek_drake.watching.alarms import (
 )
 from hydrolek_drake.watching.asking import Answer, asked
 from hydrolek_drake.watching.reference import Session
-from hydrolek_drake.watching.settings import DRIFT
+from hydrolek_drake.watching.settings import DRIFT, LEFT_OUT
 from hydrolek_drake.watching.stamps import Stamp, stamp_of
 from hydrolek_drake.watching.store import Seen, Store, digest_of, key_of
 from hydrolek_drake.watching.trends import Trend, trend_of
@@ -123,6 +123,8 @@ def watch(
         digest = digest_of(path)
         if any(digest == known for _, known, _, _ in training):
             raise InputError(f"reference {path} has the content of another one; a recording counts once")
+        if any(experiments[0].name == own[0].name for _, _, own, _ in training):  # files of two folders
+            experiments = [replace(e, name=f"{e.name} {len(training) + 1}") for e in experiments]
         training.append((path, digest, experiments, stamp_of(path, recording)))
     store = Store(folder, key_of(rig, [digest for _, digest, _, _ in training], drifts))
     own = None if pool is not None else ThreadPoolExecutor(count)
@@ -154,9 +156,9 @@ def _watched(
     session = Session(rig, experiments, pool, cores, drifts, None if kept is None else kept[0], say)
     if kept is None:
         told = []
-        for number, (path, digest, own, stamp) in enumerate(training):
+        for path, digest, own, stamp in training[:LEFT_OUT]:
             say(f"reference {path}")
-            known = session.posterior.known_without(number, session.drift) if len(training) > 1 else None
+            known = session.knowledge_without(own[0].name) if len(training) > 1 else None
             told.append(Seen(str(path), digest, stamp, asked(session, own, known), reference=True))
         store.keep_reference(session.posterior, told)
     else:
