@@ -28,7 +28,7 @@ from hydrolek_drake.watching.watch import watch
 
 DAY_S = 86400.0
 LATEST_ONSET = 6
-"""An effect begins on the third day at the earliest and on this one at the latest, so that there is something to see."""
+"""An effect begins on the third day at the earliest and on this one at the latest, so that there is much to see."""
 
 
 def labels(build, machines, recordings, seed):

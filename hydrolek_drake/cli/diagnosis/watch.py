@@ -8,6 +8,7 @@ import typer
 from hydrolek_drake.cli.inputs import refuse_twice
 from hydrolek_drake.cli.settings import SetOption, parse_settings
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.watching.listing import listed
 
 ALARM = 3
 """Exit status where there is an alarm."""
@@ -64,7 +65,7 @@ def watch(
         raise InputError(f"--false-alarms {false_alarms:g}: a probability between 0 and 1 is needed")
     refuse_twice(reference)
     drifts = dict(_drift(each) for each in drift or [])
-    files = _files(recordings, reference)
+    files = listed(recordings, reference)
 
     from hydrolek_drake.rigs import load_rig
 
@@ -114,24 +115,3 @@ def _drift(text: str) -> tuple[str, float]:
     if not 0.0 <= share < 10.0:
         raise InputError(f"--drift {text}: write a share of the range such as 0.02, or NAME=SHARE")
     return name.strip(), share
-
-
-def _files(given: list[Path], reference: list[Path]) -> list[Path]:
-    """Recordings: files as given, and what stands in folders, but for the reference and hidden files.
-
-    A folder that holds `metadata.yaml` is one recording, a ROS 2 bag.
-
-    Raises:
-        InputError: there is nothing of that name.
-    """
-    own = {path.absolute() for path in reference}
-    found: list[Path] = []
-    for path in given:
-        if not path.exists():
-            raise InputError(f"--recordings {path}: no such file or folder")
-        if path.is_dir() and not (path / "metadata.yaml").exists():
-            inside = [p for p in sorted(path.iterdir()) if not p.name.startswith(".")]
-            found += [p for p in inside if p.is_file() or (p / "metadata.yaml").exists()]
-        else:
-            found.append(path)
-    return [path for path in dict.fromkeys(found) if path.absolute() not in own]
