@@ -202,7 +202,10 @@ def _seen_of(
         answer = asked(session, experiments)
     except InputError as error:
         return Seen(str(path), digest, stamp_of(path, recording), None, str(error))
-    except (ValueError, ArithmeticError) as error:  # numbers that nobody foresaw; one recording stops no watch
+    except (
+        ValueError,
+        ArithmeticError,
+    ) as error:  # numbers that nobody foresaw; one recording stops no watch
         return Seen(str(path), digest, stamp_of(path, recording), None, f"{path} could not be asked: {error}")
     return Seen(str(path), digest, stamp_of(path, recording), answer)
 
