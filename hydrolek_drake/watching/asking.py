@@ -8,6 +8,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.data.weighing import weighted_by
 from hydrolek_drake.diagnosis.report.words import unit_at
 from hydrolek_drake.diagnosis.search.gains import gain_needed
+from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.lockstep import Place, descend, fit_of, with_slopes
@@ -39,6 +40,10 @@ class EffectTold:
         parameters: that the effect adds to the model.
         left: times the noise that the model with it leaves.
         others: name -> value of its other parameters.
+        beside_size: the likeliest size beside the effect that gains most, where that one is surely there; else None.
+        beside_low: lower end of its 95 % interval.
+        beside_high: upper end.
+        beside_gain: squares by which it gains there.
     """
 
     effect: str
@@ -51,6 +56,10 @@ class EffectTold:
     parameters: int
     left: float
     others: dict[str, float]
+    beside_size: float | None = None
+    beside_low: float | None = None
+    beside_high: float | None = None
+    beside_gain: float | None = None
 
 
 @dataclass(frozen=True)
@@ -99,6 +108,8 @@ def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge 
     ranked = sorted(told, key=lambda each: -each.gain)
     best = fitted.get(_path(session, ranked[0])) if ranked else None
     fit = fit_of(nominal)
+    if best is not None and ranked[0].gain > gain_needed(fit):
+        ranked = _with_beside(session, ranked, best, weighted, knowledge)
     return Answer(
         effects=(*ranked, own),
         own=problem.parameters.values(nominal.unit),
@@ -108,6 +119,40 @@ def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge 
         curves=_curves(weighted[0], fit, None if best is None else fit_of(best)),
         axis=f"{weighted[0].channels[0].key} [{display_unit(weighted[0].channels[0].unit)}]",
     )
+
+
+def _with_beside(
+    session: Session,
+    ranked: list[EffectTold],
+    best: Place,
+    experiments: Sequence[Experiment],
+    known: Knowledge,
+) -> list[EffectTold]:
+    """The same, each with its size beside the first: what imitates that one is nothing there, a second fault is not."""
+    path, scale = _path(session, ranked[0]), session.posterior.scale
+    first = next(c for c in session.candidates if c.size_path == path)
+    scans = {
+        (s.candidate.id, s.candidate.joint): s for s in scanned(session, best, experiments, known, (first,))
+    }
+    told = []
+    for each in ranked:
+        scan = scans.get((each.effect, each.joint))
+        if scan is None or not scan.branches:
+            told.append(each)
+            continue
+        size, low, high = _sizes(
+            scan.candidate, of_branches(list(scan.branches), *strengths(scan.candidate), scale)
+        )
+        told.append(
+            replace(each, beside_size=size, beside_low=low, beside_high=high, beside_gain=scan.gain / scale)
+        )
+    return told
+
+
+def _sizes(candidate: Candidate, known: SizeTold) -> tuple[float, float, float]:
+    """Size with the ends of its interval, of strengths."""
+    low, high = sorted(size_of(candidate, strong) for strong in (known.low, known.high))
+    return size_of(candidate, known.size), low, high
 
 
 def _path(session: Session, told: EffectTold) -> str:
@@ -172,14 +217,14 @@ def _told(scan: Scan, fitted: Place | None, nominal: Place, session: Session) ->
         known = of_fit(strong, _deviation(scan, fitted, scale, strong), lower, upper)
         gain = (nominal.objective - fitted.objective) / scale
         left = fit_of(fitted).over_noise
-    ends = sorted(size_of(candidate, strong) for strong in (known.low, known.high))
+    size, low, high = _sizes(candidate, known)
     others = {p.rpartition(".")[2]: v for p, v in values.items() if p in nothing and p != candidate.size_path}
     return EffectTold(
         effect=candidate.id,
         joint=candidate.joint,
-        size=size_of(candidate, known.size),
-        low=ends[0],
-        high=ends[1],
+        size=size,
+        low=low,
+        high=high,
         unit=unit_at(session.rig, candidate.joint, unit),
         gain=gain,
         parameters=len(candidate.free),

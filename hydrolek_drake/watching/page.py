@@ -15,6 +15,7 @@ from hydrolek_drake.watching.limits import Limit
 from hydrolek_drake.watching.store import Seen
 from hydrolek_drake.watching.watch import Watched
 from hydrolek_drake.watching.words import (
+    beside_text,
     growth_sentence,
     headline,
     latest,
@@ -155,20 +156,23 @@ def _last(watched: Watched) -> str:
     for told in answer.effects:
         key = f"{told.joint}.{told.effect}" if told.joint else told.effect
         size = f"{told.size:.3g} of a range" if told.effect == OWN_NUMBERS else size_text(told)
-        beyond = " class='beyond'" if told.gain > judgement.thresholds[key] else ""
+        limit = judgement.thresholds[key]
+        first = told is answer.effects[0] or told.beside_gain is None
+        beyond = " class='beyond'" if (told.gain if first else told.beside_gain or 0.0) > limit else ""
+        beside = "" if told.beside_gain is None else f"{told.beside_gain:.1f}"
         rows.append(
             f"<tr{beyond}><td>{html.escape(told.effect)}</td>"
             f"<td class='text what'>{html.escape(title_of(told.effect))}</td>"
-            f"<td>{html.escape(size)}</td><td>{told.gain:.1f}</td><td>{judgement.thresholds[key]:.1f}</td>"
-            f"<td>{ratio(told.left)}</td></tr>"
+            f"<td class='what'>{html.escape(size)}</td><td>{told.gain:.1f}</td>"
+            f"<td class='what'>{html.escape(beside_text(told))}</td><td>{beside}</td><td>{limit:.1f}</td></tr>"
         )
     head = (
-        "<tr><th>effect</th><th class='text'>what</th><th>size alone (95 %)</th><th>gain</th><th>threshold</th>"
-        "<th>left / noise</th></tr>"
+        "<tr><th>effect</th><th class='text'>what</th><th>size alone (95 %)</th><th>gain</th>"
+        "<th class='wide'>size beside the first (95 %)</th><th>gain</th><th>threshold</th></tr>"
     )
     return (
-        "<p class='other'>Each effect as if it alone explained the difference: where one is really there, others that "
-        "imitate it have a size too, and a smaller gain. Shaded: beyond the threshold.</p>"
+        "<p class='other'>Each effect as if it alone explained the difference, and beside the first where that one is "
+        "surely there: what imitates it is nothing then, and a second fault is not. Shaded: beyond the threshold.</p>"
         f"<table>{head}{''.join(rows)}</table>"
     )
 

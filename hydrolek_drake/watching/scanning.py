@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.diagnosis.fitting.projection import Across
-from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.candidates import Candidate, redundant
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.lockstep import Place, fit_of
 from hydrolek_drake.identification.rolling import Request, residuals_at
@@ -61,25 +61,31 @@ def strengths(candidate: Candidate) -> tuple[float, float]:
 
 
 def scanned(
-    session: Session, place: Place, experiments: Sequence[Experiment], known: Knowledge
+    session: Session,
+    place: Place,
+    experiments: Sequence[Experiment],
+    known: Knowledge,
+    beside: tuple[Candidate, ...] = (),
 ) -> list[Scan]:
-    """Every effect beside the nominal model, the most promising first.
+    """Every effect beside the nominal model, or beside that with some effects, the most promising first.
 
     Args:
         session: rig and reference.
-        place: of the nominal model on a recording, with residuals and slopes.
+        place: of that model on a recording, with residuals and slopes.
         experiments: of the recording, weighed.
         known: of the machine's own numbers.
+        beside: effects that the model has.
     """
     bench = session.bench
     fit = fit_of(place)
     object.__setattr__(fit, "slopes", place.slopes)  # those that led are near enough for a tangent
     across = Across(fit)
     values = place.problem.parameters.values(place.unit)
-    tried = {c.size_path: _tried(c) for c in session.candidates}
+    candidates = [c for c in session.candidates if c not in beside and not redundant(beside, c)]
+    tried = {c.size_path: _tried(c) for c in candidates}
     requests = [Request(place.problem.with_step(COARSE), (place.unit,))]
-    for candidate in session.candidates:
-        problem = session.problem((candidate,), experiments, known).with_step(COARSE)
+    for candidate in candidates:
+        problem = session.problem((*beside, candidate), experiments, known).with_step(COARSE)
         own = problem.parameters
         units = tuple(own.unit({**values, **start}) for start in tried[candidate.size_path])
         requests.append(Request(problem, units))
@@ -87,7 +93,7 @@ def scanned(
     left = across(np.concatenate([fit.residuals, fit.off_prior]))
     still = np.zeros_like(fit.off_prior)
     scans = []
-    for candidate, found in zip(session.candidates, answers, strict=True):
+    for candidate, found in zip(candidates, answers, strict=True):
         changes = [across(np.concatenate([moved - here, still])) for moved in found]
         scans.append(_scan(candidate, tried[candidate.size_path], changes, left))
     return sorted(scans, key=lambda scan: -scan.gain)

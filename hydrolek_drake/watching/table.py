@@ -9,12 +9,14 @@ from typing import Any
 from hydrolek_drake.watching.store import Seen
 
 COLUMNS = (
-    "recording", "time", "time_from", "reference", "effect", "joint", "size", "low", "high", "unit", "gain",
-    "parameters", "over_noise", "over_noise_with", "counted", "others", "own", "sha256", "problem",
+    "recording", "time", "time_from", "reference", "effect", "joint", "size", "low", "high", "unit", "gain", "parameters",
+    "beside_size", "beside_low", "beside_high", "beside_gain", "over_noise", "over_noise_with", "counted", "others", "own",
+    "sha256", "problem",
 )  # fmt: skip
-"""`size`, `low`, `high`: SI, with the 95 % interval. `gain`: fall of the squares. `over_noise`: times the noise that
-the nominal model leaves; `over_noise_with`: that the one with the effect does. `others`: the effect's other parameters,
-and `own`: the machine's own numbers, both as JSON in SI. `problem`: why a recording could not be asked."""
+"""`size`, `low`, `high`: SI, with the 95 % interval. `gain`: fall of the squares. `beside_...`: the same beside the
+effect that gains most, where that one is surely there. `over_noise`: times the noise that the nominal model leaves;
+`over_noise_with`: that the one with the effect does. `others`: the effect's other parameters, and `own`: the machine's
+own numbers, both as JSON in SI. `problem`: why a recording could not be asked."""
 
 
 def table_of(seen: Sequence[Seen]) -> dict[str, list[Any]]:
@@ -48,6 +50,10 @@ def table_of(seen: Sequence[Seen]) -> dict[str, list[Any]]:
                     "unit": told.unit,
                     "gain": told.gain,
                     "parameters": told.parameters,
+                    "beside_size": told.beside_size,
+                    "beside_low": told.beside_low,
+                    "beside_high": told.beside_high,
+                    "beside_gain": told.beside_gain,
                     "over_noise": each.answer.left,
                     "over_noise_with": told.left,
                     "counted": each.answer.counted,
@@ -63,7 +69,12 @@ def as_parquet(seen: Sequence[Seen]) -> bytes:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    numbers = dict.fromkeys(("size", "low", "high", "gain", "over_noise", "over_noise_with"), pa.float64())
+    floats = [
+        name
+        for name in COLUMNS
+        if name.partition("_")[0] in ("size", "low", "high", "gain", "beside", "over")
+    ]
+    numbers = dict.fromkeys(floats, pa.float64())
     kinds = {
         **dict.fromkeys(COLUMNS, pa.string()),
         **numbers,

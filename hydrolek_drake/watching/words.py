@@ -38,12 +38,23 @@ def title_of(effect: str) -> str:
 
 def size_text(told: EffectTold) -> str:
     """A size with its interval; an upper limit where nothing is within it."""
-    if not np.isfinite(told.size) or not np.isfinite(told.high):
-        return "nothing" if not np.isfinite(told.low) else f"above {shown(told.low, told.unit)}"
-    value, low, high = with_interval(Interval(told.size, told.low, told.high), told.unit)
-    if told.low == 0.0 and told.high > 0.0:
-        return f"at most {high}"
-    return f"{value.partition(' ')[0]} ({low} to {high})"
+    return _size_text(told.size, told.low, told.high, told.unit)
+
+
+def beside_text(told: EffectTold) -> str:
+    """The same beside the effect that gains most; empty where none is surely there."""
+    if told.beside_size is None or told.beside_low is None or told.beside_high is None:
+        return ""
+    return _size_text(told.beside_size, told.beside_low, told.beside_high, told.unit)
+
+
+def _size_text(size: float, low: float, high: float, unit: str) -> str:
+    if not np.isfinite(size) or not np.isfinite(high):
+        return "nothing" if not np.isfinite(low) else f"above {shown(low, unit)}"
+    value, begin, end = with_interval(Interval(size, low, high), unit)
+    if low == 0.0 and high > 0.0:
+        return f"at most {end}"
+    return f"{value.partition(' ')[0]} ({begin} to {end})"
 
 
 def latest(watched: Watched, effect: str, joint: str) -> EffectTold | None:

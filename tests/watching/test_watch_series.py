@@ -57,6 +57,15 @@ def test_sizes_lie_in_their_intervals(leaking, planted, growth):
     assert told[0].low == 0.0 and 0.0 < told[0].high < 0.2 * growth
 
 
+def test_beside_the_leakage_nothing_else_is_there(leaking):
+    watched, _ = leaking
+    last = watched.answers[-1]
+    assert last.effects[0].effect == "cylinder.cross_port_leakage"
+    beside = [e.beside_gain for e in last.effects[1:] if e.beside_gain is not None]
+    assert len(beside) > 12 and max(beside) < 0.01 * last.effects[1].gain
+    assert watched.answers[0].effects[0].beside_gain is None  # a healthy recording has no first effect
+
+
 def test_a_healthy_series_gives_no_alarm_and_a_broken_file_is_listed(
     leaking, machine_days, references, tmp_path
 ):
