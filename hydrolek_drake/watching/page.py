@@ -153,11 +153,12 @@ def _last(watched: Watched) -> str:
         return "<p class='other'>None.</p>"
     answer, judgement = watched.answers[-1], watched.judgements[-1]
     rows = []
+    second = any(told.beside_gain is not None for told in answer.effects)
     for told in answer.effects:
         key = f"{told.joint}.{told.effect}" if told.joint else told.effect
         size = f"{told.size:.3g} of a range" if told.effect == OWN_NUMBERS else size_text(told)
         limit = judgement.thresholds[key]
-        first = told is answer.effects[0] or told.beside_gain is None
+        first = told is answer.effects[0] or not second
         beyond = " class='beyond'" if (told.gain if first else told.beside_gain or 0.0) > limit else ""
         beside = "" if told.beside_gain is None else f"{told.beside_gain:.1f}"
         rows.append(

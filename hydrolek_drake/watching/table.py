@@ -9,9 +9,9 @@ from typing import Any
 from hydrolek_drake.watching.store import Seen
 
 COLUMNS = (
-    "recording", "time", "time_from", "reference", "effect", "joint", "size", "low", "high", "unit", "gain", "parameters",
-    "beside_size", "beside_low", "beside_high", "beside_gain", "over_noise", "over_noise_with", "counted", "others", "own",
-    "sha256", "problem",
+    "recording", "time", "time_from", "reference", "effect", "joint", "size", "low", "high", "unit", "gain",
+    "parameters", "beside_size", "beside_low", "beside_high", "beside_gain", "over_noise", "over_noise_with",
+    "counted", "others", "own", "sha256", "problem",
 )  # fmt: skip
 """`size`, `low`, `high`: SI, with the 95 % interval. `gain`: fall of the squares. `beside_...`: the same beside the
 effect that gains most, where that one is surely there. `over_noise`: times the noise that the nominal model leaves;
