@@ -10,16 +10,25 @@ from hydrolek_drake.diagnosis.report.words import unit_at
 from hydrolek_drake.diagnosis.search.gains import gain_needed
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import Fit
 from hydrolek_drake.identification.lockstep import Place, descend, fit_of, with_slopes
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
-from hydrolek_drake.replay.display import display_factor, display_unit
+from hydrolek_drake.replay.display import display_unit
+from hydrolek_drake.watching.curves import curves_of
 from hydrolek_drake.watching.knowledge import Knowledge
 from hydrolek_drake.watching.likelihood import SizeTold, of_branches, of_fit
 from hydrolek_drake.watching.reference import Session
 from hydrolek_drake.watching.scanning import Scan, scanned, size_of, strength, strengths
-from hydrolek_drake.watching.settings import EXACT, FITTED, NOMINAL, POINTS, RACED, ROUNDS, TRIED, WORTH
+from hydrolek_drake.watching.settings import (
+    EXACT,
+    FITTED,
+    FURTHER,
+    NOMINAL,
+    RACED,
+    ROUNDS,
+    TRIED,
+    WORTH,
+)
 
 OWN_NUMBERS = "machine.own_numbers"
 """Stands for: no effect, but the machine's own numbers changed by more than they were said to drift."""
@@ -116,7 +125,7 @@ def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge 
         left=fit.over_noise,
         counted=fit.counted,
         needed=gain_needed(fit),
-        curves=_curves(weighted[0], fit, None if best is None else fit_of(best)),
+        curves=curves_of(weighted[0], fit, None if best is None else fit_of(best)),
         axis=f"{weighted[0].channels[0].key} [{display_unit(weighted[0].channels[0].unit)}]",
     )
 
@@ -184,6 +193,8 @@ def _fits(
     ended = dict(
         zip((scan.candidate.size_path for scan in chosen), _ended(begun, session, RACED), strict=True)
     )
+    near = sorted(ended, key=lambda path: ended[path].objective)[:FURTHER]
+    ended |= dict(zip(near, _ended([ended[path] for path in near], session, RACED), strict=True))
     better = {path: place for path, place in ended.items() if place.objective < nominal.objective}
     first = sorted(better, key=lambda path: better[path].objective)[:EXACT]
     again = [replace(better[path], slopes=None, ended=False, exact=False) for path in first]
@@ -277,23 +288,3 @@ def _own_numbers(
         left=fit_of(place).over_noise,
         others=problem.parameters.values(place.unit),
     )
-
-
-def _curves(experiment: Experiment, nominal: Fit, best: Fit | None) -> dict[str, list[float]]:
-    """What is drawn of the first joint's position: means over blocks of the recording."""
-    position, count = experiment.channels[0], experiment.time.size
-    edges = np.unique(np.linspace(0, count, min(POINTS, count) + 1).astype(int))[:-1]
-    sizes = np.diff([*edges, count])
-
-    def means(values: np.ndarray) -> list[float]:
-        return [float(f"{v:.4g}") for v in np.add.reduceat(np.nan_to_num(values[:count]), edges) / sizes]
-
-    shown = {
-        "time": [float(f"{v:.6g}") for v in experiment.time[edges]],
-        "command": means(experiment.command_at_samples),
-        "measured": means(display_factor(position.unit) * position.measured),
-        "nominal": means(nominal.residuals),
-    }
-    if best is not None:
-        shown["best"] = means(best.residuals)
-    return shown

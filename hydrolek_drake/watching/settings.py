@@ -24,9 +24,11 @@ ROUNDS = 5
 LEFT_OUT = 6
 """So many reference recordings are each asked by what the others tell: enough to see how a healthy machine varies."""
 
-RACED = 6
-"""Steps of every fitted effect, which tell the best ones: with 3 a fade of the amplifier's gain by 8 % was still behind
-another effect at 1.43 times the noise, with 8 it left 1.05."""
+RACED = 3
+"""Steps of every fitted effect, and once more of the `FURTHER` best ones, which then tell the best of all: after three
+steps alone a fade of the amplifier's gain by 8 % was still behind another effect, with eight it left less."""
+
+FURTHER = 3
 
 WORTH = 0.5
 """A fit ends where a step promises less than so many squares: less than a standard deviation of any number."""
@@ -35,7 +37,7 @@ TRIED = 4.0
 """An effect whose scan promises so many squares is fitted; one that promises less is within two standard deviations of
 nothing, where the scan's own likelihood tells its size."""
 
-FITTED = 6
+FITTED = 5
 """So many effects of a recording are fitted at most: the most promising ones."""
 
 EXACT = 2
