@@ -41,6 +41,11 @@ COMMANDS: dict[str, CommandEntry] = {
         "diagnose",
         "find out what physics the model leaves out, and model it",
     ),
+    "watch": CommandEntry(
+        "hydrolek_drake.cli.diagnosis.watch",
+        "watch",
+        "what changed on a machine since its reference; alarms, exit status 3",
+    ),
     "sensitivity": CommandEntry(
         "hydrolek_drake.cli.identification.sensitivity",
         "sensitivity",
@@ -198,7 +203,7 @@ def _overview() -> str:
             "commands:",
             *(f"  {name:<{width}}  {entry.line}" for name, entry in COMMANDS.items()),
             "",
-            "hydrolek COMMAND --help tells more; exit status 0 is success, 2 bad input.",
+            "hydrolek COMMAND --help tells more; exit status 0 is success, 2 bad input, 3 an alarm.",
         ]
     )
 

@@ -10,7 +10,13 @@ _HEADING_PX = 28
 
 
 def plots_html(columns: Sequence[Sequence[Panel]]) -> str:
-    """Stacks of panels side by side, all over the same time; panels of one row have the same height."""
+    """Stacks of panels side by side, all over the same time, as HTML that needs no network."""
+    figure = plots_figure(columns)
+    return str(figure.to_html(full_html=False, include_plotlyjs=True, config={"displaylogo": False}))
+
+
+def plots_figure(columns: Sequence[Sequence[Panel]]) -> Any:
+    """The same as a Plotly figure; panels of one row have the same height."""
     from plotly.graph_objects import Figure, Scatter
     from plotly.subplots import make_subplots
 
@@ -44,7 +50,7 @@ def plots_html(columns: Sequence[Sequence[Panel]]) -> str:
         legend={"orientation": "h", "y": 1.0 + headed / height, "yanchor": "bottom", "x": 0},
         hovermode="x unified",
     )
-    return str(figure.to_html(full_html=False, include_plotlyjs=True, config={"displaylogo": False}))
+    return figure
 
 
 def _draw(figure: Any, scatter: Any, panel: Panel, place: dict[str, int], named: set[str]) -> None:

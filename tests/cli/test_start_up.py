@@ -60,6 +60,8 @@ def test_help_and_unknown_commands_load_nothing_that_computes(arguments):
         ["control", "judge", "--controller", "magic"],
         ["control", "design", "nowhere"],
         ["challenge", "--cases", "0"],
+        ["watch", "joint_bench", "nowhere.csv", "--recordings", "."],
+        ["watch", "joint_bench", "a.csv", "--recordings", ".", "--false-alarms", "2"],
         ["teleop", "--plant", "steam"],
         ["teleop", "--stand", "nowhere.json"],
         ["serve", "--plant", "steam"],

@@ -1,0 +1,117 @@
+"""`hydrolek watch`: what changed on a machine since its healthy reference."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hydrolek_drake.cli.inputs import refuse_twice
+from hydrolek_drake.cli.settings import SetOption, parse_settings
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.watching.listing import listed
+
+ALARM = 3
+"""Exit status where there is an alarm."""
+
+
+def watch(
+    rig: Annotated[str, typer.Argument(metavar="RIG", help="name of a built-in rig, or a rig file")],
+    reference: Annotated[
+        list[Path], typer.Argument(metavar="REFERENCE", help="recordings of the healthy machine")
+    ],
+    recordings: Annotated[
+        list[Path],
+        typer.Option(metavar="FOLDER|FILE", help="later recordings: files, or folders of them (repeatable)"),
+    ],
+    drift: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="[NAME=]SHARE",
+            help="how far the machine's own numbers may drift between recordings (standard deviation, in ranges): "
+            "0.02 for all, load=0.1 for some (repeatable)",
+        ),
+    ] = None,
+    limit: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="EFFECT=SIZE",
+            help="forecast when an effect reaches this size, in SI or with a unit (repeatable)",
+        ),
+    ] = None,
+    false_alarms: Annotated[
+        float, typer.Option(help="probability of any false alarm in the whole series")
+    ] = 0.01,
+    persistence: Annotated[
+        int, typer.Option(min=1, help="so many recordings in a row beyond the threshold are an alarm")
+    ] = 2,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="threads; as many as there are cores by default")
+    ] = None,
+    set_: SetOption = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="folder for table and page, and to go on from")
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(help="taken by all commands; a watch draws no random numbers")
+    ] = None,
+) -> None:
+    """Ask every recording what differs from the healthy machine; exit status 3 is an alarm.
+
+    The same command goes on where an earlier one ended: what was seen is not asked again.
+    """
+    from hydrolek_drake.cli.output import console, progress
+
+    if not 0.0 < false_alarms < 1.0:
+        raise InputError(f"--false-alarms {false_alarms:g}: a probability between 0 and 1 is needed")
+    refuse_twice(reference)
+    drifts = dict(_drift(each) for each in drift or [])
+    files = listed(recordings, reference)
+
+    from hydrolek_drake.rigs import load_rig
+
+    loaded = load_rig(rig, parse_settings(set_))
+    output = console()
+
+    from hydrolek_drake.watching.limits import limits_of
+
+    limits = limits_of(limit or [])
+    for path in reference:
+        if not path.exists():
+            raise InputError(f"reference {path}: no such file")
+
+    from hydrolek_drake.watching.alarms import AlarmRule
+    from hydrolek_drake.watching.results import write_watch
+    from hydrolek_drake.watching.watch import watch as run_watch
+    from hydrolek_drake.watching.words import sentences
+
+    with progress("starting") as tell:
+        watched = run_watch(
+            loaded,
+            reference,
+            files,
+            folder=out,
+            drift=drifts,
+            rule=AlarmRule(false_alarms, persistence),
+            cores=workers,
+            say=lambda text: tell(f"{text} ..."),
+        )
+        told = sentences(watched, limits)
+        written = [] if out is None else write_watch(watched, out, limits)
+    for line in told:
+        output.print(line, markup=False, soft_wrap=True)
+    if written:
+        output.print(f"\npage: {written[-1]}", markup=False, soft_wrap=True)
+    if watched.alarm is not None:
+        raise typer.Exit(ALARM)
+
+
+def _drift(text: str) -> tuple[str, float]:
+    """Name, or nothing for all, and drift."""
+    name, _, number = text.rpartition("=")
+    try:
+        share = float(number)
+    except ValueError:
+        share = -1.0
+    if not 0.0 <= share < 10.0:
+        raise InputError(f"--drift {text}: write a share of the range such as 0.02, or NAME=SHARE")
+    return name.strip(), share

@@ -1,0 +1,1 @@
+"""Condition monitoring: what differs, recording by recording, from a machine's healthy reference."""

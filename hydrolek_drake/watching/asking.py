@@ -1,0 +1,290 @@
+"""What differs in one recording: the nominal model with the reference as prior, and beside it one fit per effect."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.data.weighing import weighted_by
+from hydrolek_drake.diagnosis.report.words import unit_at
+from hydrolek_drake.diagnosis.search.gains import gain_needed
+from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.lockstep import Place, descend, fit_of, with_slopes
+from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.problem_together import ProblemTogether
+from hydrolek_drake.replay.display import display_unit
+from hydrolek_drake.watching.curves import curves_of
+from hydrolek_drake.watching.knowledge import Knowledge
+from hydrolek_drake.watching.likelihood import SizeTold, of_branches, of_fit
+from hydrolek_drake.watching.reference import Session
+from hydrolek_drake.watching.scanning import Scan, scanned, size_of, strength, strengths
+from hydrolek_drake.watching.settings import (
+    EXACT,
+    FITTED,
+    FURTHER,
+    NOMINAL,
+    RACED,
+    ROUNDS,
+    TRIED,
+    WORTH,
+)
+
+OWN_NUMBERS = "machine.own_numbers"
+"""Stands for: no effect, but the machine's own numbers changed by more than they were said to drift."""
+
+
+@dataclass(frozen=True)
+class EffectTold:
+    """What a recording says of one effect beside the nominal model.
+
+    Attributes:
+        effect: its id, or `OWN_NUMBERS`.
+        joint: where it acts.
+        size: the likeliest (SI).
+        low: lower end of the 95 % interval.
+        high: upper end.
+        unit: of these.
+        gain: fall of the squares, residuals' and prior's, in units of what the reference leaves.
+        parameters: that the effect adds to the model.
+        left: times the noise that the model with it leaves.
+        others: name -> value of its other parameters.
+        beside_size: the likeliest size beside the effect that gains most, where that one is surely there; else None.
+        beside_low: lower end of its 95 % interval.
+        beside_high: upper end.
+        beside_gain: squares by which it gains there.
+    """
+
+    effect: str
+    joint: str
+    size: float
+    low: float
+    high: float
+    unit: str
+    gain: float
+    parameters: int
+    left: float
+    others: dict[str, float]
+    beside_size: float | None = None
+    beside_low: float | None = None
+    beside_high: float | None = None
+    beside_gain: float | None = None
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What one recording says.
+
+    Attributes:
+        effects: every effect, the largest gain first.
+        own: full path -> the machine's own number, fitted with the reference as prior (SI).
+        left: times the noise that the nominal model leaves.
+        counted: values that count.
+        needed: gain below which an effect is not told from what every model leaves out.
+        curves: name -> values of what is drawn: time, measured, and residuals over the noise. # (k,) each
+        axis: what `measured` is, with the unit in which people read it.
+    """
+
+    effects: tuple[EffectTold, ...]
+    own: dict[str, float]
+    left: float
+    counted: int
+    needed: float
+    curves: dict[str, list[float]]
+    axis: str = ""
+
+
+def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge | None = None) -> Answer:
+    """Ask one recording.
+
+    Args:
+        session: rig and reference.
+        experiments: of the recording.
+        known: of the machine's own numbers; None for what all the reference tells.
+    """
+    bench, cores = session.bench, session.cores
+    knowledge = known or session.knowledge
+    weighted = weighted_by(bench, session.hypothesis, experiments)
+    problem = session.problem((), weighted, knowledge)
+    moving = np.ones(knowledge.mean.size, dtype=bool)
+    nominal = _ended([Place(problem, moving, knowledge.mean)], session, NOMINAL)[0]
+    [nominal] = with_slopes([nominal], bench.pool, cores)
+    scans = scanned(session, nominal, weighted, knowledge)
+    fitted = _fits(session, nominal, scans, weighted, knowledge)
+    scale = session.posterior.scale
+    told = [_told(scan, fitted.get(scan.candidate.size_path), nominal, session) for scan in scans]
+    own = _own_numbers(session, nominal, weighted, scale)
+    ranked = sorted(told, key=lambda each: -each.gain)
+    best = fitted.get(_path(session, ranked[0])) if ranked else None
+    fit = fit_of(nominal)
+    if best is not None and ranked[0].gain > gain_needed(fit):
+        ranked = _with_beside(session, ranked, best, weighted, knowledge)
+    return Answer(
+        effects=(*ranked, own),
+        own=problem.parameters.values(nominal.unit),
+        left=fit.over_noise,
+        counted=fit.counted,
+        needed=gain_needed(fit),
+        curves=curves_of(weighted[0], fit, None if best is None else fit_of(best)),
+        axis=f"{weighted[0].channels[0].key} [{display_unit(weighted[0].channels[0].unit)}]",
+    )
+
+
+def _with_beside(
+    session: Session,
+    ranked: list[EffectTold],
+    best: Place,
+    experiments: Sequence[Experiment],
+    known: Knowledge,
+) -> list[EffectTold]:
+    """The same, each with its size beside the first: what imitates that one is nothing there, a second fault is not."""
+    path, scale = _path(session, ranked[0]), session.posterior.scale
+    first = next(c for c in session.candidates if c.size_path == path)
+    scans = {
+        (s.candidate.id, s.candidate.joint): s for s in scanned(session, best, experiments, known, (first,))
+    }
+    told = []
+    for each in ranked:
+        scan = scans.get((each.effect, each.joint))
+        if scan is None or not scan.branches:
+            told.append(each)
+            continue
+        size, low, high = _sizes(
+            scan.candidate, of_branches(list(scan.branches), *strengths(scan.candidate), scale)
+        )
+        told.append(
+            replace(each, beside_size=size, beside_low=low, beside_high=high, beside_gain=scan.gain / scale)
+        )
+    return told
+
+
+def _sizes(candidate: Candidate, known: SizeTold) -> tuple[float, float, float]:
+    """Size with the ends of its interval, of strengths."""
+    low, high = sorted(size_of(candidate, strong) for strong in (known.low, known.high))
+    return size_of(candidate, known.size), low, high
+
+
+def _path(session: Session, told: EffectTold) -> str:
+    return next(c.size_path for c in session.candidates if (c.id, c.joint) == (told.effect, told.joint))
+
+
+def _ended(places: list[Place], session: Session, rounds: int = ROUNDS) -> list[Place]:
+    """Fits led on to where a step promises nothing that counts."""
+    return descend(places, rounds, session.bench.pool, session.cores, worth=WORTH, share=1e-4)
+
+
+def _fits(
+    session: Session, nominal: Place, scans: list[Scan], experiments: Sequence[Experiment], known: Knowledge
+) -> dict[str, Place]:
+    """Fits of the nominal model with one effect each, by the effect's path; of those alone that promise something."""
+    chosen = [scan for scan in scans if scan.gain > TRIED][:FITTED]
+    assert nominal.slopes is not None
+    values = nominal.problem.parameters.values(nominal.unit)
+    begun = []
+    for scan in chosen:
+        candidate = scan.candidate
+        problem = session.problem((candidate,), experiments, known)
+        moving = session.bench.movable((candidate,), problem.parameters)
+        unit = np.clip(problem.parameters.unit({**values, **scan.start}), 1e-6, 1.0 - 1e-6)
+        unit[: nominal.unit.size] = nominal.unit
+        slopes = np.full((len(nominal.slopes), unit.size), np.nan)
+        slopes[:, : nominal.unit.size] = nominal.slopes
+        begun.append(Place(problem, moving, unit, slopes=slopes))
+    ended = dict(
+        zip((scan.candidate.size_path for scan in chosen), _ended(begun, session, RACED), strict=True)
+    )
+    near = sorted(ended, key=lambda path: ended[path].objective)[:FURTHER]
+    ended |= dict(zip(near, _ended([ended[path] for path in near], session, RACED), strict=True))
+    better = {path: place for path, place in ended.items() if place.objective < nominal.objective}
+    first = sorted(better, key=lambda path: better[path].objective)[:EXACT]
+    again = [replace(better[path], slopes=None, ended=False, exact=False) for path in first]
+    better |= dict(zip(first, _ended(again, session), strict=True))
+    renewed = [_renewed(place, path in first, nominal.unit.size) for path, place in better.items()]
+    known_there = with_slopes(renewed, session.bench.pool, session.cores)
+    return dict(zip(better, known_there, strict=True))
+
+
+def _renewed(place: Place, every: bool, known: int) -> Place:
+    """A place that asks for its slopes anew: for every one, or for those of the effect alone."""
+    if every or place.slopes is None:
+        return replace(place, slopes=None)
+    slopes = place.slopes.copy()
+    slopes[:, known:] = np.nan
+    return replace(place, slopes=slopes)
+
+
+def _told(scan: Scan, fitted: Place | None, nominal: Place, session: Session) -> EffectTold:
+    candidate, scale = scan.candidate, session.posterior.scale
+    lower, upper = strengths(candidate)
+    unit = next(p.unit for p in candidate.effect.parameters if p.name == candidate.effect.size)
+    nothing = {free.path: scan.start[free.path] for free in candidate.free}
+    if fitted is None:
+        known = of_branches(list(scan.branches), lower, upper, scale) if scan.branches else None
+        known = known or SizeTold(0.0, lower, upper)
+        gain, left, values = min(scan.gain, TRIED) / scale, fit_of(nominal).over_noise, nothing
+    else:
+        values = fitted.problem.parameters.values(fitted.unit)
+        strong = strength(candidate, values[candidate.size_path])
+        known = of_fit(strong, _deviation(scan, fitted, scale, strong), lower, upper)
+        gain = (nominal.objective - fitted.objective) / scale
+        left = fit_of(fitted).over_noise
+    size, low, high = _sizes(candidate, known)
+    others = {p.rpartition(".")[2]: v for p, v in values.items() if p in nothing and p != candidate.size_path}
+    return EffectTold(
+        effect=candidate.id,
+        joint=candidate.joint,
+        size=size,
+        low=low,
+        high=high,
+        unit=unit_at(session.rig, candidate.joint, unit),
+        gain=gain,
+        parameters=len(candidate.free),
+        left=left,
+        others=others,
+    )
+
+
+def _deviation(scan: Scan, fitted: Place, scale: float, strong: float) -> float:
+    """Standard deviation of a fitted strength, from the curvature; by scans where the joint moves otherwise at once."""
+    assert fitted.slopes is not None
+    prior = fitted.problem.prior_jacobian()
+    square = fitted.slopes.T @ fitted.slopes + prior.T @ prior
+    told = fitted.moving & (np.diag(square) > 0.0)
+    at = list(fitted.problem.parameters.paths).index(scan.candidate.size_path)
+    index = np.flatnonzero(told)
+    if at not in index:
+        return np.sqrt(scale) * scan.deviation
+    covariance = np.linalg.pinv(square[np.ix_(index, index)])
+    number = int(np.flatnonzero(index == at)[0])
+    free = fitted.problem.parameters.free[at]
+    per_place = abs(free.slope(float(fitted.unit[at])))
+    if scan.candidate.weakens:
+        per_place *= strong**2
+    deviation = float(np.sqrt(scale * max(covariance[number, number], 0.0))) * per_place
+    return max(deviation, float(np.sqrt(scale)) * scan.deviation) if scan.candidate.sudden else deviation
+
+
+def _own_numbers(
+    session: Session, nominal: Place, experiments: Sequence[Experiment], scale: float
+) -> EffectTold:
+    """The machine's own numbers let go: as far from the reference as the rig's ranges allow."""
+    kind = ProblemTogether if any(e.others is not None for e in experiments) else Problem
+    problem = session.bench.problem((), session.bench.fine, experiments, kind=kind)
+    assert nominal.slopes is not None
+    free = replace(nominal, problem=problem, ended=False, exact=False, residuals=None)
+    [place] = _ended([replace(free, slopes=nominal.slopes)], session)
+    assert place.residuals is not None
+    gain = max(nominal.objective - float(place.residuals @ place.residuals), 0.0) / scale
+    moved = np.abs(place.unit - session.posterior.mean)
+    return EffectTold(
+        effect=OWN_NUMBERS,
+        joint="",
+        size=float(moved.max()),
+        low=np.nan,
+        high=np.nan,
+        unit="1",
+        gain=gain,
+        parameters=place.unit.size,
+        left=fit_of(place).over_noise,
+        others=problem.parameters.values(place.unit),
+    )

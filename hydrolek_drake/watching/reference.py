@@ -1,0 +1,173 @@
+"""The healthy machine: the nominal model fitted to its reference recordings, and how surely its numbers are known."""
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+import numpy as np
+
+from hydrolek_drake.diagnosis.data.weighing import weighted_by
+from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE
+from hydrolek_drake.diagnosis.fitting.race import Entrant, race
+from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.structures.candidates import Candidate, candidates_of
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.lockstep import Place, descend, fit_of
+from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.parameter_set import free_of_joints
+from hydrolek_drake.rigs import Rig
+from hydrolek_drake.watching.knowledge import Knowledge, KnownProblem, KnownTogether, with_drift
+
+MOST_WEIGHED = 3
+"""So often the data are weighed by the fit and fitted again at most, as in a diagnosis."""
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """What the reference recordings tell of the machine's own numbers.
+
+    Attributes:
+        mean: places in the unit cube where the fit ended. # (n,)
+        information: of them, J'J of the residuals in units of what the fit leaves, and the ranges' weak prior. # (n, n)
+        over_noise: root mean square of what the fit leaves over the noise.
+    """
+
+    mean: np.ndarray
+    information: np.ndarray
+    over_noise: float
+
+    @property
+    def scale(self) -> float:
+        """Squares of residuals that count as one: the mean square that the reference leaves where it is above 1."""
+        return max(1.0, self.over_noise) ** 2
+
+    def known(self, drift: np.ndarray) -> Knowledge:
+        """What a later recording's fit may begin with. # drift: (n,) in ranges."""
+        return with_drift(self.mean, self.information / self.scale, drift)
+
+
+class Session:
+    """A rig with its reference: what every question about a later recording needs.
+
+    Attributes:
+        rig: the machine.
+        bench: the reference recordings and problems of any structure.
+        candidates: effects that are asked for.
+        posterior: of the machine's own numbers.
+        drift: standard deviations of the numbers from one recording to another, in ranges. # (n,)
+        hypothesis: the nominal model where the reference left it.
+        cores: that roll out at the same time.
+    """
+
+    def __init__(
+        self,
+        rig: Rig,
+        training: Sequence[Experiment],
+        pool: Executor,
+        cores: int,
+        drift: Mapping[str, float],
+        kept: Posterior | None = None,
+        say: Callable[[str], None] = lambda text: None,
+    ) -> None:
+        """Fit the reference, or take what was found before.
+
+        Args:
+            rig: the machine's nominal model.
+            training: the reference recordings.
+            pool: threads.
+            cores: that roll out at the same time.
+            drift: path or beginning or section of one -> drift in ranges; "" for all others.
+            kept: of the same reference, found before.
+            say: told what is being done.
+
+        Raises:
+            InputError: the rig has nothing to fit, or no parameter has a name that the drift names.
+        """
+        joints = list(dict.fromkeys(e.joint for e in training))
+        self.rig, self.cores = rig, cores
+        self.joints = tuple(joints)
+        nominal = free_of_joints(rig, set(joints))
+        self.bench = Workbench(rig, nominal, training, pool, cores)
+        self.drift = _drifts([free.path for free in nominal], drift)
+        self._indices = {e.joint: e.index for e in training}
+        scales = {joint: natural_scales(rig, joint, training) for joint in joints}
+        found = {c.size_path: c for joint in joints for c in candidates_of(rig, joint, scales[joint])}
+        self.candidates: tuple[Candidate, ...] = tuple(found.values())
+        if kept is None:
+            say("fitting the nominal model to the reference")
+            self.hypothesis, self.posterior = _fitted(self.bench, cores)
+        else:
+            self.posterior = kept
+            problem = self.bench.problem((), self.bench.fine)
+            moving = np.ones(kept.mean.size, dtype=bool)
+            [place] = descend([Place(problem, moving, kept.mean)], 0, pool, cores)
+            self.hypothesis = Hypothesis(
+                (), problem.parameters.values(kept.mean), fit_of(place), self.bench.fine
+            )
+
+    @property
+    def knowledge(self) -> Knowledge:
+        """Of a later recording's numbers."""
+        return self.posterior.known(self.drift)
+
+    def knowledge_without(self, name: str) -> Knowledge:
+        """The same by all reference recordings but one: the model fitted on to them from where it stands.
+
+        Args:
+            name: of the recording that is left out.
+        """
+        others = [e for e in self.bench.training if e.name != name]
+        bench = self.bench.with_training(others)
+        again = race(bench, [Entrant((), self.hypothesis.values)], (Settings().again,), self.cores)[0]
+        return _posterior(bench, again).known(self.drift)
+
+    def problem(
+        self, effects: tuple[Candidate, ...], experiments: Sequence[Experiment], known: Knowledge
+    ) -> KnownProblem | KnownTogether:
+        """Residuals of a structure on a recording, with what is known as the prior."""
+        together = any(e.others is not None for e in experiments)
+        kind = KnownTogether if together else KnownProblem
+        problem = self.bench.problem(effects, self.bench.fine, experiments, kind=kind)
+        assert isinstance(problem, KnownProblem | KnownTogether)
+        problem.know(known)
+        return problem
+
+
+def _fitted(bench: Workbench, cores: int) -> tuple[Hypothesis, Posterior]:
+    """The nominal model, the data weighed by it, and its posterior."""
+    settings = Settings()
+    best = race(bench, [Entrant((), {})], (*settings.free, *settings.ended), cores)[0]
+    for _ in range(MOST_WEIGHED):
+        bench.training = tuple(weighted_by(bench, best, bench.training))
+        before, best = best, race(bench, [Entrant((), best.values)], (settings.again,), cores)[0]
+        if best.fit.over_noise < AT_NOISE * before.fit.over_noise:
+            break
+    return best, _posterior(bench, best)
+
+
+def _posterior(bench: Workbench, best: Hypothesis) -> Posterior:
+    problem = bench.problem((), bench.fine)
+    slopes = problem.jacobian_without_jumps(best.fit.unit, best.fit.residuals)
+    prior = best.fit.prior_jacobian
+    return Posterior(best.fit.unit, slopes.T @ slopes + prior.T @ prior, best.fit.over_noise)
+
+
+def _drifts(paths: Sequence[str], drift: Mapping[str, float]) -> np.ndarray:
+    """Drift of each parameter: that of the longest name which is its path, or a part of that. # (n,)."""
+    found = np.full(len(paths), drift.get("", 0.0))
+    for name in sorted((n for n in drift if n), key=len):
+        parts = name.split(".")
+        hit = [i for i, path in enumerate(paths) if _contains(path.split("."), parts)]
+        if not hit:
+            raise InputError(
+                f"--drift {name}={drift[name]:g}: no free parameter of that name; {', '.join(paths)}"
+            )
+        found[hit] = drift[name]
+    return found
+
+
+def _contains(path: list[str], parts: list[str]) -> bool:
+    """Whether some consecutive parts of a path are these."""
+    return any(path[i : i + len(parts)] == parts for i in range(len(path) - len(parts) + 1))

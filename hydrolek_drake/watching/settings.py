@@ -1,0 +1,65 @@
+"""Every constant of the watch, with the principle or measurement it comes from."""
+
+from hydrolek_drake.diagnosis.search.settings import TELLING
+
+METHOD = 1
+"""Number of the method: recordings that another one was asked of are asked again."""
+
+DRIFT = 0.02
+"""By how much (one standard deviation) each of the machine's own numbers may differ from one recording to another, as a
+share of its range in the rig: a range says how far machines of the build differ, one machine varies far less."""
+
+FALSE_ALARMS = 0.01
+"""Probability of any alarm in a whole series of a healthy machine, however long it is."""
+
+COARSE = TELLING
+"""Scans and the slopes that lead fits are told by rollouts with steps so many times the rig's own."""
+
+NOMINAL = 12
+"""Marquardt steps of the nominal model's fit at most: it begins where the reference ended, and mostly ends sooner."""
+
+ROUNDS = 5
+"""Marquardt steps of the best effects at most, which go on from other fits."""
+
+LEFT_OUT = 6
+"""So many reference recordings are each asked by what the others tell: enough to see how a healthy machine varies."""
+
+RACED = 3
+"""Steps of every fitted effect, and once more of the `FURTHER` best ones, which then tell the best of all: after three
+steps alone a fade of the amplifier's gain by 8 % was still behind another effect, with eight it left less."""
+
+FURTHER = 3
+
+WORTH = 0.5
+"""A fit ends where a step promises less than so many squares: less than a standard deviation of any number."""
+
+TRIED = 4.0
+"""An effect whose scan promises so many squares is fitted; one that promises less is within two standard deviations of
+nothing, where the scan's own likelihood tells its size."""
+
+FITTED = 5
+"""So many effects of a recording are fitted at most: the most promising ones."""
+
+EXACT = 2
+"""Of so many, the best ones, every slope is computed anew where the fit ended."""
+
+MOST_TIMES = 8
+"""Places of an effect's own moment at which it is tried."""
+
+GRID = 4001
+"""Places at which the likelihood of a size is tabulated."""
+
+REACH = 8.0
+"""The table reaches so many standard deviations beyond what is likeliest."""
+
+POINTS = 240
+"""Points of the curves that are kept of a recording."""
+
+FEWEST = 3
+"""Points from which a trend and its uncertainty can be told: two numbers, and one degree of freedom."""
+
+PERSISTENCE = 2
+"""Recordings in a row that must be beyond the threshold before it is an alarm: one alone may be a mishap."""
+
+TOGETHER = 12.0
+"""Effects whose total gains differ by less than so many squares are not told apart, see `search.gains.GAIN_NEEDED`."""

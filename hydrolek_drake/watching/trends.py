@@ -1,0 +1,204 @@
+"""Sizes over time: where their course changes, how fast they grow, and when they reach a limit.
+
+Change points are those between which straight lines leave least, each further one paid for by the squares that chance
+would bring (PELT: Killick, Fearnhead, Eckley, Journal of the American Statistical Association 107, 2012, 1590, by
+`ruptures`). The last piece is the trend. With its line a + b t and the covariance V of (a, b) it reaches a limit L at
+the times t at which (a + b t - L)^2 <= q^2 (V_aa + 2 t V_ab + t^2 V_bb): Fieller's set (Journal of the Royal
+Statistical Society B 16, 1954, 175), which has no end where the data do not exclude that it never gets there.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from ruptures.base import BaseCost
+from ruptures.detection import Pelt
+from scipy.stats import chi2
+from scipy.stats import t as student
+
+from hydrolek_drake.diagnosis.intervals.curvature import CONFIDENCE, NORMAL
+from hydrolek_drake.watching.settings import FEWEST
+
+PER_PIECE = 3
+"""Numbers that a further piece has: where it begins, level and slope."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A straight line through some points, by weighted least squares.
+
+    Attributes:
+        origin: time at which the level is told [s].
+        level: there.
+        slope: change a second.
+        covariance: of level and slope. # (2, 2)
+        freedom: points less two.
+    """
+
+    origin: float
+    level: float
+    slope: float
+    covariance: np.ndarray
+    freedom: int
+
+    @property
+    def quantile(self) -> float:
+        """Standard deviations that hold 95 % with so few points."""
+        return float(student.ppf(0.5 + 0.5 * CONFIDENCE, self.freedom))
+
+    @property
+    def slope_interval(self) -> tuple[float, float]:
+        """95 % interval of the slope."""
+        half = self.quantile * float(np.sqrt(self.covariance[1, 1]))
+        return self.slope - half, self.slope + half
+
+    def at(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Values at some times and half the width of their 95 % band. # times: (k,) [s]."""
+        since = np.asarray(times) - self.origin
+        v = self.covariance
+        variance = v[0, 0] + 2.0 * since * v[0, 1] + since**2 * v[1, 1]
+        return self.level + self.slope * since, self.quantile * np.sqrt(np.maximum(variance, 0.0))
+
+
+@dataclass(frozen=True)
+class Reached:
+    """When a trend reaches a limit [s since 1970]; infinite where it does not.
+
+    Attributes:
+        likeliest: where the line meets it; infinite where the line does not go there.
+        earliest: the earliest time that 95 % do not exclude.
+        latest: the latest.
+    """
+
+    likeliest: float
+    earliest: float
+    latest: float
+
+
+@dataclass(frozen=True)
+class Trend:
+    """The course of one size.
+
+    Attributes:
+        changes: times from which another line holds [s since 1970].
+        last: the line of the last piece; None for too few points.
+        begins: where that piece begins [s since 1970].
+    """
+
+    changes: tuple[float, ...]
+    last: Line | None
+    begins: float
+
+    @property
+    def moves(self) -> bool:
+        """Whether the last piece has a slope that 95 % tell from none."""
+        if self.last is None:
+            return False
+        low, high = self.last.slope_interval
+        return low > 0.0 or high < 0.0
+
+
+class _Lines(BaseCost):
+    """Weighted squares that a straight line leaves of a piece, for `ruptures`; columns: time, value, deviation."""
+
+    model = "weighted_line"
+    min_size = FEWEST
+
+    def fit(self, signal: np.ndarray) -> "_Lines":
+        """Take the series. # (n, 3)."""
+        self.signal = signal
+        return self
+
+    def error(self, start: int, end: int) -> float:
+        """Squares of the piece [start, end)."""
+        time, value, deviation = self.signal[start:end].T
+        columns = np.stack([np.ones_like(time), time - time[0]], axis=1) / deviation[:, None]
+        return float(
+            np.sum((value / deviation - columns @ np.linalg.lstsq(columns, value / deviation)[0]) ** 2)
+        )
+
+
+def trend_of(
+    times: Sequence[float],
+    sizes: Sequence[float],
+    lows: Sequence[float],
+    highs: Sequence[float],
+    error_rate: float,
+) -> Trend:
+    """The course of a size.
+
+    Args:
+        times: of the recordings, growing [s since 1970]. # (n,)
+        sizes: the likeliest ones. # (n,)
+        lows: lower ends of their 95 % intervals. # (n,)
+        highs: upper ends. # (n,)
+        error_rate: probability with which a course without any change point is given one, about.
+    """
+    time, size = np.asarray(times, dtype=float), np.asarray(sizes, dtype=float)
+    half = np.maximum(np.asarray(highs) - size, size - np.asarray(lows)) / NORMAL
+    known = np.isfinite(size) & np.isfinite(half) & (half > 0.0)
+    time, size, deviation = time[known], size[known], half[known]
+    if time.size < FEWEST or np.ptp(time) <= 0.0:
+        return Trend((), None, float(time[0]) if time.size else 0.0)
+    span = float(np.ptp(time))
+    series = np.stack([(time - time[0]) / span, size, deviation], axis=1)
+    scatter = _scatter(series)
+    penalty = scatter * float(chi2.isf(error_rate / time.size, PER_PIECE))
+    pieces = [time.size]
+    if time.size >= 2 * FEWEST:
+        pieces = Pelt(custom_cost=_Lines(), min_size=FEWEST, jump=1).fit(series).predict(pen=penalty)
+    first = pieces[-2] if len(pieces) > 1 else 0
+    line = _line(time[first:], size[first:], deviation[first:])
+    return Trend(tuple(float(time[end]) for end in pieces[:-1]), line, float(time[first]))
+
+
+def _scatter(series: np.ndarray) -> float:
+    """Squares of what lies off the line between its neighbours, over what its deviations allow; 1 at least.
+
+    The median passes over change points.
+    """
+    time, value, deviation = series.T
+    if time.size < 2 * FEWEST:
+        return 1.0
+    share = (time[1:-1] - time[:-2]) / np.maximum(time[2:] - time[:-2], 1e-12)
+    off = value[1:-1] - (1.0 - share) * value[:-2] - share * value[2:]
+    variance = deviation[1:-1] ** 2 + ((1.0 - share) * deviation[:-2]) ** 2 + (share * deviation[2:]) ** 2
+    return max(1.0, float(np.median(off**2 / variance) / chi2.ppf(0.5, 1)))
+
+
+def _line(time: np.ndarray, size: np.ndarray, deviation: np.ndarray) -> Line:
+    """Weighted least squares; the covariance grows where the points lie farther off than their deviations say."""
+    origin = float(time[-1])
+    columns = np.stack([np.ones_like(time), time - origin], axis=1) / deviation[:, None]
+    span = max(float(np.ptp(time)), 1e-9)  # so that both columns are of the same order
+    scaled = columns * np.array([1.0, 1.0 / span])
+    covariance = np.linalg.pinv(scaled.T @ scaled)
+    found = covariance @ scaled.T @ (size / deviation)
+    left = float(np.sum((size / deviation - scaled @ found) ** 2))
+    freedom = max(time.size - 2, 1)
+    covariance = covariance * max(1.0, left / freedom)
+    back = np.diag([1.0, 1.0 / span])
+    return Line(origin, float(found[0]), float(found[1] / span), back @ covariance @ back, freedom)
+
+
+def reached(line: Line, limit: float) -> Reached:
+    """When a line reaches a limit, after its last point.
+
+    Args:
+        line: of the last piece.
+        limit: in the size's unit.
+    """
+    gap = limit - line.level
+    if gap == 0.0 or gap * line.slope <= 0.0:
+        likeliest = line.origin if gap == 0.0 else np.inf
+    else:
+        likeliest = line.origin + gap / line.slope
+    span = abs(gap / line.slope) if line.slope else 1.0
+    ahead = np.concatenate([[0.0], np.geomspace(1e-4, 1e3, 4001) * span])
+    values, half = line.at(line.origin + ahead)
+    within = np.abs(values - limit) <= half
+    if not within.any():
+        return Reached(likeliest, likeliest, likeliest)
+    inside = np.flatnonzero(within)
+    latest = np.inf if within[-1] else line.origin + float(ahead[inside[-1]])
+    return Reached(likeliest, line.origin + float(ahead[inside[0]]), latest)

@@ -1,0 +1,238 @@
+"""The whole watch: reference, later recordings one by one, alarms and trends."""
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from threadpoolctl import threadpool_limits
+
+from hydrolek_drake.diagnosis.data.quality import reasons_against
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.recordings import Recording, read_recording
+from hydrolek_drake.rigs import Rig
+from hydrolek_drake.watching.alarms import (
+    Alarm,
+    AlarmRule,
+    Healthy,
+    Judgement,
+    alarm_of,
+    healthy_by,
+    judged,
+)
+from hydrolek_drake.watching.asking import Answer, asked
+from hydrolek_drake.watching.reference import Session
+from hydrolek_drake.watching.settings import DRIFT, LEFT_OUT
+from hydrolek_drake.watching.stamps import Stamp, stamp_of
+from hydrolek_drake.watching.store import Seen, Store, digest_of, key_of
+from hydrolek_drake.watching.trends import Trend, trend_of
+
+
+@dataclass(frozen=True)
+class Watched:
+    """The outcome.
+
+    Attributes:
+        rig: the machine.
+        reference: the reference recordings, each asked by what the others tell.
+        seen: later recordings in the order of time, with those that could not be asked.
+        rule: of the alarm.
+        healthy: what a healthy machine shows.
+        judgements: of the recordings that could be asked.
+        alarm: what is wrong; None for nothing.
+        anew: how many recordings were asked by this run, not by an earlier one.
+    """
+
+    rig: Rig
+    reference: tuple[Seen, ...]
+    seen: tuple[Seen, ...]
+    rule: AlarmRule
+    healthy: Healthy
+    judgements: tuple[Judgement, ...]
+    alarm: Alarm | None
+    anew: int
+
+    @property
+    def asked(self) -> tuple[Seen, ...]:
+        """Recordings that could be asked, in the order of time."""
+        return tuple(each for each in self.seen if each.answer is not None)
+
+    @property
+    def answers(self) -> tuple[Answer, ...]:
+        """What these say."""
+        return tuple(each.answer for each in self.seen if each.answer is not None)
+
+    @property
+    def broken(self) -> tuple[Seen, ...]:
+        """Recordings that could not be asked."""
+        return tuple(each for each in self.seen if each.answer is None)
+
+    def trend(self, effect: str, joint: str) -> Trend:
+        """The course of an effect's size."""
+        told = [
+            (each.stamp.seconds, e.size, e.low, e.high)
+            for each in self.asked
+            if each.answer is not None
+            for e in each.answer.effects
+            if (e.effect, e.joint) == (effect, joint)
+        ]
+        times, sizes, lows, highs = ([row[i] for row in told] for i in range(4))
+        return trend_of(times, sizes, lows, highs, self.rule.false_alarms)
+
+
+def watch(
+    rig: Rig,
+    reference: Sequence[Path],
+    recordings: Sequence[Path],
+    *,
+    folder: Path | None = None,
+    drift: Mapping[str, float] | None = None,
+    rule: AlarmRule | None = None,
+    cores: int | None = None,
+    pool: Executor | None = None,
+    say: Callable[[str], None] = lambda text: None,
+) -> Watched:
+    """Ask every later recording what differs from the reference; what was asked before is not asked again.
+
+    Args:
+        rig: the machine's nominal model.
+        reference: recordings of the healthy machine.
+        recordings: later ones; one that cannot be read is listed and stops nothing.
+        folder: where results are kept; None to keep none.
+        drift: path, section or part of one -> standard deviation by which these own numbers may differ from one
+            recording to another, in ranges; "" for all others, `settings.DRIFT` without.
+        rule: of the alarm.
+        cores: that roll out at the same time; all by default.
+        pool: threads, or a cluster's; threads of its own by default.
+        say: told what is being done.
+
+    Raises:
+        InputError: a reference recording that cannot be used, or a folder of another watch.
+    """
+    drifts = {"": DRIFT, **(drift or {})}
+    count = cores or os.cpu_count() or 1
+    if not reference:
+        raise InputError("a watch needs one reference recording of the healthy machine at least")
+    training: list[tuple[Path, str, list[Experiment], Stamp]] = []
+    for path in reference:
+        recording = _read(rig, path)
+        experiments = _usable(rig, recording)
+        digest = digest_of(path)
+        if any(digest == known for _, known, _, _ in training):
+            raise InputError(f"reference {path} has the content of another one; a recording counts once")
+        if any(experiments[0].name == own[0].name for _, _, own, _ in training):  # files of two folders
+            experiments = [replace(e, name=f"{e.name} {len(training) + 1}") for e in experiments]
+        training.append((path, digest, experiments, stamp_of(path, recording)))
+    store = Store(folder, key_of(rig, [digest for _, digest, _, _ in training], drifts))
+    own = None if pool is not None else ThreadPoolExecutor(count)
+    try:
+        with threadpool_limits(limits=1, user_api="blas"):
+            return _watched(
+                rig, training, recordings, store, drifts, rule or AlarmRule(), count, pool or own, say
+            )
+    finally:
+        if own is not None:
+            own.shutdown()
+
+
+def _watched(
+    rig: Rig,
+    training: list[tuple[Path, str, list[Experiment], Stamp]],
+    recordings: Sequence[Path],
+    store: Store,
+    drifts: Mapping[str, float],
+    rule: AlarmRule,
+    cores: int,
+    pool: Executor | None,
+    say: Callable[[str], None],
+) -> Watched:
+    """See `watch`."""
+    assert pool is not None
+    kept = store.reference()
+    experiments = [e for _, _, own, _ in training for e in own]
+    session = Session(rig, experiments, pool, cores, drifts, None if kept is None else kept[0], say)
+    if kept is None:
+        told = []
+        for path, digest, own, stamp in training[:LEFT_OUT]:
+            say(f"reference {path}")
+            known = session.knowledge_without(own[0].name) if len(training) > 1 else None
+            told.append(Seen(str(path), digest, stamp, asked(session, own, known), reference=True))
+        store.keep_reference(session.posterior, told)
+    else:
+        told = kept[1]
+    seen = store.seen()
+    anew = 0
+    for number, path in enumerate(recordings, start=1):
+        each = _seen_of(session, path, seen, say, f"recording {number} of {len(recordings)}, {path}")
+        if each is not None:
+            anew += 1
+            seen[each.digest] = each
+            store.keep(each)
+    healthy = healthy_by([each.answer for each in told if each.answer is not None])
+    ordered = tuple(sorted(seen.values(), key=lambda each: (each.stamp.seconds, each.recording)))
+    answers = [each.answer for each in ordered if each.answer is not None]
+    judgements = tuple(judged(answer, n, rule, healthy) for n, answer in enumerate(answers, start=1))
+    return Watched(
+        rig, tuple(told), ordered, rule, healthy, judgements, alarm_of(answers, judgements, rule), anew
+    )
+
+
+def _seen_of(
+    session: Session, path: Path, seen: Mapping[str, Seen], say: Callable[[str], None], title: str
+) -> Seen | None:
+    """What a recording says; None if its content was seen before."""
+    try:
+        digest = digest_of(path)
+    except InputError as error:
+        digest = f"unreadable {path}"
+        return None if digest in seen else Seen(str(path), digest, _no_stamp(path), None, str(error))
+    if digest in seen:
+        return None
+    say(title)
+    recording = None
+    try:
+        recording = _read(session.rig, path)
+        experiments = _usable(session.rig, recording)
+        missing = sorted({e.joint for e in experiments} - set(session.joints))
+        if missing:
+            raise InputError(f"{path} drives {', '.join(missing)}, of which the reference shows nothing")
+        answer = asked(session, experiments)
+    except InputError as error:
+        return Seen(str(path), digest, stamp_of(path, recording), None, str(error))
+    except (
+        ValueError,
+        ArithmeticError,
+    ) as error:  # numbers that nobody foresaw; one recording stops no watch
+        return Seen(str(path), digest, stamp_of(path, recording), None, f"{path} could not be asked: {error}")
+    return Seen(str(path), digest, stamp_of(path, recording), answer)
+
+
+def _no_stamp(path: Path) -> Stamp:
+    try:
+        return stamp_of(path)
+    except OSError:
+        return Stamp(0.0, "none")
+
+
+def _read(rig: Rig, path: Path) -> Recording:
+    from hydrolek_drake.checking.clock import refuse_other_clock
+
+    recording = read_recording(path, rig.columns, dead_time=rig.dead_time)
+    refuse_other_clock(rig, recording)
+    return recording
+
+
+def _usable(rig: Rig, recording: Recording) -> list[Experiment]:
+    """Experiments of a recording that can carry a diagnosis.
+
+    Raises:
+        InputError: it cannot, and why.
+    """
+    experiments = experiments_of(rig, recording)
+    reasons = reasons_against(recording, experiments)
+    if reasons:
+        raise InputError(f"{recording.source}: {reasons[0]}")
+    return experiments

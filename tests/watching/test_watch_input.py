@@ -1,0 +1,35 @@
+"""What is wrong with a watch's arguments is said in one line, exit status 2."""
+
+import pytest
+
+from hydrolek_drake.cli.app import run
+from hydrolek_drake.errors import InputError
+from hydrolek_drake.watching.limits import limits_of
+
+
+@pytest.mark.parametrize(
+    ("extra", "said"),
+    [
+        (["--recordings", "nowhere"], "nowhere"),
+        (["--recordings", ".", "--false-alarms", "1.5"], "probability"),
+        (["--recordings", ".", "--drift", "much"], "--drift much"),
+        (["--recordings", ".", "--limit", "cylinder.magic=1"], "no effect"),
+        (["--recordings", ".", "--limit", "sensor.nonlinearity=1 MPa"], "MPa"),
+        (["--recordings", ".", "--limit", "sensor.nonlinearity"], "EFFECT=SIZE"),
+        (["--recordings", "."], "absent.csv"),
+        ([], "recordings"),
+    ],
+    ids=lambda each: " ".join(each) if isinstance(each, list) else "",
+)
+def test_one_line_and_exit_status_2(extra, said, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert run(["watch", "joint_bench", "absent.csv", *extra]) == 2
+    lines = capsys.readouterr().err.strip().splitlines()
+    assert len(lines) == 1 and said in lines[0]
+
+
+def test_limits_take_units():
+    [one, other] = limits_of(["sensor.nonlinearity=1 deg", "cylinder.cross_port_leakage=2e-12"])
+    assert one.size == pytest.approx(0.0174533, rel=1e-5) and other.size == 2e-12
+    with pytest.raises(InputError, match="finite"):
+        limits_of(["cylinder.coulomb_friction=inf"])
