@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2, norm
 
-from hydrolek_drake.diagnosis.evidence.noise import NOISE_KNOWN
+from hydrolek_drake.diagnosis.settings import NOISE
 from hydrolek_drake.watching.asking import OWN_NUMBERS, Answer, EffectTold
 from hydrolek_drake.watching.settings import FALSE_ALARMS, PERSISTENCE, TOGETHER
 
@@ -130,7 +130,7 @@ def judged(answer: Answer, number: int, rule: AlarmRule, healthy: Healthy) -> Ju
         thresholds[key] = max(chance, answer.needed)
         if told.gain > thresholds[key]:
             beyond.append(told.effect)
-    error = float(np.hypot(NOISE_KNOWN, 1.0 / np.sqrt(2.0 * max(answer.counted, 1))))
+    error = float(np.hypot(NOISE.known, 1.0 / np.sqrt(2.0 * max(answer.counted, 1))))
     most = healthy.left * (1.0 + float(norm.isf(share)) * error)
     if min(told.left for told in answer.effects) > most:
         beyond.append(UNLISTED)

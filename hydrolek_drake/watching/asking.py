@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.data.weighing import weighted_by
 from hydrolek_drake.diagnosis.report.words import unit_at
-from hydrolek_drake.diagnosis.search.gains import gain_needed
+from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.lockstep import Place, descend, fit_of, with_slopes
 from hydrolek_drake.identification.problem import Problem

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.intervals.curvature import CONFIDENCE
+from hydrolek_drake.diagnosis.settings import EVIDENCE
 from hydrolek_drake.watching.settings import GRID, REACH
 
 
@@ -77,7 +77,7 @@ def told_by(sizes: np.ndarray, rises: np.ndarray, scale: float = 1.0) -> SizeTol
     likelihood = np.exp(-0.5 * (rises - rises.min()) / scale)
     order = np.argsort(-likelihood, kind="stable")
     mass = np.cumsum(likelihood[order])
-    kept = order[: int(np.searchsorted(mass, CONFIDENCE * mass[-1])) + 1]
+    kept = order[: int(np.searchsorted(mass, EVIDENCE.confidence * mass[-1])) + 1]
     return SizeTold(float(sizes[order[0]]), float(sizes[kept.min()]), float(sizes[kept.max()]))
 
 

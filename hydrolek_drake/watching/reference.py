@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.data.weighing import weighted_by
-from hydrolek_drake.diagnosis.evidence.noise import AT_NOISE
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
-from hydrolek_drake.diagnosis.search.settings import Settings
+from hydrolek_drake.diagnosis.settings import NOISE, Settings
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, candidates_of
+from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.experiment import Experiment
@@ -142,7 +141,7 @@ def _fitted(bench: Workbench, cores: int) -> tuple[Hypothesis, Posterior]:
     for _ in range(MOST_WEIGHED):
         bench.training = tuple(weighted_by(bench, best, bench.training))
         before, best = best, race(bench, [Entrant((), best.values)], (settings.again,), cores)[0]
-        if best.fit.over_noise < AT_NOISE * before.fit.over_noise:
+        if best.fit.over_noise < NOISE.at * before.fit.over_noise:
             break
     return best, _posterior(bench, best)
 

@@ -1,6 +1,6 @@
 """Every constant of the watch, with the principle or measurement it comes from."""
 
-from hydrolek_drake.diagnosis.search.settings import TELLING
+from hydrolek_drake.diagnosis.settings import FITS
 
 METHOD = 1
 """Number of the method: recordings that another one was asked of are asked again."""
@@ -12,7 +12,7 @@ share of its range in the rig: a range says how far machines of the build differ
 FALSE_ALARMS = 0.01
 """Probability of any alarm in a whole series of a healthy machine, however long it is."""
 
-COARSE = TELLING
+COARSE = FITS.coarse
 """Scans and the slopes that lead fits are told by rollouts with steps so many times the rig's own."""
 
 NOMINAL = 12

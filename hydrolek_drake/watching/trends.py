@@ -16,7 +16,8 @@ from ruptures.detection import Pelt
 from scipy.stats import chi2
 from scipy.stats import t as student
 
-from hydrolek_drake.diagnosis.intervals.curvature import CONFIDENCE, NORMAL
+from hydrolek_drake.diagnosis.intervals.curvature import NORMAL
+from hydrolek_drake.diagnosis.settings import EVIDENCE
 from hydrolek_drake.watching.settings import FEWEST
 
 PER_PIECE = 3
@@ -44,7 +45,7 @@ class Line:
     @property
     def quantile(self) -> float:
         """Standard deviations that hold 95 % with so few points."""
-        return float(student.ppf(0.5 + 0.5 * CONFIDENCE, self.freedom))
+        return float(student.ppf(0.5 + 0.5 * EVIDENCE.confidence, self.freedom))
 
     @property
     def slope_interval(self) -> tuple[float, float]:

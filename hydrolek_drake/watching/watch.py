@@ -8,7 +8,7 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from hydrolek_drake.diagnosis.data.quality import reasons_against
+from hydrolek_drake.diagnosis.structures.splitting import reasons_against
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.recorded import experiments_of

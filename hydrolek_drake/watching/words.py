@@ -6,7 +6,7 @@ from datetime import datetime, timezone
 import numpy as np
 
 from hydrolek_drake.diagnosis.intervals.curvature import Interval
-from hydrolek_drake.diagnosis.report.numbers import with_interval
+from hydrolek_drake.diagnosis.report.words import with_interval
 from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.replay.display import display_factor, display_unit, shown
