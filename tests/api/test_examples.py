@@ -39,7 +39,7 @@ def _run(name, *arguments, cwd):
     [
         ("replay", "practice_01", 12.0, "joint.angle"),
         ("fit", "practice_01", 6.0, "supply.pressure"),
-        ("diagnose", "practice_02", 8.0, "none"),
+        pytest.param("diagnose", "practice_02", 8.0, "none", marks=pytest.mark.long("half a minute")),
     ],
 )
 def test_example(name, case, seconds, said, tmp_path):

@@ -15,6 +15,8 @@ from hydrolek_drake.watching.watch import watch
 
 DAY = 86400.0
 
+pytestmark = pytest.mark.xdist_group("a watched series")
+
 
 @pytest.fixture(scope="module")
 def leaking(machine_days, references, tmp_path_factory):
