@@ -169,7 +169,7 @@ def _path(session: Session, told: EffectTold) -> str:
 
 
 def _ended(places: list[Place], session: Session, rounds: int = ROUNDS) -> list[Place]:
-    """Fits led on to where a step promises nothing that counts."""
+    """Fits continued until no step promises anything that counts."""
     return descend(places, rounds, session.bench.pool, session.cores, worth=WORTH, share=1e-4)
 
 
@@ -267,7 +267,7 @@ def _deviation(scan: Scan, fitted: Place, scale: float, strong: float) -> float:
 def _own_numbers(
     session: Session, nominal: Place, experiments: Sequence[Experiment], scale: float
 ) -> EffectTold:
-    """The machine's own numbers let go: as far from the reference as the rig's ranges allow."""
+    """The machine's own numbers fitted anew within the rig's ranges, without the reference as prior."""
     kind = ProblemTogether if any(e.others is not None for e in experiments) else Problem
     problem = session.bench.problem((), session.bench.fine, experiments, kind=kind)
     assert nominal.slopes is not None

@@ -105,7 +105,7 @@ def _draw_trend(
     limits: Sequence[Limit],
     factor: float,
 ) -> float:
-    """The last piece's line with its band, led on, and where the course changed; until when [s since 1970]."""
+    """The last piece's line with its band, extrapolated, and where the course changed; until when [s since 1970]."""
     end = watched.asked[-1].stamp.seconds if watched.asked else 0.0
     if effect == OWN_NUMBERS:
         return end

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
-from hydrolek_drake.diagnosis.settings import NOISE, Settings
+from hydrolek_drake.diagnosis.settings import FITS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, candidates_of
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
@@ -18,9 +18,6 @@ from hydrolek_drake.identification.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_of_joints
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.watching.knowledge import Knowledge, KnownProblem, KnownTogether, with_drift
-
-MOST_WEIGHED = 3
-"""So often the data are weighed by the fit and fitted again at most, as in a diagnosis."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +135,7 @@ def _fitted(bench: Workbench, cores: int) -> tuple[Hypothesis, Posterior]:
     """The nominal model, the data weighed by it, and its posterior."""
     settings = Settings()
     best = race(bench, [Entrant((), {})], (*settings.free, *settings.ended), cores)[0]
-    for _ in range(MOST_WEIGHED):
+    for _ in range(FITS.anew):
         bench.training = tuple(weighted_by(bench, best, bench.training))
         before, best = best, race(bench, [Entrant((), best.values)], (settings.again,), cores)[0]
         if best.fit.over_noise < NOISE.at * before.fit.over_noise:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.diagnosis.fitting.projection import Across
+from hydrolek_drake.diagnosis.settings import FITS
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, redundant
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.lockstep import Place, fit_of
@@ -18,7 +19,7 @@ from hydrolek_drake.identification.rolling import Request, residuals_at
 from hydrolek_drake.watching.knowledge import Knowledge
 from hydrolek_drake.watching.likelihood import Branch
 from hydrolek_drake.watching.reference import Session
-from hydrolek_drake.watching.settings import COARSE, MOST_TIMES
+from hydrolek_drake.watching.settings import MOST_TIMES
 
 
 @dataclass(frozen=True)
@@ -83,9 +84,9 @@ def scanned(
     values = place.problem.parameters.values(place.unit)
     candidates = [c for c in session.candidates if c not in beside and not redundant(beside, c)]
     tried = {c.size_path: _tried(c) for c in candidates}
-    requests = [Request(place.problem.with_step(COARSE), (place.unit,))]
+    requests = [Request(place.problem.with_step(FITS.coarse), (place.unit,))]
     for candidate in candidates:
-        problem = session.problem((*beside, candidate), experiments, known).with_step(COARSE)
+        problem = session.problem((*beside, candidate), experiments, known).with_step(FITS.coarse)
         own = problem.parameters
         units = tuple(own.unit({**values, **start}) for start in tried[candidate.size_path])
         requests.append(Request(problem, units))

@@ -1,7 +1,5 @@
 """Every constant of the watch, with the principle or measurement it comes from."""
 
-from hydrolek_drake.diagnosis.settings import FITS
-
 METHOD = 1
 """Number of the method: recordings that another one was asked of are asked again."""
 
@@ -11,9 +9,6 @@ share of its range in the rig: a range says how far machines of the build differ
 
 FALSE_ALARMS = 0.01
 """Probability of any alarm in a whole series of a healthy machine, however long it is."""
-
-COARSE = FITS.coarse
-"""Scans and the slopes that lead fits are told by rollouts with steps so many times the rig's own."""
 
 NOMINAL = 12
 """Marquardt steps of the nominal model's fit at most: it begins where the reference ended, and mostly ends sooner."""
