@@ -29,6 +29,11 @@ BY_BOTH = (
     "thirds of the held-out data were fitted too, and the rest was held out"
 )
 
+ASKED_FOR = (
+    "the blocks of the held-out data that report ask for numbers that the others do not tell: as predicted they are "
+    "missed by {predicted:.3g} times the noise, fitted too by {fitted:.3g} times"
+)
+
 
 @dataclass(frozen=True)
 class Known:
@@ -111,6 +116,9 @@ class Inquiry:
             remarks = (BY_BOTH,)
         best = likeliest_side(known.judged).hypothesis
         known = self._reported(known, kept)
+        first = known.judged[0]
+        if first.fitted_too is not None:
+            remarks = (*remarks, ASKED_FOR.format(predicted=first.over_noise, fitted=first.fitted_too))
         conclusion, law = self._told(known, next(j for j in known.judged if j.hypothesis is best))
         if known.interrupted:
             remarks = (*remarks, INTERRUPTED)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
-from hydrolek_drake.diagnosis.settings import FITS, NOISE, Settings
+from hydrolek_drake.diagnosis.search.nominal import as_weighed
+from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, candidates_of
-from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.experiment import Experiment
@@ -134,12 +134,8 @@ class Session:
 def _fitted(bench: Workbench, cores: int) -> tuple[Hypothesis, Posterior]:
     """The nominal model, the data weighed by it, and its posterior."""
     settings = Settings()
-    best = race(bench, [Entrant((), {})], (*settings.free, *settings.ended), cores)[0]
-    for _ in range(FITS.anew):
-        bench.training = tuple(weighted_by(bench, best, bench.training))
-        before, best = best, race(bench, [Entrant((), best.values)], (settings.again,), cores)[0]
-        if best.fit.over_noise < NOISE.at * before.fit.over_noise:
-            break
+    first = race(bench, [Entrant((), {})], (*settings.free, *settings.ended), cores)[0]
+    best = as_weighed(bench, first, settings, cores)
     return best, _posterior(bench, best)
 
 

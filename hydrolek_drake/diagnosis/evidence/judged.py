@@ -32,6 +32,8 @@ class Judged:
         spread: log det (I + J S J').
         behind: log-density of the held-out data less than that of the most probable (`with_differences`).
         behind_error: standard error of that.
+        fitted_too: times the noise that it leaves of these data beyond what it leaves of the others, fitted to both;
+            None where nobody asked.
         stands: recording (`windows.recording_of`) -> additions and place in the unit cube there (`nuisance`).
     """
 
@@ -43,12 +45,24 @@ class Judged:
     spread: float = 0.0
     behind: float = 0.0
     behind_error: float = math.nan
+    fitted_too: float | None = None
     stands: Mapping[str, tuple[tuple[Addition, ...], np.ndarray]] = field(default_factory=dict)
 
     @property
     def over_noise(self) -> float:
         """Held-out root mean square over the noise."""
         return math.sqrt(float(self.held_out @ self.held_out) / max(self.held_out_counted, 1))
+
+    @property
+    def explains_ahead(self) -> bool:
+        """Whether it leaves so little of the held-out data that nothing is missing that these show."""
+        left = self.over_noise if self.fitted_too is None else min(self.over_noise, self.fitted_too)
+        return left <= (NOISE.explained_ahead if self.hypothesis.effects else NOISE.explained)
+
+    @property
+    def fails_ahead_alone(self) -> bool:
+        """Whether it explains what it was fitted to, and not the held-out data."""
+        return self.hypothesis.fit.over_noise <= NOISE.ahead and not self.explains_ahead
 
     @property
     def ahead(self) -> float:
@@ -151,8 +165,7 @@ def conclude(judged: Sequence[Judged]) -> Conclusion:
     paths = {path for j in judged for path in j.hypothesis.ids}
     probability = {path: probability_of(path, judged) for path in paths}
     groups = _groups(best, judged)
-    ahead = NOISE.explained_ahead if best.hypothesis.effects else NOISE.explained
-    if best.hypothesis.fit.over_noise > NOISE.explained or best.over_noise > ahead:
+    if best.hypothesis.fit.over_noise > NOISE.explained or not best.explains_ahead:
         return Conclusion("unlisted_physics", best, probability, groups if best.hypothesis.effects else ())
     if not best.hypothesis.effects:
         return Conclusion(

@@ -147,7 +147,7 @@ def _contenders(found: Tried) -> list[Hypothesis]:
 
 def _in_doubt(hypotheses: Sequence[Hypothesis], best: Hypothesis) -> list[Hypothesis]:
     """Those that the training data leave in doubt beside the best one."""
-    doubt = max(EVIDENCE.out_of_reach, 0.05 * best.fit.objective)
+    doubt = max(EVIDENCE.out_of_reach, EVIDENCE.doubt * best.fit.objective)
     return [h for h in hypotheses if 0.5 * (cost(h) - cost(best)) < doubt]
 
 
@@ -184,16 +184,28 @@ def _predicted(
         far.append(is_far and any(h is d for d in doubtful) and not own_of_recordings(h).any())
         judged.append(one)
     chosen = [i for i, is_far in enumerate(far) if is_far]
-    both = [*bench.training, *held_out]
-    again = []
-    for i in chosen:
-        h = judged[i].hypothesis
+    again = _beyond(bench, [judged[i].hypothesis for i in chosen], held_out, step, settings, cores)
+    for i, squares in zip(chosen, again, strict=True):
+        judged[i] = replace(judged[i], chi_squared=squares)
+    return judged
+
+
+def _beyond(
+    bench: Workbench,
+    hypotheses: Sequence[Hypothesis],
+    held_out: Sequence[Experiment],
+    step: float,
+    settings: Settings,
+    cores: int,
+) -> list[float]:
+    """Squares that structures fitted to both data leave beyond those that they leave of the training data alone."""
+    both, again = [*bench.training, *held_out], []
+    for h in hypotheses:
         problem = problem_with(bench, h.effects, step, both)
         again.append(Place(problem, bench.movable(h.effects, problem.parameters), h.fit.unit))
-    for i, place in zip(chosen, descend(again, 6, bench.pool, cores, stop=bench.alive), strict=True):
-        beyond = max(place.objective - judged[i].hypothesis.fit.objective, 0.0)
-        judged[i] = replace(judged[i], chi_squared=beyond)
-    return judged
+    rung = settings.again
+    fitted = descend(again, rung.rounds, bench.pool, cores, share=rung.share, stop=bench.alive)
+    return [max(p.objective - h.fit.objective, 0.0) for p, h in zip(fitted, hypotheses, strict=True)]
 
 
 def left_of(
@@ -204,6 +216,10 @@ def left_of(
     cores: int,
 ) -> tuple[Judged, ...]:
     """The same structures with what they leave of other data than those by which they were judged.
+
+    Where the best one explains what it was fitted to and fails here, these data may show what the others do not, such
+    as a place where the joint had not been: then it is fitted to them too, since a model that explains all that was
+    recorded lacks nothing that these data could show.
 
     Args:
         bench: data and problems.
@@ -225,7 +241,11 @@ def left_of(
         replace(j, held_out=np.concatenate([next(answers)[0] for _ in held_out]), held_out_counted=counted)
         for j in judged
     )
-    return with_differences(told, held_out)
+    told = with_differences(told, held_out)
+    if not told[0].fails_ahead_alone or own_of_recordings(told[0].hypothesis).any():
+        return told
+    [squares] = _beyond(bench, [told[0].hypothesis], held_out, step, settings, cores)
+    return (replace(told[0], fitted_too=math.sqrt(squares / max(counted, 1))), *told[1:])
 
 
 def _of_the_machine(place: Place, hypothesis: Hypothesis) -> np.ndarray:

@@ -96,6 +96,12 @@ def headline(diagnosis: Diagnosis) -> str:
     best, baseline = diagnosis.best, diagnosis.baseline
     before, after = _ratio(baseline.over_noise), _ratio(best.over_noise)
     if diagnosis.verdict == "none":
+        if best.fitted_too is not None:
+            return (
+                f"Nothing is missing that these data show: held-out parts that the nominal model, with its own "
+                f"parameters fitted, predicts to {after} the noise it explains to {_ratio(best.fitted_too)} once "
+                f"fitted to them too."
+            )
         return (
             f"Nothing is missing: the nominal model, with its own parameters fitted, predicts the held-out data "
             f"to {after} the noise."

@@ -7,12 +7,12 @@ from typing import Protocol
 from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
-from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.cost import cost
-from hydrolek_drake.diagnosis.search.enlarging import continued_nominal, enlarged
+from hydrolek_drake.diagnosis.search.enlarging import enlarged
+from hydrolek_drake.diagnosis.search.nominal import fit_nominal
 from hydrolek_drake.diagnosis.search.openings import Opening, opened, surely_above
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import FITS, NOISE, Settings
+from hydrolek_drake.diagnosis.settings import NOISE, Settings
 from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
@@ -51,7 +51,7 @@ def search_structures(
         unlisted: physics in no list; None for none.
     """
     say("fitting the nominal model")
-    _nominal(bench, found, settings, cores)
+    fit_nominal(bench, found, settings, cores)
     done: set[tuple[frozenset[str], str]] = set()
     seen: dict[tuple[frozenset[str], str], Opening] = {}
     expansions = 0
@@ -122,44 +122,6 @@ def _open(
     return [(h, kind) for h, kind in items if (h.ids, kind) not in done]
 
 
-def _nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
-    """The nominal model by free rollouts from the rig's own numbers.
-
-    Nothing is below the noise, so that a fit that reaches it needs no other starts. Where one is near it, so that
-    what is missing is small beside what a wrong local minimum leaves, it is fitted by continuation too; where it is
-    far, only if no addition to it reaches the noise (`openings`). Where a pump's pressure was recorded it is fitted
-    part by part instead: a line that rings has many local minima.
-    """
-    known = next((h.values for h in found.seeds if not h.effects), {})
-    if not known and can_be_cut(bench):
-        known = by_parts(bench, (), {}, cores)
-    rungs = (settings.led,) if known else (*settings.free, *settings.ended)
-    best = _as_weighed(bench, race(bench, [Entrant((), known)], rungs, cores)[0], settings, cores)
-    trace(f"nominal {best.fit.over_noise:.4f}")
-    if not known and NOISE.at < best.fit.over_noise < NOISE.far:
-        better = continued_nominal(bench, best, found, settings, cores)
-        best = best if better is None else _as_weighed(bench, better, settings, cores)
-    found.nominal_continued = found.nominal_continued or bool(known)
-    found.keep(best)
-    found.weighed_at = best.fit.over_noise
-    if found.seeds:
-        rung = replace(settings.again, keep=len(found.seeds))
-        for each in race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (rung,), cores):
-            found.keep(each)
-
-
-def _as_weighed(bench: Workbench, structure: Hypothesis, settings: Settings, cores: int) -> Hypothesis:
-    """A structure fitted on, the data weighed by it; again where its noise fell, since a worse fit had told it."""
-    now = structure
-    for _ in range(FITS.anew):
-        bench.training = tuple(weighted_by(bench, now, bench.training))
-        rung = settings.again if now.fit.over_noise < NOISE.far else settings.led
-        before, now = now, race(bench, [Entrant(now.effects, now.values)], (rung,), cores)[0]
-        if now.fit.over_noise > 1.0 / NOISE.at or now.fit.over_noise < NOISE.at * before.fit.over_noise:
-            break
-    return now
-
-
 def _weigh(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
     """Weigh the data by the best structure where it tells their noise better, and fit what is near it again."""
     best = found.best
@@ -167,7 +129,8 @@ def _weigh(bench: Workbench, found: Tried, settings: Settings, cores: int) -> No
         return
     bench.training = tuple(weighted_by(bench, best, bench.training))
     ranked = sorted(found.hypotheses.values(), key=lambda h: h.fit.objective)
-    near = [h for h in ranked if h.fit.objective < 4.0 * best.fit.objective][:6]
+    within = settings.again_within**2 * best.fit.objective
+    near = [h for h in ranked if h.fit.objective < within][: settings.most_again]
     chosen = {h.ids: h for h in (found.baseline, *near)}
     rung = replace(settings.again, keep=len(chosen))
     again = race(bench, [Entrant(h.effects, h.values) for h in chosen.values()], (rung,), cores)

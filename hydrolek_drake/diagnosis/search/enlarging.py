@@ -97,7 +97,7 @@ def _led_on(
     entrants += [
         Entrant(effects, {**parent.values, **{k: v for k, v in start.items() if k not in parent.values}})
         for _, wider, effects in widenings(parent.effects, candidates)
-        for start in wider.starts[:4]
+        for start in wider.starts[: settings.scanned]
     ]
     if not entrants:
         return []
@@ -205,7 +205,7 @@ def _lessened(
             effects, {**{k: v for k, v in best.values.items() if not k.startswith(c.path + ".")}, **start}
         )
         for c, special, effects in narrowings(best.effects, candidates)
-        for start in special.starts[:2]
+        for start in special.starts[: settings.starts]
     ]
     rung = replace(settings.again, keep=len(entrants))
     fitted = race(bench, entrants, (rung,), cores)

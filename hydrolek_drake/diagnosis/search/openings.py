@@ -148,7 +148,7 @@ def _worth_while(parent: Hypothesis, addition_cost: float, promised: float) -> b
 def _share(gain: float, objective: float, counted: int) -> float:
     """Which share of what is left above the noise a gain takes."""
     excess = objective - counted
-    return min(gain / excess, 1.0) if excess > 0.02 * counted else 0.0
+    return min(gain / excess, 1.0) if excess > 2.0 * NOISE.known * counted else 0.0
 
 
 def observed(

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.promise import Promise
+from hydrolek_drake.diagnosis.settings import GAINS
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 
 
@@ -50,9 +51,9 @@ class Tried:
     @property
     def gaining(self) -> bool:
         """Whether the last round led to a better structure than the one before it."""
-        return len(self.costs) < 2 or self.costs[-1] <= self.costs[-2] - 2.0
+        return len(self.costs) < 2 or self.costs[-1] <= self.costs[-2] - GAINS.told_apart
 
     def rounds_without_gain(self, patience: int) -> bool:
         """Whether so many rounds have not changed which structure is best, to within a unit of log-odds."""
         self.costs.append(cost(self.best))
-        return len(self.costs) > patience and self.costs[-1] > self.costs[-1 - patience] - 2.0
+        return len(self.costs) > patience and self.costs[-1] > self.costs[-1 - patience] - GAINS.told_apart

@@ -75,6 +75,9 @@ class Gains:
     """Standard deviations beyond doubt: what a proposed experiment has to show, and the root of what a window of lost
     commands must promise, since hundreds are tried."""
 
+    told_apart: float = 2.0
+    """Fall of the cost that is one: half of it is a log-odds of one, what a further parameter must bring."""
+
     fidelity: float = 0.004
     """Gain, as a share of the values, below which an effect is not told from what every model leaves out: 0.2 % of
     the noise's rms."""
@@ -115,6 +118,10 @@ class Evidence:
 
     out_of_reach: float = 150.0
     """Half the squared residuals by which a structure is beyond all doubt behind the best."""
+
+    doubt: float = 0.05
+    """The same as a share of the squares that the best one leaves, where these are far from the noise: what no
+    structure explains differs by more from one local minimum to the next."""
 
     most_judged: int = 8
     """At most so many structures are judged."""

@@ -136,6 +136,13 @@ class Settings:
     again: Rung = Rung(math.inf, 1.0, math.inf, 32, 1, share=1e-4)
     """Fits that begin where nearly the same one ended."""
 
+    again_within: float = 2.0
+    """Structures that leave at most so many times what the best one leaves are fitted again once the data are weighed
+    anew ..."""
+
+    most_again: int = 6
+    """... but no more of them: others lie behind for good."""
+
     led: Rung = Rung(math.inf, 1.0, math.inf, 6, 1)
     """The same of a structure that is far from the noise, or was led by another fit: it is fitted again later."""
 
