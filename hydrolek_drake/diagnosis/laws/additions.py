@@ -31,6 +31,7 @@ class LawTerm:
         frequency: of a periodic one, first guess [Hz].
         breadth: half of the range about it in which it is fitted [Hz].
         seen: amplitudes, in scales of the input, that the innovations of an observer ask for; None if nobody looked.
+        across: the input on the other side of the linkage, for a force; None for what is no force.
     """
 
     input: Input
@@ -40,6 +41,7 @@ class LawTerm:
     frequency: float = 0.0
     breadth: float = LOCATING.breadth_hz
     seen: tuple[float, ...] | None = field(default=None, compare=False)
+    across: Input | None = field(default=None, compare=False)
 
     cost: ClassVar[float] = GAINS.law
     """In effects."""
@@ -131,6 +133,23 @@ class LawTerm:
             )
             found.append({**rest, **values})
         return tuple(found)
+
+    def moved_across(self, values: Mapping[str, float]) -> "tuple[LawTerm, dict[str, float]] | None":
+        """The same force on the other side of the linkage, and its values there; None for what is no force.
+
+        Args:
+            values: full path -> value, with the term's own.
+        """
+        if self.across is None:
+            return None
+        other = replace(self, input=self.across, across=self.input)
+        told = {free.path: values[free.path] for free in self.free}
+        forces = {self.size_path, f"{self.path}.cosine"}
+        scale = other.input.scale / self.input.scale
+        return other, {
+            other.path + path[len(self.path) :]: value * (scale if path in forces else 1.0)
+            for path, value in told.items()
+        }
 
     def neutral(self) -> dict[str, float]:
         """Full path -> value at which it does nothing."""

@@ -10,7 +10,7 @@ from hydrolek_drake.diagnosis.evidence.judged import Judged
 from hydrolek_drake.diagnosis.evidence.nuisance import with_stands
 from hydrolek_drake.diagnosis.intervals.curvature import intervals_of
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
-from hydrolek_drake.diagnosis.laws.inputs import Input
+from hydrolek_drake.diagnosis.laws.inputs import SIDES, Input
 from hydrolek_drake.diagnosis.laws.law import FRICTIONS, FoundLaw, Law
 from hydrolek_drake.diagnosis.laws.terms import Term
 from hydrolek_drake.diagnosis.lost_commands.search import lost_in
@@ -119,9 +119,6 @@ def _told(h: Hypothesis, terms: Sequence[LawTerm], order: list[int], rest: list[
         slopes=slopes[:, turned],
         prior_jacobian=h.fit.prior_jacobian[np.ix_(turned, turned)],
     )
-
-
-SIDES = ("cylinder", "load")
 
 
 def likeliest_side(judged: Sequence[Judged]) -> Judged:

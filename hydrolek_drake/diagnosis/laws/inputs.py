@@ -29,6 +29,10 @@ class Input:
     one_sided: bool = False
 
 
+SIDES = ("cylinder", "load")
+"""Inputs that are forces: at the rod and, on the other side of the linkage, at the joint."""
+
+
 def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str) -> tuple[Input, ...]:
     """The unknown inputs of a joint; those of the hydraulics are left out where there are none (NaN scales).
 

@@ -1,13 +1,13 @@
 """Terms of laws that may be added: which function of time and movement follows what an unknown input must have been."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
-from hydrolek_drake.diagnosis.laws.inputs import Input, inputs_of
+from hydrolek_drake.diagnosis.laws.inputs import SIDES, Input, inputs_of
 from hydrolek_drake.diagnosis.laws.terms import TERMS, Span, law_record, span_of
 from hydrolek_drake.diagnosis.locating.unknown_input import (
     Estimate,
@@ -62,6 +62,8 @@ def terms_for(
     if len(scales) > 1:  # what the others do to it is an input, as an observer of each has measured it
         bench = bench.with_training([e for e in bench.training if e.joint == joint])
     inputs = _inputs(bench, joint, scales[joint])
+    by_probe = {each.probe: each for each in inputs}
+    across = {one: by_probe.get(other) for one, other in (SIDES, SIDES[::-1])}
     has = {c.input.probe for c in parent.effects if isinstance(c, LawTerm)}
     inputs = tuple(each for each in inputs if not has or each.probe in has)
     values = near(bench, parent, LOCATING.observer_s, cores)
@@ -69,8 +71,8 @@ def terms_for(
     parameters = bench.parameters(parent.effects)
     record = parameters.records(parameters.unit(values))[bench.training[0].index]
     span = _span(bench, seen.signals, record, joint)
-    ranked = [term for gain, term in terms_seen(seen, record, joint, span) if gain > 0.0]
-    ranked = [term for term in ranked if term.size_path not in parent.ids]
+    promised = [term for gain, term in terms_seen(seen, record, joint, span) if gain > 0.0]
+    ranked = [replace(t, across=across.get(t.input.probe)) for t in promised if t.size_path not in parent.ids]
     taken: dict[str, int] = {}
     first: list[LawTerm] = []
     rest: list[LawTerm] = []

@@ -15,7 +15,7 @@ from hydrolek_drake.diagnosis.fitting.race import (
     race,
     run,
 )
-from hydrolek_drake.diagnosis.laws.additions import of_additions
+from hydrolek_drake.diagnosis.laws.additions import LawTerm, of_additions
 from hydrolek_drake.diagnosis.lost_commands.search import with_windows
 from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.cost import gain_needed
@@ -188,9 +188,10 @@ def _steps(rungs: Sequence[Rung], fine: bool) -> tuple[Rung, ...]:
 def _lessened(
     bench: Workbench, found: Tried, candidates: Sequence[Candidate], settings: Settings, cores: int
 ) -> None:
-    """Backward elimination: the best structure without each addition, and with a special case in its place.
+    """Backward elimination: the best structure without each addition, and with what may do as well in its place.
 
-    Each is fitted from where the best structure led, and by continuation.
+    That is a special case, and for the forces of a law the same on the other side of the linkage. Each is fitted from
+    where the best structure led, and by continuation.
     """
     best = found.best
     if best is found.lessened or not best.effects:
@@ -207,6 +208,7 @@ def _lessened(
         for c, special, effects in narrowings(best.effects, candidates)
         for start in special.starts[: settings.starts]
     ]
+    entrants += _across(best)
     rung = replace(settings.again, keep=len(entrants))
     fitted = race(bench, entrants, (rung,), cores)
     near = not found.nominal_continued and found.baseline.fit.over_noise < NOISE.far
@@ -217,6 +219,23 @@ def _lessened(
         )
     for each in fitted:
         found.keep(each)
+
+
+def _across(structure: Hypothesis) -> list[Entrant]:
+    """The same structure with the forces of its law on the other side of the linkage, which may do as well."""
+    forces = [c for c in structure.effects if isinstance(c, LawTerm)]
+    moved = [found for c in forces if (found := c.moved_across(structure.values)) is not None]
+    if not moved or len(moved) < len(forces):
+        return []
+    rest = tuple(c for c in structure.effects if c not in forces)
+    values = {
+        path: value
+        for path, value in structure.values.items()
+        if not any(path.startswith(c.path + ".") for c in forces)
+    }
+    for _, told in moved:
+        values |= told
+    return [Entrant((*rest, *(term for term, _ in moved)), values)]
 
 
 def _widened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:

@@ -55,3 +55,29 @@ def test_each_term_has_a_row_of_its_own(bench, machine) -> None:
     unit = parameters.unit({terms[0].size_path: 5.0, terms[1].size_path: 7.0})
     law = parameters.records(unit)["law"][0]
     assert law["term_1"]["sine"] == pytest.approx(5.0) and law["term_2"]["sine"] == pytest.approx(7.0)
+
+
+def test_a_force_on_the_other_side_of_the_linkage_moves_the_joint_as_much(bench, machine) -> None:
+    experiment, inputs, span = machine
+    form = next(term for term in TERMS if term.name == "sign(v)" and term.meant_for(inputs["cylinder"]))
+    rod = LawTerm(inputs["cylinder"], form, "joint", span, across=inputs["load"])
+    values = {**rod.neutral(), rod.size_path: -0.05 * inputs["cylinder"].scale}
+    joint, told = rod.moved_across(values)
+    assert joint.input.probe == "load" and joint.moved_across(told) == (rod, values)
+
+    def moved(term, at) -> np.ndarray:
+        parameters = WithTerms(bench, free_parameters(bench), [term])
+        plain = experiment.simulate(bench.records()).signals.reading
+        return experiment.simulate(parameters.records(parameters.unit(at))).signals.reading - plain
+
+    at_rod, at_joint = moved(rod, values), moved(joint, told)
+    assert np.std(at_rod) > 1e-4
+    # the lever changes by a third over the travel, so that they are not the same force everywhere
+    assert np.corrcoef(at_rod, at_joint)[0, 1] > 0.95
+    assert np.std(at_joint) == pytest.approx(np.std(at_rod), rel=0.3)
+
+
+def test_what_is_no_force_has_no_other_side(machine) -> None:
+    _, inputs, span = machine
+    term = LawTerm(inputs["supply"], None, "joint", span, 1.3)
+    assert term.moved_across(term.neutral()) is None
