@@ -3,6 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from hydrolek_drake.diagnosis.evidence.judged import Conclusion, Judged, conclude
 from hydrolek_drake.diagnosis.evidence.judging import judge_as_fitted, judge_structures, left_of
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
@@ -32,6 +34,11 @@ BY_BOTH = (
 ASKED_FOR = (
     "the blocks of the held-out data that report ask for numbers that the others do not tell: as predicted they are "
     "missed by {predicted:.3g} times the noise, fitted too by {fitted:.3g} times"
+)
+
+SIGNALS_APART = (
+    "no model comes near the noise of any signal, so that signals count by how far models are off from them: 'times "
+    "the noise' is that of the one which they follow best ({told})"
 )
 
 
@@ -108,12 +115,17 @@ class Inquiry:
         chosen, kept = halves(held_out)
         known, found = self._known(bench, chosen, Tried())
         remarks: tuple[str, ...] = ()
-        if not known.interrupted and self.apart and _astray(known):
+        astray, far = self.apart and _astray(known), _far_in_all(known)
+        if not known.interrupted and (astray or far):
             # numbers that the training data do not tell, the held-out ones ask for
-            training, chosen, kept = mixed(known.bench.training, held_out)
-            both = known.bench.with_training(training)
-            known, found = self._known(both, chosen, _begun_from(found))
-            remarks = (BY_BOTH,)
+            training = known.bench.training
+            if astray:
+                training, chosen, kept = mixed(training, held_out)
+                remarks = (BY_BOTH,)
+            again = known.bench.with_training(training, signals_apart=far)
+            known, found = self._known(again, chosen, _begun_from(found))
+            if far and (told := _told_apart(known.bench)):
+                remarks = (*remarks, SIGNALS_APART.format(told=told))
         best = likeliest_side(known.judged).hypothesis
         known = self._reported(known, kept)
         first = known.judged[0]
@@ -219,10 +231,36 @@ def _beside(known: Known, best: Judged) -> Judged:
 
 
 def _astray(known: Known) -> bool:
-    """Whether the best structure explains the training data and goes astray on the held-out ones."""
+    """Whether the best structure leaves more of the held-out data than the training data lead one to expect.
+
+    That is the noise where it explains these; else its own discrepancy, which differs between movements by more.
+    """
     best = known.judged[0]
-    at_noise = best.hypothesis.fit.over_noise <= NOISE.ahead
-    return at_noise and best.over_noise > NOISE.ahead
+    left = best.hypothesis.fit.over_noise
+    return best.over_noise > (NOISE.ahead if left <= NOISE.ahead else NOISE.explained_ahead * left)
+
+
+def _far_in_all(known: Known) -> bool:
+    """Whether the best structure is far from the noise of several signals, and of each of them."""
+    residuals = known.judged[0].hypothesis.fit.residuals
+    begin = 0
+    squares: dict[str, list[np.ndarray]] = {}
+    for experiment in known.bench.training:
+        for channel in experiment.channels:
+            own = residuals[begin : begin + experiment.time.size]
+            counts = experiment.used & np.isfinite(channel.measured)
+            squares.setdefault(channel.key, []).append(own[counts] ** 2)
+            begin += experiment.time.size
+    return len(squares) > 1 and all(np.concatenate(s).mean() > NOISE.far**2 for s in squares.values())
+
+
+def _told_apart(bench: Workbench) -> str:
+    """Discrepancies of signals in words; nothing where there are none."""
+    shares = {c.key: c.discrepancy for e in bench.training for c in e.channels}
+    apart = any(share != 1.0 for share in shares.values())
+    return (
+        ", ".join(f"{key} {share:.3g} times" for key, share in shares.items() if share > 1.0) if apart else ""
+    )
 
 
 def _begun_from(found: Tried) -> Tried:

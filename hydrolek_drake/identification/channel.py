@@ -24,6 +24,8 @@ class Channel:
         noise: standard deviation of its noise.
         model_error: standard deviation of what the model's integration adds, sample by sample; None for
             nothing. # (n,)
+        discrepancy: what every model leaves of it, as a multiple of what it leaves of the signal that it follows best;
+            1 where models reach the noise.
         blur: what averaging over blocks of samples adds, sample by sample; None for a recording that is kept as
             it is. # (n,)
     """
@@ -35,6 +37,7 @@ class Channel:
     noise: float
     model_error: np.ndarray | None = None
     blur: np.ndarray | None = None
+    discrepancy: float = 1.0
 
     @property
     def deviation(self) -> np.ndarray | float:
@@ -43,14 +46,14 @@ class Channel:
         for error in (self.model_error, self.blur):
             if error is not None:
                 variance = variance + error**2
-        return self.noise if isinstance(variance, float) else np.sqrt(variance)
+        return self.discrepancy * (self.noise if isinstance(variance, float) else np.sqrt(variance))
 
     @property
     def model_share(self) -> np.ndarray:
         """Share of the variance that is the model's error, sample by sample. # (n,)."""
         if self.model_error is None:
             return np.zeros(self.measured.size)
-        return (self.model_error / self.deviation) ** 2
+        return (self.discrepancy * self.model_error / self.deviation) ** 2
 
     def until(self, count: int) -> "Channel":
         """Its first so many samples."""

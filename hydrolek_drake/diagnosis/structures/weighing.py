@@ -4,6 +4,11 @@ Joints of one arm shake each other on their oil, faster than smoothed angles tel
 healthy machine would look as if something were missing. A rollout of all joints with a fitted model's values tells it.
 Its motion and flows then stand as known inputs of each joint's own rollout, which gives the same movement at these
 values (`identification.neighbours`), and nearly so at values close by: the fit goes on with them and asks again.
+
+**Discrepancy of each signal.** Where no structure comes near the noise of any signal, what is left is the model's own
+error and not the sensor's, and a signal with little noise would decide alone. Its variance is then estimated for each
+signal, as is most likely: by what the fitted model leaves of it (Kennedy, O'Hagan, Bayesian calibration of computer
+models, J. Royal Statistical Society B 63, 2001). Only ratios count here, their common size is a parameter of the cost.
 """
 
 from collections.abc import Sequence
@@ -34,6 +39,7 @@ def weighted_by(
     order, so the coarser one is wrong by 4/3 of their difference. What joints that move at the same time do
     is told by rolling out all joints where the model is near the noise, and known to `DATA.others_unknown` elsewhere.
     """
+    of_training = experiments is bench.training
     problem = bench.problem(hypothesis.effects, bench.fine, experiments)
     records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
     if hypothesis.fit.over_noise < NOISE.far and any(e.others is not None for e in experiments):
@@ -64,7 +70,41 @@ def weighted_by(
             )
         response = experiment.responding(records, 0.5 * bench.fine, fine)
         better.append(replace(recorded, channels=tuple(channels), start_response=response))
-    return better
+    if not bench.signals_apart:
+        return better
+    shares = _discrepancies(better, arrived, records) if of_training else _told(bench.training)
+    return [_with_discrepancies(e, shares) for e in better]
+
+
+def _discrepancies(
+    weighted: Sequence[Experiment], arrived: Sequence[Experiment], records: np.ndarray
+) -> dict[str, float]:
+    """Discrepancy of each signal over that of the one that a model follows best; none where it is near the noise.
+
+    Args:
+        weighted: experiments with the noise that shows beside the model.
+        arrived: the same with the commands that arrived.
+        records: the fitted model.
+    """
+    squares: dict[str, list[np.ndarray]] = {}
+    for experiment, driven in zip(weighted, arrived, strict=True):
+        signals = driven.simulate(records, experiment.longest_step).signals
+        for channel in experiment.channels:
+            plain = replace(channel, discrepancy=1.0)
+            left = ((channel.measured - getattr(signals, channel.model)) / plain.deviation)[experiment.used]
+            squares.setdefault(channel.key, []).append(left[np.isfinite(left)] ** 2)
+    leaves = {key: float(np.sqrt(np.concatenate(found).mean())) for key, found in squares.items()}
+    least = min(leaves.values())
+    return {key: value / least if least > NOISE.far else 1.0 for key, value in leaves.items()}
+
+
+def _told(experiments: Sequence[Experiment]) -> dict[str, float]:
+    return {channel.key: channel.discrepancy for e in experiments for channel in e.channels}
+
+
+def _with_discrepancies(experiment: Experiment, shares: dict[str, float]) -> Experiment:
+    channels = tuple(replace(c, discrepancy=shares.get(c.key, 1.0)) for c in experiment.channels)
+    return replace(experiment, channels=channels)
 
 
 def felt_together(rig: Rig, experiments: Sequence[Experiment]) -> list[Experiment]:

@@ -92,6 +92,8 @@ class Workbench:
         training: Sequence[Experiment],
         pool: Executor,
         cores: int = 1,
+        *,
+        signals_apart: bool = False,
     ) -> None:
         """Prepare.
 
@@ -101,21 +103,31 @@ class Workbench:
             training: the recordings that are fitted; weighed anew in time.
             pool: threads for fits side by side, and for the columns of a fit's Jacobian where some are idle.
             cores: that roll out at the same time.
+            signals_apart: whether each signal has a discrepancy of its own (`weighing`).
         """
         self.rig = rig
         self.nominal = tuple(nominal)
         self.training = tuple(training)
         self.pool = pool
         self.cores = cores
+        self.signals_apart = signals_apart
         self._stopped = threading.Event()
         self.evaluations = 0
         self._places: dict[Free, tuple[np.ndarray, np.ndarray]] = {}
         self._moving: dict[Any, OneRecording] = {}
         self._sets: dict[frozenset[Free], ParameterSet] = {}
 
-    def with_training(self, training: Sequence[Experiment]) -> "Workbench":
-        """Another one for other recordings of the same machine."""
-        return Workbench(self.rig, self.nominal, training, self.pool, self.cores)
+    def with_training(
+        self, training: Sequence[Experiment], *, signals_apart: bool | None = None
+    ) -> "Workbench":
+        """Another one for other recordings of the same machine.
+
+        Args:
+            training: these.
+            signals_apart: whether each signal has a discrepancy of its own; None for as here.
+        """
+        apart = self.signals_apart if signals_apart is None else signals_apart
+        return Workbench(self.rig, self.nominal, training, self.pool, self.cores, signals_apart=apart)
 
     def interrupted(self) -> bool:
         """Whether the user has interrupted."""
