@@ -15,6 +15,7 @@ from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.lockstep import Place, descend, fit_of, with_slopes
+from hydrolek_drake.identification.parameter_set import Free
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
 
@@ -68,6 +69,11 @@ class Runner:
         """What tells its structure from others."""
         return frozenset(c.size_path for c in self.effects)
 
+    @property
+    def searched(self) -> tuple[Free, ...]:
+        """What its place in the unit cube means: parameters in their order with their ranges, which may be wider."""
+        return tuple(free for c in self.effects for free in c.free)
+
 
 def race(
     bench: Workbench,
@@ -102,8 +108,8 @@ def entered(bench: Workbench, entrants: Sequence[Entrant], rung: Rung, cores: in
         cores: that roll out at the same time.
     """
     runners = [_begun(bench, entrant) for entrant in entrants]
-    problems = {r.key: problem_of(bench, r.effects, rung) for r in runners}
-    led = _led(bench, entrants, [r.place.at(problems[r.key]) for r in runners], rung, cores)
+    problems = {r.searched: problem_of(bench, r.effects, rung) for r in runners}
+    led = _led(bench, entrants, [r.place.at(problems[r.searched]) for r in runners], rung, cores)
     return [replace(r, place=place) for r, place in zip(runners, led, strict=True)]
 
 
@@ -125,9 +131,9 @@ def run(
     """
     now = list(runners)
     for rung in rungs:
-        problems = {r.key: problem_of(bench, r.effects, rung) for r in now}
+        problems = {r.searched: problem_of(bench, r.effects, rung) for r in now}
         places = descend(
-            [r.place.at(problems[r.key]) for r in now],
+            [r.place.at(problems[r.searched]) for r in now],
             rung.rounds,
             bench.pool,
             cores,

@@ -33,3 +33,27 @@ def test_what_the_beginning_does_not_show_goes_on_by_its_promise(bench, recorded
     assert [c.id for c in best.effects] == ["load.payload"]
     assert best.fit.over_noise < 1.05
     assert best.values[f"{PAYLOAD}.mass_kg"] == pytest.approx(20.0, rel=0.1)
+
+
+def test_a_structure_in_other_ranges_or_another_order_stands_where_it_was(bench, recorded) -> None:
+    training = recorded(bench, bench)
+    scales = natural_scales(bench, "joint", training)
+    candidates = {c.id: c for c in candidates_of(bench, "joint", scales)}
+    delay, drift = candidates["command.delay"], candidates["sensor.drift"]
+    at_end = {delay.size_path: delay.size.upper}
+    wide = delay.widened(at_end)
+    assert wide.size.upper > delay.size.upper
+    beyond = {delay.size_path: 0.9 * wide.size.upper, drift.size_path: 0.1 * drift.size.upper}
+    within = {delay.size_path: 0.5 * delay.size.upper, drift.size_path: 0.3 * drift.size.upper}
+    entrants = [
+        Entrant((wide, drift), beyond),
+        Entrant((drift, wide), within),
+        Entrant((delay, drift), within),
+    ]
+    still = Rung(math.inf, 1.0, math.inf, 0, 3, each=3)
+    free = [p for p in free_parameters(bench) if p.path.endswith("max_area")]
+    with ThreadPoolExecutor(2) as pool:
+        ended = race(Workbench(bench, free, training, pool), entrants, (still,), 2)
+    stands = sorted((h.values[delay.size_path], h.values[drift.size_path]) for h in ended)
+    wanted = sorted((v[delay.size_path], v[drift.size_path]) for v in (beyond, within))
+    assert [pytest.approx(each) for each in wanted] == [stands[0], stands[-1]]
