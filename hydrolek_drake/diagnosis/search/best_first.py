@@ -72,7 +72,7 @@ def search_structures(
             openings.append(seen[key])
         if not openings:
             break
-        hopeless = [each.key for each in openings if not each.worth_while]
+        hopeless = [each.key for each in openings if not _to_be_followed(each, found, settings)]
         done.update(hopeless)
         openings = [each for each in openings if each.key not in done]
         if not openings:
@@ -87,6 +87,19 @@ def search_structures(
         _weigh(bench, found, settings, cores)
         if found.rounds_without_gain(settings.patience):
             break
+
+
+def _to_be_followed(opening: Opening, found: Tried, settings: Settings) -> bool:
+    """Whether a structure is to be enlarged.
+
+    A law describes what has no name, and so hardly reaches the noise: one that explains the data is enlarged only where
+    a further term promises to lead to the noise, or a fifth nearer to it than the best structure is.
+    """
+    parent = opening.parent
+    described = opening.kind == LAWS and not all(isinstance(c, Candidate) for c in parent.effects)
+    if described and parent.fit.over_noise <= NOISE.explained:
+        return opening.leads(found.best, settings.nearer)
+    return opening.worth_while
 
 
 def _open(
