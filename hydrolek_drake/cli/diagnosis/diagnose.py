@@ -84,7 +84,9 @@ def diagnose(
 
         with ended_after(None if at_most is None else 60.0 * at_most) as limit:
             try:
-                done = run_diagnosis(loaded, train, held, pool, say=say, between=between, cores=count)
+                done = run_diagnosis(
+                    loaded, train, held, pool, say=say, between=between, cores=count, more=tell.more
+                )
             except KeyboardInterrupt:
                 if not limit.reached:
                     raise

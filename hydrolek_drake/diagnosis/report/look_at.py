@@ -25,10 +25,8 @@ def look_at(diagnosis: Diagnosis) -> str:
     listed = diagnosis.best.hypothesis.listed
     if not listed:
         return ""
-    first = max(
-        listed,
-        key=lambda c: (diagnosis.conclusion.probability.get(c.size_path, 0.0), _left(diagnosis, c.size_path)),
-    )
+    probability = diagnosis.conclusion.probability
+    first = max(listed, key=lambda c: (probability.get(c.size_path, 0.0), _left(diagnosis, c.size_path)))
     return f"{first.joint}, {first.effect.stage}: {first.effect.inspect}"
 
 

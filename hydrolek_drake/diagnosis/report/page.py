@@ -95,7 +95,8 @@ def _plots(diagnosis: Diagnosis, data: dict[str, Any]) -> str:
         arm = (
             "<div class='arm'><canvas id='arm' role='img' aria-label='the arm as it was measured'></canvas>"
             f"<p class='other'><span id='arm-says'></span>. The arm at the moment under the cursor: {moving} as "
-            "measured, its other joints where the rig holds them, the model's links as outlines. Drag to turn it.</p></div>"
+            "measured, its other joints where the rig holds them, the model's links as outlines. Drag to turn it.</p>"
+            "</div>"
         )
     return (
         _controls(data)

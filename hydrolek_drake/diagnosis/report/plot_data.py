@@ -23,8 +23,8 @@ from hydrolek_drake.replay.display import display_factor, display_unit
 from hydrolek_drake.replay.spans import BEYOND_NOISE
 from hydrolek_drake.rollout.rollout import Signals
 
-MOST_NUMBERS = 330_000
-"""Of all plots: with four bytes each in base 64 they take 1.8 of the 3 MB that a page may have."""
+MOST_NUMBERS = 420_000
+"""Of all plots: with four bytes each in base 64 they take 2.3 of the 3 MB that a page may have."""
 
 MOST_POINTS = 5000
 """Of one plot: more than a screen has columns."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.laws.additions import LawTerm, WithTerms
 from hydrolek_drake.diagnosis.lost_commands.windows import LostProblem, LostWindows, WithWindows
+from hydrolek_drake.diagnosis.progress import Progress
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.identification.experiment import Experiment
@@ -92,6 +93,7 @@ class Workbench:
         training: Sequence[Experiment],
         pool: Executor,
         cores: int = 1,
+        progress: Progress | None = None,
     ) -> None:
         """Prepare.
 
@@ -101,12 +103,14 @@ class Workbench:
             training: the recordings that are fitted; weighed anew in time.
             pool: threads for fits side by side, and for the columns of a fit's Jacobian where some are idle.
             cores: that roll out at the same time.
+            progress: told how the fits stand; None for nobody.
         """
         self.rig = rig
         self.nominal = tuple(nominal)
         self.training = tuple(training)
         self.pool = pool
         self.cores = cores
+        self.progress = progress or Progress()
         self._stopped = threading.Event()
         self.evaluations = 0
         self._places: dict[Free, tuple[np.ndarray, np.ndarray]] = {}
@@ -115,7 +119,8 @@ class Workbench:
 
     def with_training(self, training: Sequence[Experiment]) -> "Workbench":
         """Another one for other recordings of the same machine."""
-        return Workbench(self.rig, self.nominal, training, self.pool, self.cores)
+        self.progress.anew()
+        return Workbench(self.rig, self.nominal, training, self.pool, self.cores, self.progress)
 
     def interrupted(self) -> bool:
         """Whether the user has interrupted."""

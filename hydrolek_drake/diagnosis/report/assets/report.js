@@ -62,6 +62,7 @@ function plot(group, recording, name, unit, height, data, series, more = {}) {
   title.textContent = `${name} [${unit}]`;
   box.append(title);
   group.box.append(box);
+  box.classList.toggle('unknown', Boolean(more.bands));
   const axis = {stroke: colour('quiet'), grid: {stroke: colour('line'), width: 1}, ticks: {stroke: colour('line')},
     font: '11px system-ui'};
   const u = new uPlot({
@@ -69,7 +70,7 @@ function plot(group, recording, name, unit, height, data, series, more = {}) {
     scales: {x: {time: false, range: (u, low, high) => [low, high]}, y: more.scale || {}},
     series: [{label: 'time', value: (u, v) => told(v, 's')},
       ...series.map(s => ({points: {show: false}, value: (u, v) => told(v, unit), ...s}))],
-    axes: [{...axis, size: 26}, {...axis, size: 62, values: (u, ticks) => ticks.map(v => v == null ? '' :
+    axes: [{...axis, size: 26}, {...axis, size: 62, space: 24, splits: more.splits, values: (u, ticks) => ticks.map(v => v == null ? '' :
       Math.abs(v) >= 1e5 || (v && Math.abs(v) < 1e-3) ? v.toExponential(0) : String(Number(v.toPrecision(5))))}],
     bands: more.bands,
     cursor: {y: false, drag: {x: true, y: false, dist: 5}, sync: {key: `recording${group.number}`, filters: {
@@ -107,7 +108,14 @@ function at(number, time) {
   if (state.arm) state.arm.draw();
 }
 
-const flat = v => v.some(n => n != null);
+// ticks at zero and at powers of ten to either side, of which every other one is left out where there are many
+const powers = least => (u, axis, low, high) => {
+  const count = Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high), least) / least) + .01);
+  const ticks = [];
+  for (let k = 0; k <= count; k += count > 3 ? 2 : 1) ticks.push(least * 10 ** k);
+  return [...ticks.map(v => -v).reverse(), 0, ...ticks].filter(v => v >= low && v <= high);
+};
+
 function drawn() {
   const narrow = innerWidth < 640;
   for (const group of state.groups) {
@@ -123,10 +131,10 @@ function drawn() {
       plot(group, recording, c.name, c.unit, narrow ? 190 : 230, lines(), [
         {label: 'measured', stroke: colour('measured'), width: 6}, nominal, ...(FOUND ? [found] : [])], {refresh: lines});
       const left = () => [c.x, less(c.measured, c.before), ...(FOUND ? [less(c.measured, modelled(c))] : [])];
-      const scale = {distr: 4, asinh: 10 ** Math.floor(Math.log10(c.band || 1))};
+      const least = 10 ** Math.floor(Math.log10(c.band || 1)), scale = {distr: 4, asinh: least};
       plot(group, recording, `${c.name} less the model`, c.unit, narrow ? 150 : 170, left(), [
         {...nominal, label: 'left by the nominal model', dash: null, width: 1.2},
-        ...(FOUND ? [{...found, label: `left ${FOUND}`, width: 1.2}] : [])], {refresh: left, scale, band: c.band});
+        ...(FOUND ? [{...found, label: `left ${FOUND}`, width: 1.2}] : [])], {refresh: left, scale, splits: powers(least), band: c.band});
     }
     plot(group, recording, 'command', 'V', narrow ? 120 : 130, [recording.command.x, recording.command.y], [
       {label: 'command', stroke: colour('command'), width: 1.4, paths: uPlot.paths.stepped({align: 1})}]);
@@ -142,7 +150,8 @@ function unknown(group, recording, narrow) {
     [given.x, y.map((v, i) => v + wide[i]), y.map((v, i) => v - wide[i]), y], [
       {label: 'and 2 standard deviations', stroke: 'transparent', width: 0},
       {label: 'less 2', stroke: 'transparent', width: 0},
-      {label: 'unknown input', stroke: colour('unknown'), width: 1.6}],
+      {label: 'unknown input', stroke: colour('unknown'), width: 1.6,
+        value: (u, v, s, i) => v == null ? '–' : `${told(v, given.unit)} ± ${told(wide[i], '')}`}],
     {bands: [{series: [1, 2], fill: colour('band')}]});
   if (recording.unknown.length < 2) return;
   const select = document.createElement('select');
