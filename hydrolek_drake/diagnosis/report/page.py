@@ -23,7 +23,7 @@ def page(diagnosis: Diagnosis, confirmed: Sequence[Confirmation] = ()) -> str:
     """
     title = f"Diagnosis of {diagnosis.rig.name}"
     look = look_at(diagnosis)
-    line = f"<p class='look'><b>Look at</b> {html.escape(look)}</p>" if look else ""
+    line = f"<p class='look'><b>What to look at:</b> {html.escape(look)}</p>" if look else ""
     parts = [
         f"<!doctype html><html lang='en'><head><meta charset='utf-8'><title>{html.escape(title)}</title>"
         "<meta name='viewport' content='width=device-width, initial-scale=1'>"

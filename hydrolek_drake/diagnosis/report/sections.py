@@ -10,6 +10,7 @@ from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.report.as_json import MOST_LISTED, detectable, effects_json, fit_json, models_of
 from hydrolek_drake.diagnosis.report.engineers_units import converted
 from hydrolek_drake.diagnosis.report.equations import equation_of
+from hydrolek_drake.diagnosis.report.look_at import stage_sentences
 from hydrolek_drake.diagnosis.report.words import behind, off_zero_sentences, quantity, with_interval
 from hydrolek_drake.diagnosis.settings import EVIDENCE
 from hydrolek_drake.identification.thinning import STEPS
@@ -66,6 +67,11 @@ def effects(diagnosis: Diagnosis) -> str:
             more = equation_of(candidate, diagnosis)
             if candidate.effect.inspect:
                 more += f"<p class='look'><b>On the machine:</b> {html.escape(candidate.effect.inspect)}</p>"
+        elif diagnosis.law is not None:
+            told_law = diagnosis.law.equation().replace(" * ", " · ").replace("2 pi ", "2π ")
+            more = f"<p class='equation'>{html.escape(told_law)}</p>" if diagnosis.law.of_the_machine else ""
+            look = stage_sentences().get(diagnosis.law.law.input.stage, "")
+            more += f"<p class='look'><b>On the machine:</b> {html.escape(look)}</p>" if look else ""
         rows.append(
             f"<li><b>{html.escape(entry['id'])}</b> (probability {entry['probability']:.2f}): "
             f"{html.escape(entry['sentence'])}{more}</li>"

@@ -43,7 +43,7 @@ def test_the_page_keeps_its_exact_sentences_and_adds_equation_units_and_where_to
         assert EFFECTS[candidate.id].inspect in written.replace("&#x27;", "'")
     assert headline(both) in written
     assert written.count("<math") >= 2 and "l/min" in written and "at a pressure drop of 160 bar" in written
-    look = re.search(r"<b>Look at</b> (.*?)</p>", written)
+    look = re.search(r"<b>What to look at:</b> (.*?)</p>", written)
     assert look and look.group(1).startswith("joint, ")
     assert written.count("Probability:") == 1 and "posterior</th>" not in written
 
@@ -97,7 +97,7 @@ def test_of_a_long_signal_the_peaks_of_every_group_are_kept() -> None:
 
 def test_where_nothing_is_missing_nothing_can_be_faded(named) -> None:
     text = page(named("joint_bench", {}))
-    assert "id='share'" not in text and "Look at</b>" not in text and "Nothing is missing" in text
+    assert "id='share'" not in text and "What to look at" not in text and "Nothing is missing" in text
 
 
 def test_the_arm_of_a_rig_that_has_one_stands_as_it_was_measured(named) -> None:
@@ -143,7 +143,15 @@ def test_on_a_phone_nothing_scrolls_sideways_and_the_slider_moves_the_model(
     full = chromium_page.evaluate(column)
     chromium_page.evaluate("const s = document.getElementById('share'); s.value = 0; s.oninput()")
     assert chromium_page.evaluate(column) != full
+    chromium_page.evaluate("state.groups[0].plots[0].setCursor({left: 100, top: 20}, true, true)")
+    legends = chromium_page.locator(".u-legend").all_inner_texts()
+    assert re.search(r"measured\D*-?[\d.]+ deg", legends[0])  # the cursor tells it, in the other plots too
+    assert re.search(r"left by the nominal model\D*-?[\d.e-]+ deg", legends[1]) and re.search(
+        r"-?[\d.]+ V", legends[2]
+    )
     chromium_page.evaluate("state.time[0] = 3; zoomed(state.groups[0], .5)")
+    chromium_page.wait_for_function("state.groups[0].plots.every(u => u.scales.x.max - u.scales.x.min < 4)")
+    chromium_page.set_viewport_size({"width": 844, "height": 390})
     chromium_page.wait_for_function("state.groups[0].plots.every(u => u.scales.x.max - u.scales.x.min < 4)")
     shown = json.loads(chromium_page.evaluate("JSON.stringify(state.groups[1].plots[0].scales.x)"))
     assert shown["max"] - shown["min"] > 5.0  # the other recording has its own time

@@ -28,6 +28,7 @@ const less = (a, b) => a.map((v, i) => v == null || b[i] == null ? null : v - b[
 
 function linked(group, u) {
   const {min, max} = u.scales.x;
+  group.shown = {min, max};
   for (const other of group.plots)
     if (other !== u && (other.scales.x.min !== min || other.scales.x.max !== max)) other.setScale('x', {min, max});
 }
@@ -76,7 +77,7 @@ function plot(group, recording, name, unit, height, data, series, more = {}) {
     cursor: {y: false, drag: {x: true, y: false, dist: 5}, sync: {key: `recording${group.number}`, filters: {
       pub: type => type === 'mousemove' || type === 'mouseleave'}},
       bind: {dblclick: () => () => { whole(group); return null; }}},
-    hooks: {setScale: [(u, key) => key === 'x' && linked(group, u)], drawClear: [shading(recording, more.band)],
+    hooks: {setScale: [(u, key) => key === 'x' && u.status && group.plots.includes(u) && linked(group, u)], drawClear: [shading(recording, more.band)],
       setCursor: [u => { if (u.cursor.left >= 0) at(group.number, u.posToVal(u.cursor.left, 'x')); }]},
   }, data, box);
   u.over.addEventListener('touchmove', e => touched(u, e), {passive: true});
@@ -108,12 +109,12 @@ function at(number, time) {
   if (state.arm) state.arm.draw();
 }
 
-// ticks at zero and at powers of ten to either side, of which every other one is left out where there are many
+// ticks at zero and at powers of ten to either side; those nearest to zero only where there is room for them
 const powers = least => (u, axis, low, high) => {
   const count = Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high), least) / least) + .01);
   const ticks = [];
-  for (let k = 0; k <= count; k += count > 3 ? 2 : 1) ticks.push(least * 10 ** k);
-  return [...ticks.map(v => -v).reverse(), 0, ...ticks].filter(v => v >= low && v <= high);
+  for (let k = count; k >= (count > 1 ? 1 : 0); k -= count > 3 ? 2 : 1) ticks.push(least * 10 ** k);
+  return [...ticks.map(v => -v), 0, ...ticks.reverse()].filter(v => v >= low && v <= high);
 };
 
 function drawn() {
@@ -122,7 +123,7 @@ function drawn() {
     group.plots.forEach(u => u.destroy());
     group.plots = [];
     group.box.replaceChildren();
-    const {recording} = group;
+    const {recording} = group, shown = group.shown || {min: recording.begin, max: recording.end};
     const nominal = {label: 'nominal model', stroke: colour('nominal'), width: 1.5, dash: [6, 4]};
     const found = {label: FOUND, stroke: colour('found'), width: 1.6};
     for (const c of recording.charts) {
@@ -139,7 +140,7 @@ function drawn() {
     plot(group, recording, 'command', 'V', narrow ? 120 : 130, [recording.command.x, recording.command.y], [
       {label: 'command', stroke: colour('command'), width: 1.4, paths: uPlot.paths.stepped({align: 1})}]);
     if (recording.unknown.length) unknown(group, recording, narrow);
-    whole(group);
+    for (const u of group.plots) u.setScale('x', shown);
   }
 }
 

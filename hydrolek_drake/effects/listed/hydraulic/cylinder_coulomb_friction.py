@@ -17,7 +17,7 @@ EFFECT = Effect(
         ),
     ),
     formula=Formula(
-        r"F = F_C \tanh \frac{v}{v_0}",
+        r"F = F_C \tanh \left( \frac{v}{v_0} \right)",
         {"coulomb_N": "F_C"},
         {"F": "force against the rod", "v": "speed of the rod", "v_0": "friction velocity of the rig"},
     ),

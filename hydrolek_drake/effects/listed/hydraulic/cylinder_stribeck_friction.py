@@ -24,7 +24,7 @@ EFFECT = Effect(
         ),
     ),
     formula=Formula(
-        r"F = \left( F_C + F_S e^{-(v/v_S)^2} \right) \tanh \frac{v}{v_0}",
+        r"F = \left( F_C + F_S e^{-(v/v_S)^2} \right) \tanh \left( \frac{v}{v_0} \right)",
         {"coulomb_N": "F_C", "stribeck_N": "F_S", "stribeck_velocity_m_per_s": "v_S"},
         {"F": "force against the rod", "v": "speed of the rod", "v_0": "friction velocity of the rig"},
     ),

@@ -13,7 +13,7 @@ EFFECT = Effect(
     equation="force tanh(x'/stiction_velocity) against the spool",
     parameters=(Parameter("force_N", "N", "Coulomb friction of the spool", neutral=0.0, lowest=0.0),),
     formula=Formula(
-        r"F = F_s \tanh \frac{\dot x}{v_0}",
+        r"F = F_s \tanh \left( \frac{\dot x}{v_0} \right)",
         {"force_N": "F_s"},
         {
             "F": "force against the spool",

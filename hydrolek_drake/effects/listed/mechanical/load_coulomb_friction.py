@@ -13,7 +13,7 @@ EFFECT = Effect(
     equation="force tanh(v / friction_velocity) against the load",
     parameters=(Parameter("force_N", "N", "Coulomb friction (N m for a joint)", neutral=0.0, lowest=0.0),),
     formula=Formula(
-        r"F = F_C \tanh \frac{v}{v_0}",
+        r"F = F_C \tanh \left( \frac{v}{v_0} \right)",
         {"force_N": "F_C"},
         {"F": "force or moment against the load", "v": "its speed", "v_0": "friction velocity of the rig"},
     ),

@@ -23,7 +23,7 @@ EFFECT = Effect(
         ),
     ),
     formula=Formula(
-        r"F = \left( F_C + d \left| v \right| \right) \tanh^2 \frac{v}{v_0}",
+        r"F = \left( F_C + d \left| v \right| \right) \tanh^2 \left( \frac{v}{v_0} \right)",
         {"coulomb_N": "F_C", "damping_N_s_per_m": "d"},
         {
             "F": "force against the positive direction",

@@ -26,7 +26,7 @@ EFFECT = Effect(
         ),
     ),
     formula=Formula(
-        r"F = \left( F_C + F_S e^{-(v/v_S)^2} \right) \tanh \frac{v}{v_0}",
+        r"F = \left( F_C + F_S e^{-(v/v_S)^2} \right) \tanh \left( \frac{v}{v_0} \right)",
         {"force_N": "F_C", "stribeck_N": "F_S", "stribeck_velocity_m_per_s": "v_S"},
         {"F": "force or moment against the load", "v": "its speed", "v_0": "friction velocity of the rig"},
     ),
