@@ -66,9 +66,7 @@ class Progress:
                 left = f", at most about {math.ceil(most_s)} s more"
             done += 1
             heat = f"heat {number + 1} of {len(rungs)}, " if len(rungs) > 1 else ""
-            self._more(
-                f"fitting {what}, {heat}round {min(done, most)} of at most {most}{left}{self._so_far()}"
-            )
+            self._more(f"{what}, {heat}round {min(done, most)} of at most {most}{left}{self._so_far()}")
 
         return before_round
 

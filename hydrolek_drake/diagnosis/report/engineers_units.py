@@ -24,7 +24,7 @@ _HYDRAULIC = ("cylinder", "vane", "hydraulic_motor")
 
 
 def in_engineers_units(rig: Rig, candidate: Candidate, parameter: Parameter, known: Interval) -> str:
-    """One parameter of an effect as an engineer reads it elsewhere, with its 95 % interval.
+    """One parameter of an effect as an engineer reads it elsewhere, with its 95 % interval if that has a width.
 
     A conductance is told as the flow at the rig's supply pressure, a force at the rod also as the pressure on side A
     that balances it, a fraction in percent.
@@ -70,6 +70,8 @@ def converted(known: Interval, unit: str) -> str:
 
 def _told(known: Interval, unit: str) -> str:
     value, low, high = with_interval(known, unit)
+    if known.low == known.high:
+        return value
     return f"{value} ({low} to {high.partition(' ')[0]})"
 
 

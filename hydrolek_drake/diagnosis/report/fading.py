@@ -42,20 +42,21 @@ class Fading:
 def fadings(diagnosis: Diagnosis) -> list[Fading]:
     """What can be faded: each effect of the best structure, all of them, and a law found beside them.
 
-    All other numbers keep their fitted values. Commands that got lost are there or not, and are not faded.
+    All other numbers keep their fitted values. Nothing is faded where commands got lost, which did or did not arrive.
 
     Args:
         diagnosis: with a bench.
     """
     listed = diagnosis.best.hypothesis.listed
     law = diagnosis.law
-    lawful = law is not None and law.of_the_machine
+    if law is not None and not law.of_the_machine:
+        return []
     told = [Fading(c.id, c.effect.title, _runs(diagnosis, (c,), law=False)) for c in listed]
-    if law is not None and lawful:
+    if law is not None:
         name = f"unlisted.{law.law.input.stage}"
         told.append(Fading(name, "the law found", _runs(diagnosis, (), law=True)))
     if len(told) > 1:
-        told.insert(0, Fading("all", "all that was found", _runs(diagnosis, listed, law=lawful)))
+        told.insert(0, Fading("all", "all that was found", _runs(diagnosis, listed, law=law is not None)))
     return told
 
 
@@ -71,11 +72,12 @@ def _run(
     assert diagnosis.bench is not None
     found = diagnosis.law
     parameters = diagnosis.bench.parameters(diagnosis.best.hypothesis.effects)
-    values = diagnosis.best.hypothesis.values if found is None else found.parameters
+    there = found is not None and found.joint == experiment.joint
+    values = found.parameters if found is not None and there else diagnosis.best.hypothesis.values
     records = parameters.records(parameters.unit(values))
     for candidate in faded:
         fade(diagnosis, records, candidate, share)
-    if found is None or found.joint != experiment.joint or not found.of_the_machine:
+    if found is None or not there:
         return experiment.run(records, diagnosis.step)
     own = law_values(found, [e for e in diagnosis.held_out if e.joint == found.joint], experiment).copy()
     if law:

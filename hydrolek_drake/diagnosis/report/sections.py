@@ -7,8 +7,9 @@ from collections.abc import Collection, Iterable
 import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
+from hydrolek_drake.diagnosis.intervals.curvature import Interval
 from hydrolek_drake.diagnosis.report.as_json import MOST_LISTED, detectable, effects_json, fit_json, models_of
-from hydrolek_drake.diagnosis.report.engineers_units import converted
+from hydrolek_drake.diagnosis.report.engineers_units import converted, in_engineers_units
 from hydrolek_drake.diagnosis.report.equations import equation_of
 from hydrolek_drake.diagnosis.report.look_at import stage_sentences
 from hydrolek_drake.diagnosis.report.words import behind, off_zero_sentences, quantity, with_interval
@@ -198,10 +199,16 @@ def groups(diagnosis: Diagnosis) -> str:
 
 def visible(diagnosis: Diagnosis) -> str:
     """The smallest sizes that would have shown."""
-    rows = [(html.escape(name), html.escape(size)) for name, size in detectable(diagnosis).items()]
+    told = detectable(diagnosis)
+    rows = []
+    for each in diagnosis.visible:
+        effect, known = each.candidate.effect, Interval(each.size, each.size, each.size)
+        size = next(p for p in effect.parameters if p.name == effect.size)
+        usual = in_engineers_units(diagnosis.rig, each.candidate, size, known)
+        rows.append((html.escape(effect.id), html.escape(told[effect.id]), html.escape(usual)))
     return (
         "<p class='other'>The smallest size at which each effect that was not named would have shown "
-        "(four standard deviations):</p>" + table(("effect", "size"), rows, (1,))
+        "(four standard deviations):</p>" + table(("effect", "size", "in other units"), rows, (1, 2))
     )
 
 
