@@ -30,7 +30,7 @@ def progress(first: str) -> Iterator[Telling]:
     line of its own with that time, and how it stands is another one now and then.
 
     Args:
-        first: shown in a terminal until something else is told.
+        first: shown in a terminal until something else is told, elsewhere only if it lasts.
 
     Yields:
         What is called with each step, and told by `more` how it stands.
@@ -47,12 +47,12 @@ def progress(first: str) -> Iterator[Telling]:
             def update(text: str) -> None:
                 status.update(f"{escape(text)} [dim]({since():.0f} s)[/dim]")
 
-            with kept_alive(Telling(update, _TERMINAL_S), _TERMINAL_S) as telling:
+            with kept_alive(Telling(update, _TERMINAL_S, first=first), _TERMINAL_S) as telling:
                 yield telling
     else:
 
         def line(text: str) -> None:
             shown.print(f"{since():7.1f} s  {text}", markup=False, soft_wrap=True)
 
-        with kept_alive(Telling(line, _LOG_S), _LOG_S / 4) as telling:
+        with kept_alive(Telling(line, _LOG_S, first=first), _LOG_S / 4) as telling:
             yield telling

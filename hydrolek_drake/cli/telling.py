@@ -13,7 +13,11 @@ class Telling:
     """
 
     def __init__(
-        self, write: Callable[[str], None], every_s: float, clock: Callable[[], float] = time.monotonic
+        self,
+        write: Callable[[str], None],
+        every_s: float,
+        clock: Callable[[], float] = time.monotonic,
+        first: str = "",
     ) -> None:
         """Nothing is told yet.
 
@@ -21,9 +25,10 @@ class Telling:
             write: takes a line.
             every_s: how a step stands is told at most so often, and something at least so often [s].
             clock: [s].
+            first: a step that has begun and is told only if it lasts: bad input is refused in one line.
         """
         self._write, self._every, self._clock = write, every_s, clock
-        self._step, self._stands = "", ""
+        self._step, self._stands = first, ""
         self._begun = self._last = clock()
         self._lock = threading.RLock()  # fits in several threads tell how they stand
 

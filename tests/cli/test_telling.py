@@ -53,6 +53,19 @@ def test_a_silent_step_is_told_to_go_on_with_what_was_last_known_of_it() -> None
     assert lines[-1] == "next ... for 17 s"  # how the step before it stood says nothing of this one
 
 
+def test_a_step_that_is_over_at_once_is_not_told_and_one_that_lasts_is() -> None:
+    lines: list[str] = []
+    clock = _Clock()
+    telling = Telling(lines.append, EVERY_S, clock, first="checking")
+    clock.now = 9.0
+    telling.still()
+    telling.more("half")
+    assert lines == []
+    clock.now = 11.0
+    telling.still()
+    assert lines == ["checking for 11 s: half"]
+
+
 def test_a_thread_keeps_it_alive_until_the_end() -> None:
     enough, lines = threading.Event(), []
 

@@ -98,7 +98,7 @@ def diagnose(
             from hydrolek_drake.replay.confirmation import confirm as run_confirmation
 
             told = held or [each if between is None else each.between(*between) for each in train]
-            confirmed = run_confirmation(done.fitted_rig(), told, say)
+            confirmed = run_confirmation(done.fitted_rig(), told, say, tell.more)
         if out is not None:
             tell("writing the report ...")
             page = write_report(done, out, confirmed)

@@ -74,13 +74,11 @@ def fit(
     from hydrolek_drake.identification.parameter_set import parameters_off
 
     output = console()
-    with progress("checking") as tell:
-        tell("checking ...")
+    with progress("checking"):
         tell_what_looks_wrong(loaded, [*read, *held], output)
     profiled = check_profiled(loaded, profile or [], [f.path for f in searched(loaded, read, parameter)])
-    with progress("fitting") as tell:
-        tell(f"fitting by {method} ...")
-        standing = Standing(method, None if method == "least-squares" else budget, tell.more)
+    with progress(f"fitting by {method} ...") as tell:
+        standing = Standing(None if method == "least-squares" else budget, tell.more)
         fitted = fit_rig(
             loaded,
             read,
@@ -118,14 +116,13 @@ def fit(
         from hydrolek_drake.replay.confirmation import confirm as run_confirmation
 
         with progress("Drake diagram") as tell:
-            confirmed = run_confirmation(fitted.rig, held or read, tell)
+            confirmed = run_confirmation(fitted.rig, held or read, tell, tell.more)
         for each in confirmed:
             output.print(each.sentence(), markup=False, soft_wrap=True)
         if out is not None:
             write_fit(fitted, out, confirmed)
     if profiled:
-        with progress("profile likelihood") as tell:
-            tell("profile likelihood ...")
+        with progress("profile likelihood ...") as tell:
             profiles = profiles_of(fitted, read, profiled, tell.more)
         for one in profiles:
             output.print(one.sentence(), markup=False, soft_wrap=True)

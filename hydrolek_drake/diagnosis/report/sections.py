@@ -46,13 +46,19 @@ def table(head: Iterable[str], rows: Iterable[Iterable[str]], left: Collection[i
     body = "".join(
         "<tr>"
         + "".join(
-            f"<td{text if i in left else ''} data-head='{html.escape(title, quote=True)}'><span>{cell}</span></td>"
+            f"<td{text if i in left else ''} data-head='{html.escape(title, quote=True)}'>"
+            f"<span>{cell if i else _breakable(cell)}</span></td>"
             for i, (title, cell) in enumerate(zip(titles, row, strict=True))
         )
         + "</tr>"
         for row in rows
     )
     return f"<table><tr class='head'>{top}</tr>{body}</table>"
+
+
+def _breakable(name: str) -> str:
+    """A name that may be broken at its dots and lines."""
+    return name.replace(".", ".<wbr>").replace("_", "_<wbr>")
 
 
 def effects(diagnosis: Diagnosis) -> str:

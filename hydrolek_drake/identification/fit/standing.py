@@ -10,7 +10,6 @@ class Standing:
 
     def __init__(
         self,
-        method: str,
         budget: int | None,
         more: Callable[[str], None],
         clock: Callable[[], float] = time.monotonic,
@@ -18,12 +17,11 @@ class Standing:
         """Nothing is simulated yet.
 
         Args:
-            method: one of `choices.METHODS`.
             budget: simulations that it may make; None if it ends by itself.
             more: told how it stands.
             clock: [s].
         """
-        self._method, self._budget, self._more, self._clock = method, budget, more, clock
+        self._budget, self._more, self._clock = budget, more, clock
         self._first: tuple[float, int] | None = None
 
     def told(self, done: int, best: float) -> None:
@@ -45,4 +43,4 @@ class Standing:
             if done > kept:
                 seconds = (now - begun) / (done - kept) * max(self._budget - done, 0)
                 left = f"; at most about {math.ceil(seconds)} s more"
-        self._more(f"{self._method}: {done} simulations{of}, best so far {least}{left}")
+        self._more(f"{done} simulations{of}, best so far {least}{left}")

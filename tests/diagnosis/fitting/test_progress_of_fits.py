@@ -69,14 +69,12 @@ def test_a_race_tells_every_round_and_what_is_best(bench, recorded) -> None:
 
 def test_a_search_with_a_budget_tells_how_long_the_rest_may_take_and_another_what_ends_it() -> None:
     told: list[str] = []
-    standing = Standing("ga", 1000, told.append, _clock(2.0))
+    standing = Standing(1000, told.append, _clock(2.0))
     standing.told(100, 0.5)  # of these, some may be an earlier run's
     standing.told(200, 0.25)
     assert told == [
-        "ga: 100 simulations of at most 1000, best so far 0.5",
-        "ga: 200 simulations of at most 1000, best so far 0.25; at most about 16 s more",
+        "100 simulations of at most 1000, best so far 0.5",
+        "200 simulations of at most 1000, best so far 0.25; at most about 16 s more",
     ]
-    Standing("least-squares", None, told.append).told(40, 1.5)
-    assert told[-1].startswith(
-        "least-squares: 40 simulations, best so far 1.5 times the noise; it ends where"
-    )
+    Standing(None, told.append).told(40, 1.5)
+    assert told[-1].startswith("40 simulations, best so far 1.5 times the noise; it ends where")

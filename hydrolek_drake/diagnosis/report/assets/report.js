@@ -113,7 +113,7 @@ function at(number, time) {
 const powers = least => (u, axis, low, high) => {
   const count = Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high), least) / least) + .01);
   const ticks = [];
-  for (let k = count; k >= (count > 1 ? 1 : 0); k -= count > 3 ? 2 : 1) ticks.push(least * 10 ** k);
+  for (let k = count; k >= (count > 1 ? 1 : 0); k -= count > 4 ? 2 : 1) ticks.push(least * 10 ** k);
   return [...ticks.map(v => -v), 0, ...ticks.reverse()].filter(v => v >= low && v <= high);
 };
 
