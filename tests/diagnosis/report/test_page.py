@@ -155,4 +155,20 @@ def test_on_a_phone_nothing_scrolls_sideways_and_the_slider_moves_the_model(
     chromium_page.wait_for_function("state.groups[0].plots.every(u => u.scales.x.max - u.scales.x.min < 4)")
     shown = json.loads(chromium_page.evaluate("JSON.stringify(state.groups[1].plots[0].scales.x)"))
     assert shown["max"] - shown["min"] > 5.0  # the other recording has its own time
+    chromium_page.evaluate(
+        "const over = state.groups[0].plots[0].over, box = over.getBoundingClientRect();"
+        "const finger = new Touch({identifier: 1, target: over, clientX: box.left + 60, clientY: box.top + 9});"
+        "over.dispatchEvent(new TouchEvent('touchmove', {touches: [finger]}))"
+    )
+    assert all(
+        abs(left - 60) < 1 for left in chromium_page.evaluate("state.groups[0].plots.map(u => u.cursor.left)")
+    )
+    paper = "colour('paper')"
+    for media, scheme, wanted in (
+        ("screen", "dark", "#14181d"),
+        ("print", "dark", "#ffffff"),
+        ("screen", "light", "#ffffff"),
+    ):
+        chromium_page.emulate_media(media=media, color_scheme=scheme)
+        assert chromium_page.evaluate(paper) == wanted
     assert not errors
