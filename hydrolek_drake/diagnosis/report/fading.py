@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.laws.law import records_of
-from hydrolek_drake.diagnosis.report.panels import law_values
+from hydrolek_drake.diagnosis.report.panels import law_values, shown_experiments
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.rollout.lane_view import LANES
@@ -40,16 +40,21 @@ class Fading:
 
 
 def fadings(diagnosis: Diagnosis) -> list[Fading]:
-    """What can be faded: each effect of the best structure, all of them, and a law found beside them.
+    """What can be faded at the joint that is shown: each effect of the best structure, a law beside them, and all.
 
     All other numbers keep their fitted values. Nothing is faded where commands got lost, which did or did not arrive.
 
     Args:
         diagnosis: with a bench.
     """
-    listed = diagnosis.best.hypothesis.listed
-    law = diagnosis.law
-    if law is not None and not law.of_the_machine:
+    rig, shown = diagnosis.rig, shown_experiments(diagnosis)[0].joint
+    listed = [
+        c
+        for c in diagnosis.best.hypothesis.listed
+        if rig.owner(c.effect, c.joint) == rig.owner(c.effect, shown)
+    ]
+    law = diagnosis.law if diagnosis.law is not None and diagnosis.law.joint == shown else None
+    if diagnosis.law is not None and not diagnosis.law.of_the_machine:
         return []
     told = [Fading(c.id, c.effect.title, _runs(diagnosis, (c,), law=False)) for c in listed]
     if law is not None:

@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -120,6 +121,15 @@ def test_the_arm_of_a_rig_that_has_one_stands_as_it_was_measured(named) -> None:
         poses.append(pose)
     right = arms_tree().link_poses(angles)["right_tool"]
     assert any(np.allclose(pose, right, atol=1e-3) for pose in poses)
+
+
+def test_of_several_joints_only_what_acts_at_the_shown_one_fades(both) -> None:
+    assert [each.name for each in fadings(both)] == ["all", LEAK, FRICTION]
+    first, second = both.best.hypothesis.listed
+    elsewhere = replace(both.best.hypothesis, effects=(first, replace(second, joint="another")))
+    best = replace(both.best, hypothesis=elsewhere)
+    other = replace(both, conclusion=replace(both.conclusion, best=best))
+    assert [each.name for each in fadings(other)] == [first.id]
 
 
 def _whole(pose: list[float]) -> np.ndarray:
