@@ -18,6 +18,7 @@ from hydrolek_drake.diagnosis.intervals.visible import Visible, visible_sizes
 from hydrolek_drake.diagnosis.laws.law import FoundLaw
 from hydrolek_drake.diagnosis.locating.place import Location, locate, locate_law
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
+from hydrolek_drake.diagnosis.progress import Progress
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import FITS, Settings
 from hydrolek_drake.diagnosis.structures.as_rig import enlarged_rig, room_for_law
@@ -101,6 +102,7 @@ def diagnose(
     say: Callable[[str], None] = lambda text: None,
     between: tuple[float, float] | None = None,
     cores: int = os.cpu_count() or 1,
+    more: Callable[[str], None] = lambda text: None,
 ) -> Diagnosis:
     """Find out what physics a rig's model leaves out.
 
@@ -113,6 +115,7 @@ def diagnose(
         between: start and end of the part of the recordings that is fitted [s]; what lies outside is held out if
             there is no `holdout`. None for all.
         cores: that roll out at the same time.
+        more: told how the fits stand, once a round: what is tried, what is best so far, how long it may take.
 
     An interrupt during the search ends it; what is known by then is judged and returned with a reason.
 
@@ -122,7 +125,7 @@ def diagnose(
     """
     # fits run side by side already: threads of the linear algebra under each of them only wait for each other
     with threadpool_limits(limits=1, user_api="blas"):
-        return _diagnosed(rig, recordings, holdout, pool, say, between, cores)
+        return _diagnosed(rig, recordings, holdout, pool, say, between, cores, more)
 
 
 def _diagnosed(
@@ -133,6 +136,7 @@ def _diagnosed(
     say: Callable[[str], None],
     between: tuple[float, float] | None,
     cores: int,
+    more: Callable[[str], None],
 ) -> Diagnosis:
     """See `diagnose`."""
     begun = clock.perf_counter()
@@ -141,7 +145,7 @@ def _diagnosed(
     if reasons:
         return _refused(rig, reasons, clock.perf_counter() - begun)
     nominal = _nominal(rig, training)
-    bench = Workbench(rig, nominal, training, pool, cores)
+    bench = Workbench(rig, nominal, training, pool, cores, Progress(more))
     joints = tuple(dict.fromkeys(experiment.joint for experiment in training))
     scales = {joint: natural_scales(rig, joint, training) for joint in joints}
     candidates = list(
@@ -168,6 +172,7 @@ def _diagnosed(
             last, intervals, held_out = with_last_numbers(bench, conclusion.best, held_out)
             judged = tuple(last if j is conclusion.best else j for j in judged)
             conclusion, best = replace(conclusion, best=last), last.hypothesis
+        say("locating what was found, and what would have been seen")
         places = locate(bench, best, found.baseline, bench.training)
         if law is not None:
             places = (locate_law(bench, best, found.baseline, law), *places)

@@ -19,10 +19,10 @@ This page is written by `hydrolek_drake.effects.document.effects_markdown()`; a 
 _HOW_TO = """## How to add an effect: one file and one test
 
 1. Add `hydrolek_drake/effects/<stage>_<name>.py`. It declares `EFFECT = Effect(id="<stage>.<name>", ...)`
-   with equation, source, parameters (each with a neutral value, its unit at the end of its name) and what it
-   can be confused with, and registers one compiled function per hook with `@EFFECT.hook("<hook>")` above
-   `@njit`. The function must return the hook's neutral contribution when the effect's size is neutral.
-   `cylinder_coulomb_friction.py` is a good pattern. The file is found by itself; the rig files, both
+   with equation, formula, source, parameters (each with a neutral value, its unit at the end of its name), what to
+   inspect on the machine and what it can be confused with, and registers one compiled function per hook with
+   `@EFFECT.hook("<hook>")` above `@njit`. The function must return the hook's neutral contribution when the effect's
+   size is neutral. `cylinder_coulomb_friction.py` is a good pattern. The file is found by itself; the rig files, both
    executions and this page know it at once.
 2. Add its closed form to `tests/effects/test_effect_laws.py` and a size to the tables of
    `tests/effects/test_catalogue.py`, `tests/rollout/test_bench_recordings.py` and `scripts/agreement_effects.json`,
@@ -63,7 +63,7 @@ def _in_full(effect: Effect) -> str:
     lines = [
         f"## {effect.id}",
         "",
-        f"{effect.title[0].upper()}{effect.title[1:]}.",
+        f"{effect.title[0].upper()}{effect.title[1:]}. {effect.inspect}".rstrip(),
         "",
         f"- Equation: {effect.equation}",
         f"- Source: {effect.source}",

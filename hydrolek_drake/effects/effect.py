@@ -59,6 +59,21 @@ class Search:
 
 
 @dataclass(frozen=True)
+class Formula:
+    """The equation of an effect as it is typeset.
+
+    Attributes:
+        latex: in LaTeX's mathematics.
+        symbols: parameter -> its letter in `latex`.
+        letters: every other letter -> what it means.
+    """
+
+    latex: str
+    symbols: dict[str, str]
+    letters: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
 class Effect:
     """One effect: identity, equation, parameters and the hooks by which it enters the physics.
 
@@ -80,6 +95,8 @@ class Effect:
         contains: ids of effects that are special cases of it, so that both together say nothing new.
         beneath: attribute of `scales.Scales`: no larger than this, its size says no more than what the equations
             themselves simplify. Nothing if not given.
+        formula: the equation as reports draw it; None where it is told in words only.
+        inspect: one sentence: what to look at or measure on the machine where this effect is named.
     """
 
     id: str
@@ -96,6 +113,8 @@ class Effect:
     sudden: bool = False
     contains: tuple[str, ...] = ()
     beneath: str = ""
+    formula: Formula | None = None
+    inspect: str = ""
     hooks: dict[str, Callable[..., Any]] = field(default_factory=dict)
 
     @property

@@ -1,6 +1,6 @@
 """Joints of a rig under recorded commands on the Drake Diagram: the same machine as `driving`, wired of LeafSystems."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -21,6 +21,7 @@ def moved_by_diagram(
     times: np.ndarray,
     elsewhere: Mapping[str, float],
     recorded: Mapping[str, Inputs] | None = None,
+    on_progress: Callable[[float, float], None] | None = None,
 ) -> dict[str, Moved]:
     """What driven joints do, from rest in balance, with the whole machine in one Diagram.
 
@@ -32,6 +33,7 @@ def moved_by_diagram(
         times: when signals are wanted [s]; the first is when the machine is switched on. # (k,)
         elsewhere: joint without a command -> reading where it rests, if that is known [rad or m].
         recorded: joint -> what was recorded in place of a part of it, from the first of `times` on.
+        on_progress: told now and then how much is simulated, and of how much [s].
     """
     records = rig.records()
     begin = float(times[0])
@@ -49,8 +51,14 @@ def moved_by_diagram(
     command = command_source(command_times - begin, volts)
     station = make_station(rig, sizes=sizes_for(rig), command=command, recorded=driving)
     seconds = times - begin
+    end = float(seconds[-1])
     try:
-        done = run(station, float(seconds[-1]), context=initial_context(station, positions))
+        done = run(
+            station,
+            end,
+            context=initial_context(station, positions),
+            on_progress=None if on_progress is None else lambda now: on_progress(now, end),
+        )
     except RuntimeError as error:
         reason = f"broke down on the Diagram: {' '.join(str(error).split())[:120]}"
         return {one.joint: Moved(_nothing(times), reason) for one in driven}

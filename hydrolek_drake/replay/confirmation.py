@@ -1,7 +1,10 @@
 """One plant, two executions: what rollouts found is run through the Drake Diagram under the recorded commands."""
 
+import math
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,6 +13,7 @@ from hydrolek_drake.recordings import Recording
 from hydrolek_drake.replay.by_diagram import moved_by_diagram
 from hydrolek_drake.replay.comparison import compare, times_of
 from hydrolek_drake.replay.display import shown
+from hydrolek_drake.replay.driving import Moved
 from hydrolek_drake.replay.readings import position_key
 from hydrolek_drake.replay.replay import replay
 from hydrolek_drake.rigs import Rig
@@ -58,7 +62,10 @@ class Confirmation:
 
 
 def confirm(
-    rig: Rig, recordings: Sequence[Recording], say: Callable[[str], None] | None = None
+    rig: Rig,
+    recordings: Sequence[Recording],
+    say: Callable[[str], None] | None = None,
+    more: Callable[[str], None] | None = None,
 ) -> list[Confirmation]:
     """Run a rig through its Diagram under each recording's commands, and hold it beside rollout and recording.
 
@@ -66,12 +73,13 @@ def confirm(
         rig: with the values that were found.
         recordings: what it is driven with.
         say: told what is done.
+        more: told how much of a recording is simulated, and how long the rest may take at the pace so far.
     """
     found = []
     for recording in recordings:
         if say is not None:
             say(f"running {recording.name} through the Drake diagram")
-        by_rollout, by_diagram = replay(rig, recording), replay(rig, recording, by=moved_by_diagram)
+        by_rollout, by_diagram = replay(rig, recording), replay(rig, recording, by=_by_diagram(more))
         left, right = ({c.key: c for c in compare(done)} for done in (by_rollout, by_diagram))
         for joint, one in by_rollout.outcomes.items():
             other, key = by_diagram.outcomes[joint], position_key(rig, joint)
@@ -92,3 +100,16 @@ def confirm(
                 )
             )
     return found
+
+
+def _by_diagram(more: Callable[[str], None] | None) -> Callable[..., dict[str, Moved]]:
+    """The Diagram that tells how far it is."""
+    if more is None:
+        return moved_by_diagram
+    begun = time.monotonic()
+
+    def told(now: float, end: float) -> None:
+        left = (time.monotonic() - begun) / now * (end - now)
+        more(f"{now:.1f} of {end:.1f} s simulated, about {math.ceil(left)} s more")
+
+    return partial(moved_by_diagram, on_progress=told)

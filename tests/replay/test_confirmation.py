@@ -45,10 +45,12 @@ def searched(rig):
 
 
 def test_the_diagram_follows_the_rollout_and_leaves_the_same_of_the_recording(rig, recording):
-    [found] = confirm(rig, [recording])
+    told: list[str] = []
+    [found] = confirm(rig, [recording], more=told.append)
     assert np.degrees(found.apart_largest) < WITHIN_DEG and found.apart_rms <= found.apart_largest
     assert found.diagram_rms == pytest.approx(found.rollout_rms, abs=np.radians(WITHIN_DEG))
     assert "Drake diagram" in found.sentence() and json.dumps(found.as_json())
+    assert told[0].startswith("0.5 of 5.0 s simulated, about ") and len(told) == 9
 
 
 @pytest.mark.long("7 s")

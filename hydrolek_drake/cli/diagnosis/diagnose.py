@@ -84,7 +84,9 @@ def diagnose(
 
         with ended_after(None if at_most is None else 60.0 * at_most) as limit:
             try:
-                done = run_diagnosis(loaded, train, held, pool, say=say, between=between, cores=count)
+                done = run_diagnosis(
+                    loaded, train, held, pool, say=say, between=between, cores=count, more=tell.more
+                )
             except KeyboardInterrupt:
                 if not limit.reached:
                     raise
@@ -96,7 +98,7 @@ def diagnose(
             from hydrolek_drake.replay.confirmation import confirm as run_confirmation
 
             told = held or [each if between is None else each.between(*between) for each in train]
-            confirmed = run_confirmation(done.fitted_rig(), told, say)
+            confirmed = run_confirmation(done.fitted_rig(), told, say, tell.more)
         if out is not None:
             tell("writing the report ...")
             page = write_report(done, out, confirmed)

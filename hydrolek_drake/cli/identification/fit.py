@@ -55,10 +55,9 @@ def fit(
     Ctrl-C gives the best so far. With --out, the same command then goes on to the same result (all but
     least-squares, which starts anew).
     """
-    from rich.console import Console
     from rich.table import Table
 
-    from hydrolek_drake.cli.output import console
+    from hydrolek_drake.cli.output import console, progress
     from hydrolek_drake.identification.choices import LOSSES, METHODS, PLANTS
 
     chosen("method", method, METHODS)
@@ -71,13 +70,15 @@ def fit(
     from hydrolek_drake.identification.fit import fit_rig, searched
     from hydrolek_drake.identification.fit.profiles import check_profiled, profiles_of, write_profiles
     from hydrolek_drake.identification.fit.report import sentences, write_fit
+    from hydrolek_drake.identification.fit.standing import Standing
     from hydrolek_drake.identification.parameter_set import parameters_off
 
-    output, progress = console(), Console(stderr=True)
-    with progress.status("checking"):
+    output = console()
+    with progress("checking"):
         tell_what_looks_wrong(loaded, [*read, *held], output)
     profiled = check_profiled(loaded, profile or [], [f.path for f in searched(loaded, read, parameter)])
-    with progress.status("fitting") as status:
+    with progress(f"fitting by {method} ...") as tell:
+        standing = Standing(None if method == "least-squares" else budget, tell.more)
         fitted = fit_rig(
             loaded,
             read,
@@ -94,7 +95,7 @@ def fit(
             cluster=cluster,
             overdue=overdue,
             checkpoint=None if out is None else out / f"checkpoint_{method}",
-            progress=lambda done, best: status.update(f"{method}: {done} evaluations, best {best:.4g}"),
+            progress=standing.told,
         )
     table = Table("parameter", "value", "95 % interval", "unit")
     for name, (value, low, high) in fitted.intervals().items():
@@ -114,15 +115,15 @@ def fit(
     if confirm:
         from hydrolek_drake.replay.confirmation import confirm as run_confirmation
 
-        with progress.status("Drake diagram") as status:
-            confirmed = run_confirmation(fitted.rig, held or read, status.update)
+        with progress("Drake diagram") as tell:
+            confirmed = run_confirmation(fitted.rig, held or read, tell, tell.more)
         for each in confirmed:
             output.print(each.sentence(), markup=False, soft_wrap=True)
         if out is not None:
             write_fit(fitted, out, confirmed)
     if profiled:
-        with progress.status("profile likelihood") as status:
-            profiles = profiles_of(fitted, read, profiled, status.update)
+        with progress("profile likelihood ...") as tell:
+            profiles = profiles_of(fitted, read, profiled, tell.more)
         for one in profiles:
             output.print(one.sentence(), markup=False, soft_wrap=True)
         if out is not None:

@@ -41,6 +41,8 @@ def effects(
             if p.neutral is not None
         ),
     ]
+    if effect.inspect:
+        lines += ["", f"on the machine: {effect.inspect}"]
     if effect.needs:
         needs = (f"{section} {' or '.join(variants)}" for section, variants in effect.needs.items())
         lines += ["", f"acts only on {', '.join(needs)}"]

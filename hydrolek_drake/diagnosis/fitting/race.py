@@ -74,6 +74,11 @@ class Runner:
         """What its place in the unit cube means: parameters in their order with their ranges, which may be wider."""
         return tuple(free for c in self.effects for free in c.free)
 
+    @property
+    def label(self) -> str:
+        """What tells its structure from others in words."""
+        return " + ".join(c.label for c in self.effects) or "nominal model"
+
 
 def race(
     bench: Workbench,
@@ -130,15 +135,16 @@ def run(
         seen: told how the fits stand after each rung.
     """
     now = list(runners)
-    for rung in rungs:
+    for number, rung in enumerate(rungs):
         problems = {r.searched: problem_of(bench, r.effects, rung) for r in now}
+        told = bench.progress.rounds([r.label for r in now], rungs, number, bench.alive)
         places = descend(
             [r.place.at(problems[r.searched]) for r in now],
             rung.rounds,
             bench.pool,
             cores,
             share=rung.share,
-            stop=bench.alive,
+            stop=told,
         )
         bench.evaluations += sum(p.evaluations for p in problems.values())
         now = [replace(r, place=place) for r, place in zip(now, places, strict=True)]
@@ -146,6 +152,10 @@ def run(
             now = tried_elsewhere(bench, now, cores)
         part = math.isfinite(min(rung.observer_s, rung.seconds))
         now = sorted(now, key=_told_apart if part else lambda r: r.place.objective)
+        if now and not part:
+            best = now[0].place
+            over_noise = math.sqrt(best.objective / max(best.problem.counted, 1))
+            bench.progress.reached(now[0].label, over_noise)
         seen(now, rung)
         last = rung is rungs[-1]
         now = _distinct(now, rung.each)

@@ -1,10 +1,11 @@
 """What the pictures of a diagnosis show: measured, before and after, and what each leaves."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.laws.law import FoundLaw
-from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.replay.display import display_factor, display_unit
@@ -26,12 +27,11 @@ AFTER_COLOUR = MODEL_COLOUR
 
 def columns(diagnosis: Diagnosis) -> list[list[Panel]]:
     """Training data on the left, held-out data on the right; the joint with the largest mismatch."""
-    assert diagnosis.bench is not None
-    joint = diagnosis.locations[0].joint if diagnosis.locations else diagnosis.bench.training[0].joint
-    train = next(e for e in diagnosis.bench.training if e.joint == joint)
-    held = next((e for e in diagnosis.held_out if e.joint == joint), train)
-    if np.array_equal(train.channels[0].measured, held.channels[0].measured, equal_nan=True):
+    train, *others = shown_experiments(diagnosis)
+    if not others:
+        held = next((e for e in diagnosis.held_out if e.joint == train.joint), train)
         return [_stack(diagnosis, train, "", held_out_spans(held))]
+    held = others[0]
     right = (
         _stack(diagnosis, held, "fitted, but for the shaded blocks", held_out_spans(held))
         if partly_fitted(diagnosis, held)
@@ -40,19 +40,17 @@ def columns(diagnosis: Diagnosis) -> list[list[Panel]]:
     return [_stack(diagnosis, train, "fitted", ()), right]
 
 
-def course_panel(estimate: Estimate) -> Panel:
-    """The course of an unknown input in the first recording, with two standard deviations to either side."""
-    times = estimate.unknown.times
-    first = slice(0, int(np.argmax(np.diff(times, append=-np.inf) < 0.0)) + 1)
-    given = estimate.unknown.input
-    factor, unit = display_factor(given.unit), display_unit(given.unit)
-    course, width = factor * estimate.course[first], 2.0 * factor * estimate.deviation[first]
-    lines = (
-        Line("less 2 standard deviations", times[first], course - width, BEFORE_COLOUR),
-        Line("and 2 more", times[first], course + width, BEFORE_COLOUR),
-        Line(given.symbol, times[first], course, RESIDUAL_COLOUR),
-    )
-    return Panel(f"{given.symbol} [{unit}]", lines, (), None, 2.0)
+def shown_experiments(diagnosis: Diagnosis) -> list[Experiment]:
+    """The recordings that are shown, of the joint with the largest mismatch: one fitted and one held out.
+
+    One alone where parts of the same recording are held out.
+    """
+    assert diagnosis.bench is not None
+    joint = diagnosis.locations[0].joint if diagnosis.locations else diagnosis.bench.training[0].joint
+    train = next(e for e in diagnosis.bench.training if e.joint == joint)
+    held = next((e for e in diagnosis.held_out if e.joint == joint), train)
+    same = np.array_equal(train.channels[0].measured, held.channels[0].measured, equal_nan=True)
+    return [train] if same else [train, held]
 
 
 def partly_fitted(diagnosis: Diagnosis, held: Experiment) -> bool:
@@ -93,11 +91,21 @@ def _simulated(
     if law is None or law.joint != experiment.joint:
         records = parameters.records(parameters.unit(hypothesis.values))
         return experiment.simulate(records, diagnosis.step).signals
-    held_out = [held for held in diagnosis.held_out if held.joint == law.joint]
-    place = next((i for i, held in enumerate(held_out) if held is experiment), None)
-    own = law.values if place is None else law.ahead[place]
+    own = law_values(law, [held for held in diagnosis.held_out if held.joint == law.joint], experiment)
     records = parameters.records(parameters.unit(law.parameters))
     return law.signals(experiment, records, diagnosis.step, own)
+
+
+def law_values(law: FoundLaw, held_out: Sequence[Experiment], experiment: Experiment) -> np.ndarray:
+    """The values of a law on one recording: a periodic one has a phase of its own on each that was held out.
+
+    Args:
+        law: as it was found.
+        held_out: experiments of its joint.
+        experiment: one of these, or of the training data.
+    """
+    place = next((i for i, held in enumerate(held_out) if held is experiment), None)
+    return law.values if place is None else law.ahead[place]
 
 
 def _stack(

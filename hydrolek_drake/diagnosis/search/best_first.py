@@ -141,6 +141,7 @@ def _weigh(bench: Workbench, found: Tried, settings: Settings, cores: int) -> No
     if best.fit.over_noise > settings.nearer * found.weighed_at:
         return
     bench.training = tuple(weighted_by(bench, best, bench.training))
+    bench.progress.anew()
     ranked = sorted(found.hypotheses.values(), key=lambda h: h.fit.objective)
     within = settings.again_within**2 * best.fit.objective
     near = [h for h in ranked if h.fit.objective < within][: settings.most_again]

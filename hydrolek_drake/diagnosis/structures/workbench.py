@@ -12,6 +12,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.laws.additions import LawTerm, WithTerms
 from hydrolek_drake.diagnosis.lost_commands.windows import LostProblem, LostWindows, WithWindows
+from hydrolek_drake.diagnosis.progress import Progress
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.identification.experiment import Experiment
@@ -92,6 +93,7 @@ class Workbench:
         training: Sequence[Experiment],
         pool: Executor,
         cores: int = 1,
+        progress: Progress | None = None,
         *,
         signals_apart: bool = False,
     ) -> None:
@@ -103,6 +105,7 @@ class Workbench:
             training: the recordings that are fitted; weighed anew in time.
             pool: threads for fits side by side, and for the columns of a fit's Jacobian where some are idle.
             cores: that roll out at the same time.
+            progress: told how the fits stand; None for nobody.
             signals_apart: whether each signal has a discrepancy of its own (`weighing`).
         """
         self.rig = rig
@@ -110,6 +113,7 @@ class Workbench:
         self.training = tuple(training)
         self.pool = pool
         self.cores = cores
+        self.progress = progress or Progress()
         self.signals_apart = signals_apart
         self._stopped = threading.Event()
         self.evaluations = 0
@@ -127,7 +131,10 @@ class Workbench:
             signals_apart: whether each signal has a discrepancy of its own; None for as here.
         """
         apart = self.signals_apart if signals_apart is None else signals_apart
-        return Workbench(self.rig, self.nominal, training, self.pool, self.cores, signals_apart=apart)
+        self.progress.anew()
+        return Workbench(
+            self.rig, self.nominal, training, self.pool, self.cores, self.progress, signals_apart=apart
+        )
 
     def interrupted(self) -> bool:
         """Whether the user has interrupted."""

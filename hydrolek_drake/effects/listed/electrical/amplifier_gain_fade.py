@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.physics.smooth import exponential
 
@@ -16,6 +16,15 @@ EFFECT = Effect(
         Parameter(
             "time_constant_s", "s", "time constant of the warming", neutral=1.0, lowest=0.0, positive=True
         ),
+    ),
+    formula=Formula(
+        r"i = i_0 \left( 1 - s \left( 1 - e^{-t/\tau} \right) \right)",
+        {"fraction": "s", "time_constant_s": r"\tau"},
+        {"i": "current of a coil", "i_0": "current when cold", "t": "time"},
+    ),
+    inspect=(
+        "Measure the coils' resistance cold and warm and the amplifier's supply voltage under load; an "
+        "amplifier that controls the current keeps it whatever the temperature."
     ),
     size="fraction",
     search={

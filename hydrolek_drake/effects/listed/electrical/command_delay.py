@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -11,6 +11,15 @@ EFFECT = Effect(
     title="longer dead time",
     equation="T_d + delay_s",
     parameters=(Parameter("delay_s", "s", "added transport delay", neutral=0.0, arrival=True),),
+    formula=Formula(
+        r"u_\mathrm{arriving}(t) = u \left( t - T_d - \Delta T \right)",
+        {"delay_s": r"\Delta T"},
+        {"u": "command", "t": "time", "T_d": "delay that the rig has already"},
+    ),
+    inspect=(
+        "Measure the time from a change of the command to the change of the coil current: network, "
+        "controller's sample rate and filter, relays between them."
+    ),
     size="delay_s",
     search={
         "delay_s": Search("travel_time", 0.15, (0.01, 0.05)),

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -11,6 +11,15 @@ EFFECT = Effect(
     title="play in the sensor",
     equation="play operator of half_width on the reading",
     parameters=(Parameter("half_width_rad", "rad", "half of the play", neutral=0.0, lowest=0.0),),
+    formula=Formula(
+        r"\left| y - \theta \right| \le b",
+        {"half_width_rad": "b"},
+        {"y": "reading, which stays until the play is taken up", r"\theta": "true position"},
+    ),
+    inspect=(
+        "Look at the coupling between joint and sensor: set screw, belt, flexible coupling or pinion with "
+        "play."
+    ),
     size="half_width_rad",
     search={
         "half_width_rad": Search("travel", 0.05, (0.002, 0.008)),

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -11,6 +11,19 @@ EFFECT = Effect(
     title="bowed sensor",
     equation="reading + amplitude (1 - z^2), z from -1 to 1 over the travel",
     parameters=(Parameter("amplitude_rad", "rad", "bow in the middle of the travel", neutral=0.0),),
+    formula=Formula(
+        r"y = \theta + a \left( 1 - z^2 \right)",
+        {"amplitude_rad": "a"},
+        {
+            "y": "reading",
+            r"\theta": "true position",
+            "z": "place in the travel, -1 at one end and 1 at the other",
+        },
+    ),
+    inspect=(
+        "Calibrate the sensor against an angle gauge at five places of the travel; a bow comes from a "
+        "worn track, an eccentric mount or a load on the wiper."
+    ),
     size="amplitude_rad",
     search={
         "amplitude_rad": Search("travel", 0.1, (0.01, -0.01), lowest=-0.1),

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.physics.smooth import hyperbolic_tangent
 
@@ -15,6 +15,15 @@ EFFECT = Effect(
         Parameter(
             "coulomb_N", "N", "Coulomb friction of the seals (N m for a vane)", neutral=0.0, lowest=0.0
         ),
+    ),
+    formula=Formula(
+        r"F = F_C \tanh \left( \frac{v}{v_0} \right)",
+        {"coulomb_N": "F_C"},
+        {"F": "force against the rod", "v": "speed of the rod", "v_0": "friction velocity of the rig"},
+    ),
+    inspect=(
+        "Look at the seals of rod and piston: pressure at which the unloaded joint breaks away, scored "
+        "rod, seals too tight, side load of mounts out of line."
     ),
     size="coulomb_N",
     search={

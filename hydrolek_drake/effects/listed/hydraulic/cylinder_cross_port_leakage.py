@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -18,6 +18,15 @@ EFFECT = Effect(
             neutral=0.0,
             lowest=0.0,
         ),
+    ),
+    formula=Formula(
+        r"Q = G \left( p_A - p_B \right)",
+        {"conductance_m3_per_s_Pa": "G"},
+        {"Q": "oil flow from chamber A to B", "p_A, p_B": "pressures of the chambers"},
+    ),
+    inspect=(
+        "Test the piston's or vane's seal: pressurise one side at the end stop, open the other port and "
+        "measure the oil that comes out of it."
     ),
     size="conductance_m3_per_s_Pa",
     search={

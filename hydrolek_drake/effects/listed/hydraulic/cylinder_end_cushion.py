@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -13,6 +13,15 @@ EFFECT = Effect(
     parameters=(
         Parameter("damping_N_s_per_m", "N s/m", "damping at the very end", neutral=0.0, lowest=0.0),
         Parameter("length_m", "m", "stroke over which it acts", neutral=1.0, lowest=0.0, positive=True),
+    ),
+    formula=Formula(
+        r"F = d v \left( 1 - \frac{s}{l} \right), \quad s < l, \; v < 0",
+        {"damping_N_s_per_m": "d", "length_m": "l"},
+        {"F": "force against the rod", "v": "speed of the rod", "s": "stroke"},
+    ),
+    inspect=(
+        "Look at the cushion of the retracted end, its throttle screw and check valve, and at what the "
+        "joint may run into there."
     ),
     size="damping_N_s_per_m",
     search={

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.physics.smooth import hyperbolic_tangent
 
@@ -15,6 +15,15 @@ EFFECT = Effect(
         Parameter(
             "coulomb_N", "N", "half the difference of Coulomb friction, rod out less rod in", neutral=0.0
         ),
+    ),
+    formula=Formula(
+        r"F = F_C \tanh^2 \left( \frac{v}{v_0} \right)",
+        {"coulomb_N": "F_C"},
+        {"F": "force against extension", "v": "speed of the rod", "v_0": "friction velocity of the rig"},
+    ),
+    inspect=(
+        "Compare the pressure difference at the same slow speed out and in; then look at wiper, rod seal "
+        "and side load."
     ),
     size="coulomb_N",
     search={

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.friction import stribeck
 from hydrolek_drake.physics.parameters import Parameter
 
@@ -22,6 +22,15 @@ EFFECT = Effect(
             lowest=0.0,
             positive=True,
         ),
+    ),
+    formula=Formula(
+        r"F = \left( F_C + F_S e^{-(v/v_S)^2} \right) \tanh \left( \frac{v}{v_0} \right)",
+        {"coulomb_N": "F_C", "stribeck_N": "F_S", "stribeck_velocity_m_per_s": "v_S"},
+        {"F": "force against the rod", "v": "speed of the rod", "v_0": "friction velocity of the rig"},
+    ),
+    inspect=(
+        "Move the joint slowly and see whether it sticks and slips; look at seals and guide bands, a dry "
+        "or scored rod, and the oil's lubricity."
     ),
     size="stribeck_N",
     contains=("cylinder.coulomb_friction",),

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -14,6 +14,15 @@ EFFECT = Effect(
         Parameter(
             "air_fraction", "1", "volume share of air at atmospheric pressure", neutral=0.0, lowest=0.0
         ),
+    ),
+    formula=Formula(
+        r"\frac{1}{B_\mathrm{eff}} = \frac{1}{B} + \frac{\alpha p_0}{p^2}",
+        {"air_fraction": r"\alpha"},
+        {"B": "bulk modulus of the oil", "p": "pressure", "p_0": "atmospheric pressure"},
+    ),
+    inspect=(
+        "Look for foam or milky oil in the tank, its level, leaks of the suction line, and bleed the "
+        "cylinders."
     ),
     size="air_fraction",
     search={

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.physics.smooth import exponential
 
@@ -16,6 +16,20 @@ EFFECT = Effect(
         Parameter(
             "time_constant_s", "s", "time constant of the warming", neutral=1.0, lowest=0.0, positive=True
         ),
+    ),
+    formula=Formula(
+        r"s = f \left( 1 - e^{-t/\tau} \right), \quad d = d_0 (1 - s), \quad C = C_0 (1 + s)",
+        {"fraction": "f", "time_constant_s": r"\tau"},
+        {
+            "s": "change by then",
+            "d": "viscous friction of the cylinder",
+            "C": "flow coefficient of the valve",
+            "d_0, C_0": "both when cold",
+            "t": "time",
+        },
+    ),
+    inspect=(
+        "Record the oil's temperature and check its viscosity grade; warm the machine up before measuring."
     ),
     size="fraction",
     search={

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -12,6 +12,19 @@ EFFECT = Effect(
     equation="P_S - resistance Q, Q the flow drawn by all joints, low-passed",
     parameters=(
         Parameter("resistance_Pa_s_per_m3", "Pa s/m^3", "fall of pressure per flow", neutral=0.0, lowest=0.0),
+    ),
+    formula=Formula(
+        "p = p_S - R Q",
+        {"resistance_Pa_s_per_m3": "R"},
+        {
+            "p": "pressure at the valve",
+            "p_S": "supply pressure without flow",
+            "Q": "flow drawn by all joints",
+        },
+    ),
+    inspect=(
+        "Read the supply pressure at the valve while the joint moves fast: clogged filters, relief valve "
+        "set low, pump or accumulator too small."
     ),
     size="resistance_Pa_s_per_m3",
     search={

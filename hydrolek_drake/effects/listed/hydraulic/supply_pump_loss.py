@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -14,6 +14,15 @@ EFFECT = Effect(
         Parameter(
             "fraction", "1", "share of the pump's flow that is missing", neutral=0.0, lowest=0.0, highest=1.0
         ),
+    ),
+    formula=Formula(
+        r"Q = (1 - f) D \omega",
+        {"fraction": "f"},
+        {"Q": "flow of the pump", "D": "its displacement", r"\omega": "its speed"},
+    ),
+    inspect=(
+        "Measure the pump's delivery and case drain flow at working pressure; look for air at its suction "
+        "and a drive that slips."
     ),
     size="fraction",
     search={"fraction": Search("unity", 0.95, (0.2, 0.6))},

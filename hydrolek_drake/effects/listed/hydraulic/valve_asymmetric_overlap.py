@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -11,6 +11,15 @@ EFFECT = Effect(
     title="spool null shifted",
     equation="x - (overlap + shift) opens towards A, -x - (overlap - shift) towards B",
     parameters=(Parameter("shift_m", "m", "shift of the null towards B", neutral=0.0),),
+    formula=Formula(
+        r"x_A = x - (x_0 + \Delta), \quad x_B = -x - (x_0 - \Delta)",
+        {"shift_m": r"\Delta"},
+        {"x": "place of the spool", "x_0": "overlap", "x_A, x_B": "openings towards A and B"},
+    ),
+    inspect=(
+        "Find the command at which the joint begins to move each way; then set the valve's null: centring "
+        "springs, lock nut, zero of the amplifier."
+    ),
     size="shift_m",
     search={
         "shift_m": Search("overlap", 0.8, (0.1, -0.1), lowest=-0.8),

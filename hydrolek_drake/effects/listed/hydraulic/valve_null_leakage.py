@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -18,6 +18,15 @@ EFFECT = Effect(
             neutral=0.0,
             lowest=0.0,
         ),
+    ),
+    formula=Formula(
+        r"Q = Q_\mathrm{orifice} + G \Delta p",
+        {"conductance_m3_per_s_Pa": "G"},
+        {"Q": "flow over each of the four edges", r"\Delta p": "pressure difference over it"},
+    ),
+    inspect=(
+        "Block the valve's ports to the actuator, centre the spool and measure the oil that flows to the "
+        "tank: worn lands leak."
     ),
     size="conductance_m3_per_s_Pa",
     search={

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -18,6 +18,13 @@ EFFECT = Effect(
             neutral=0.0,
             lowest=0.0,
         ),
+    ),
+    formula=Formula(
+        r"s_\mathrm{eff} = \frac{s}{\sqrt{1 + r s^2}}", {"ratio": "r"}, {"s": "share of the full opening"}
+    ),
+    inspect=(
+        "Measure the pressure drop at full flow and look for what is narrow: kinked hose, small fitting, "
+        "throttle or check valve left in."
     ),
     size="ratio",
     search={

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.physics.smooth import hyperbolic_tangent
 
@@ -12,6 +12,19 @@ EFFECT = Effect(
     title="spool sticks",
     equation="force tanh(x'/stiction_velocity) against the spool",
     parameters=(Parameter("force_N", "N", "Coulomb friction of the spool", neutral=0.0, lowest=0.0),),
+    formula=Formula(
+        r"F = F_s \tanh \left( \frac{\dot x}{v_0} \right)",
+        {"force_N": "F_s"},
+        {
+            "F": "force against the spool",
+            r"\dot x": "speed of the spool",
+            "v_0": "stiction velocity of the rig",
+        },
+    ),
+    inspect=(
+        "Look for dirt or varnish in the valve: cleanliness of the oil, filter, whether the spool slides "
+        "freely by hand, whether the amplifier's dither is on."
+    ),
     size="force_N",
     search={
         "force_N": Search("spool_force", 0.4, (0.02, 0.1)),

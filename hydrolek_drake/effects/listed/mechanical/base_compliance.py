@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -15,6 +15,15 @@ EFFECT = Effect(
             "stiffness_Nm_per_rad", "N m/rad", "spring of the base (0: rigid)", neutral=0.0, lowest=0.0
         ),
         Parameter("inertia_kg_m2", "kg m^2", "inertia of the base", neutral=1.0, lowest=0.0, positive=True),
+    ),
+    formula=Formula(
+        r"J_b \ddot b = -M - k b - 2 \zeta \sqrt{k J_b} \, \dot b",
+        {"stiffness_Nm_per_rad": "k", "inertia_kg_m2": "J_b"},
+        {"b": "angle of the base", "M": "moment of the actuator", r"\zeta": "damping ratio"},
+    ),
+    inspect=(
+        "Watch the base with a dial gauge or a camera while the joint starts and stops: mounting bolts, "
+        "tracks, outriggers, soft ground."
     ),
     size="stiffness_Nm_per_rad",
     weakens=True,

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 SCANNED = tuple(0.15 * 0.8**step for step in range(28))
@@ -15,6 +15,15 @@ EFFECT = Effect(
     title="play in the linkage",
     equation="play of gap_rad in all between cylinder side and link; spring and damper where it is closed",
     parameters=(Parameter("gap_rad", "rad", "play, from contact to contact", neutral=0.0, lowest=0.0),),
+    formula=Formula(
+        r"\left| \theta_\mathrm{drive} - \theta_\mathrm{link} \right| \le \frac{g}{2}",
+        {"gap_rad": "g"},
+        {r"\theta_\mathrm{drive}, \theta_\mathrm{link}": "angles on both sides of the play"},
+    ),
+    inspect=(
+        "Close the valves, rock the link by hand and watch a dial gauge: worn pins, bushings and mounts, "
+        "rack or key with play."
+    ),
     size="gap_rad",
     search={
         "gap_rad": Search("travel", 0.25, SCANNED),

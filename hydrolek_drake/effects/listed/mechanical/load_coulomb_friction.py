@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.physics.smooth import hyperbolic_tangent
 
@@ -12,6 +12,15 @@ EFFECT = Effect(
     title="dry friction of the guides or of the joint's bearing",
     equation="force tanh(v / friction_velocity) against the load",
     parameters=(Parameter("force_N", "N", "Coulomb friction (N m for a joint)", neutral=0.0, lowest=0.0),),
+    formula=Formula(
+        r"F = F_C \tanh \left( \frac{v}{v_0} \right)",
+        {"force_N": "F_C"},
+        {"F": "force or moment against the load", "v": "its speed", "v_0": "friction velocity of the rig"},
+    ),
+    inspect=(
+        "Uncouple the drive and measure the force that moves the load slowly: dry or pinched guides, "
+        "bearings, gear."
+    ),
     size="force_N",
     search={
         "force_N": Search("load_force", 0.5, (0.01, 0.06)),

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.physics.smooth import hyperbolic_tangent
 
@@ -21,6 +21,19 @@ EFFECT = Effect(
             "half the difference of viscous friction, forward less backward",
             neutral=0.0,
         ),
+    ),
+    formula=Formula(
+        r"F = \left( F_C + d \left| v \right| \right) \tanh^2 \left( \frac{v}{v_0} \right)",
+        {"coulomb_N": "F_C", "damping_N_s_per_m": "d"},
+        {
+            "F": "force against the positive direction",
+            "v": "speed of the load",
+            "v_0": "friction velocity of the rig",
+        },
+    ),
+    inspect=(
+        "Measure the force at the same slow speed both ways: wipers, preload of bearings, a gear that is "
+        "loaded on one flank."
     ),
     size="damping_N_s_per_m",
     search={

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -11,6 +11,11 @@ EFFECT = Effect(
     title="constant force",
     equation="force against the positive direction",
     parameters=(Parameter("force_N", "N", "constant force against the positive direction", neutral=0.0),),
+    formula=Formula("F = F_0", {"force_N": "F_0"}, {"F": "force against the positive direction"}),
+    inspect=(
+        "Look for what pulls one way: tilt of the axis, a spring, cable or hose; then the zero of the "
+        "amplifier or of the force's sensor."
+    ),
     size="force_N",
     search={
         "force_N": Search("load_force", 0.5, (0.01, -0.01), lowest=-0.5),

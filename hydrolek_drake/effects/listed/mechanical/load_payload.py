@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -13,6 +13,22 @@ EFFECT = Effect(
     parameters=(
         Parameter("mass_kg", "kg", "mass at the tool", neutral=0.0, lowest=0.0),
         Parameter("time_s", "s", "when it is picked up", neutral=0.0),
+    ),
+    formula=Formula(
+        r"J = J_0 + m r^2, \quad M = M_0 + m g r, \quad t \ge t_0",
+        {"mass_kg": "m", "time_s": "t_0"},
+        {
+            "J": "inertia",
+            "M": "gravity moment",
+            "r": "lever of the tool",
+            "g": "gravity",
+            "J_0, M_0": "both without payload",
+            "t": "time",
+        },
+    ),
+    inspect=(
+        "Weigh what is at the tool, and ask what was picked up and when; tools or hoses added since the "
+        "rig was written count too."
     ),
     size="mass_kg",
     search={

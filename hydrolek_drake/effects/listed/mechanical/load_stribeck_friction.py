@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.friction import stribeck
 from hydrolek_drake.physics.parameters import Parameter
 
@@ -24,6 +24,15 @@ EFFECT = Effect(
             lowest=0.0,
             positive=True,
         ),
+    ),
+    formula=Formula(
+        r"F = \left( F_C + F_S e^{-(v/v_S)^2} \right) \tanh \left( \frac{v}{v_0} \right)",
+        {"force_N": "F_C", "stribeck_N": "F_S", "stribeck_velocity_m_per_s": "v_S"},
+        {"F": "force or moment against the load", "v": "its speed", "v_0": "friction velocity of the rig"},
+    ),
+    inspect=(
+        "Move the load slowly with the drive uncoupled and see whether it sticks and slips: grease, "
+        "preload and seals of the bearing."
     ),
     size="stribeck_N",
     contains=("load.coulomb_friction",),

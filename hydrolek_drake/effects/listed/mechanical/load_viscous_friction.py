@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Search
+from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -11,6 +11,10 @@ EFFECT = Effect(
     title="viscous friction of the guides",
     equation="damping v against the load",
     parameters=(Parameter("damping_N_s_per_m", "N s/m", "added damping", neutral=0.0),),
+    formula=Formula("F = d v", {"damping_N_s_per_m": "d"}, {"F": "force against the load", "v": "its speed"}),
+    inspect=(
+        "Check grease and temperature of guides and gear: thick or cold grease brakes in proportion to speed."
+    ),
     size="damping_N_s_per_m",
     search={
         "damping_N_s_per_m": Search("load_damping", 1, (0.02, 0.1)),
