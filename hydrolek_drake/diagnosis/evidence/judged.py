@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.search.cost import cost
+from hydrolek_drake.diagnosis.search.cost import cost, dispersion, price
 from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.splitting import short_blocks
@@ -92,21 +92,24 @@ class Judged:
 
 
 def with_probabilities(judged: Sequence[Judged]) -> list[Judged]:
-    """The same, with probabilities, the most probable first."""
-    scale = dispersion(min(judged, key=lambda j: j.half_chi_squared))
-    support = np.array([j.support for j in judged]) / scale
+    """The same, with probabilities, the most probable first.
+
+    What the best structure leaves beyond the noise makes the likelihood flatter, and not what is known before any data.
+    """
+    scale = dispersion_of(min(judged, key=lambda j: j.half_chi_squared))
+    prior = np.array([price(j.hypothesis) for j in judged])
+    support = np.array([j.support for j in judged]) / scale - (1.0 - 1.0 / scale) * prior
     weight = np.exp(support - support.max())
     weight /= weight.sum()
     ranked = sorted(zip(weight.tolist(), judged, strict=True), key=lambda pair: -pair[0])
     return [replace(j, probability=w) for w, j in ranked]
 
 
-def dispersion(best: Judged) -> float:
-    """How much flatter than for pure noise the likelihood is: what the best model leaves beyond it, a parameter."""
+def dispersion_of(best: Judged) -> float:
+    """Of the likelihood, as the best structure tells it by all data; see `search.cost.dispersion`."""
     fit = best.hypothesis.fit
-    counted = best.held_out_counted + fit.counted
     left = 2.0 * best.half_chi_squared + fit.chi_squared
-    return max(1.0, (left - NOISE.at**2 * counted) / len(fit.unit))
+    return dispersion(left, best.held_out_counted + fit.counted, len(fit.unit))
 
 
 def probability_of(effect_path: str, judged: Sequence[Judged]) -> float:

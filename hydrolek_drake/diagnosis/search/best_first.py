@@ -57,7 +57,7 @@ def search_structures(
     expansions = 0
     while expansions < settings.most_expansions:
         openings: list[Opening] = []
-        wanted = _open(found, done, settings, laws=unlisted is not None)
+        wanted = _open(bench, found, done, settings, laws=unlisted is not None)
         for parent, kind in sorted(wanted, key=lambda each: each[1] == LAWS):
             key = (parent.ids, kind)
             lead = [o for o in openings if o.worth_while and o.leads(found.best, settings.nearer)]
@@ -103,7 +103,7 @@ def _to_be_followed(opening: Opening, found: Tried, settings: Settings) -> bool:
 
 
 def _open(
-    found: Tried, done: set[tuple[frozenset[str], str]], settings: Settings, *, laws: bool
+    bench: Workbench, found: Tried, done: set[tuple[frozenset[str], str]], settings: Settings, *, laws: bool
 ) -> list[tuple[Hypothesis, str]]:
     """Structures that may be enlarged, and by what.
 
@@ -115,7 +115,7 @@ def _open(
     best = found.best
     if (frozenset(), EFFECTS) not in done and not found.seeds:
         return [(found.baseline, EFFECTS)]
-    if best.fit.over_noise <= surely_above(best):
+    if best.fit.over_noise <= surely_above(bench, best):
         lawful = not all(isinstance(c, Candidate) for c in best.effects)
         items = [(best, LAWS if lawful else EFFECTS)]
     else:

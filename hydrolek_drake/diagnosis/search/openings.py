@@ -10,10 +10,11 @@ from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.race import problem_of
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
-from hydrolek_drake.diagnosis.search.cost import gain_needed
+from hydrolek_drake.diagnosis.search.by_parts import can_be_cut
+from hydrolek_drake.diagnosis.search.cost import dispersion, gain_needed
 from hydrolek_drake.diagnosis.search.promise import Promise, promises_at
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import FITS, GAINS, NOISE, Rung, Settings
+from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS, GAINS, NOISE, Rung, Settings
 from hydrolek_drake.diagnosis.structures.addition import Sized, names_of
 from hydrolek_drake.diagnosis.structures.candidates import redundant
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
@@ -34,6 +35,7 @@ class Opening:
         expected: cost of the structure that they promise.
         left: times the noise that it is promised to leave.
         lost: windows of lost commands that may be added too.
+        enough: times the noise that need not be explained unless something promises to.
     """
 
     parent: Hypothesis
@@ -45,6 +47,7 @@ class Opening:
     expected: float
     left: float = math.inf
     lost: LostWindows | None = None
+    enough: float = NOISE.at
 
     @property
     def key(self) -> tuple[frozenset[str], str]:
@@ -68,7 +71,7 @@ class Opening:
     @property
     def worth_while(self) -> bool:
         """Whether a structure leaves more than noise, or an addition promises to take what it must of the rest."""
-        return bool(self.own) and _worth_while(self.parent, self.own[0].cost, self.promising)
+        return bool(self.own) and _worth_while(self.parent, self.own[0], self.promising, self.enough)
 
 
 def opened(
@@ -108,7 +111,8 @@ def opened(
     pulled: list[Promise] = []
     shares = [_share(free[0].gain, parent.fit.objective, parent.fit.counted)]
     asked = parent.fit.over_noise > NOISE.at and not alone
-    if asked and _worth_while(parent, own[0].cost, free[0].gain):
+    enough = surely_above(bench, parent)
+    if asked and _worth_while(parent, own[0], free[0].gain, enough):
         pulled, share = observed(bench, parent, own, settings, cores)
         shares.append(share)
         if lost is not None:
@@ -127,22 +131,28 @@ def opened(
         + ", ".join(f"{p.candidate.id} {p.gain:.0f}" for p in pulled[:4])
     )
     over_noise = math.sqrt(left / count)
-    return Opening(parent, kind, own, tuple(free), tuple(pulled), sizes, expected, over_noise, lost)
+    return Opening(parent, kind, own, tuple(free), tuple(pulled), sizes, expected, over_noise, lost, enough)
 
 
-def surely_above(structure: Hypothesis) -> float:
+def surely_above(bench: Workbench, structure: Hypothesis) -> float:
     """Above so many times the noise a structure is enlarged even if nothing is promised.
 
     Noise is known to but a share. A nominal model that leaves more may be bent so that what it lacks promises nothing;
-    one with an addition that leaves less than twice that, and beside which nothing promises anything, is right.
+    one with an addition that leaves less than twice that, and beside which nothing promises anything, is right. A model
+    that was fitted by parts is no more bent than that, see `by_parts`.
     """
+    if can_be_cut(bench):
+        return NOISE.ahead
     return NOISE.above if structure.effects else NOISE.at
 
 
-def _worth_while(parent: Hypothesis, addition_cost: float, promised: float) -> bool:
-    """See `Opening.worth_while`."""
-    needed = GAINS.promising * addition_cost * gain_needed(parent.fit)
-    return parent.fit.over_noise > surely_above(parent) or promised >= needed
+def _worth_while(parent: Hypothesis, addition: Sized, promised: float, enough: float) -> bool:
+    """See `Opening.worth_while`; so near the noise promises hold, and chance is paid for as in `evidence.judged`."""
+    fit = parent.fit
+    flatter = dispersion(fit.objective, fit.counted, len(fit.unit))
+    odds = EVIDENCE.effect_cost * addition.cost + EVIDENCE.parameter_cost
+    needed = max(addition.cost * gain_needed(fit), 2.0 * odds * flatter)
+    return fit.over_noise > enough or promised >= GAINS.promising * needed
 
 
 def _share(gain: float, objective: float, counted: int) -> float:

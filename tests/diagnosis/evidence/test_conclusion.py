@@ -8,7 +8,7 @@ import pytest
 from hydrolek_drake.diagnosis.evidence.judged import (
     Judged,
     conclude,
-    dispersion,
+    dispersion_of,
     probability_of,
     with_probabilities,
 )
@@ -120,8 +120,8 @@ def test_probabilities_sum_to_one_and_follow_the_likelihood(effect) -> None:
 
 
 def test_a_systematic_rest_flattens_the_likelihood(effect) -> None:
-    assert dispersion(_judged((), 1.0)) == 1.0
-    tau = dispersion(_judged((), 1.1))
+    assert dispersion_of(_judged((), 1.0)) == 1.0
+    tau = dispersion_of(_judged((), 1.1))
     # what both the training and the held-out data leave beyond the noise, for each of ten parameters
     assert tau == pytest.approx(2 * (1.1**2 - 1.015**2) * COUNTED / 10, rel=1e-9)
 
