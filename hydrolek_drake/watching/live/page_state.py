@@ -13,6 +13,7 @@ from hydrolek_drake.watching.asking import OWN_NUMBERS
 from hydrolek_drake.watching.live.detecting import STATISTICS
 from hydrolek_drake.watching.live.following import Follower, Observed
 from hydrolek_drake.watching.live.series import WindowSeries
+from hydrolek_drake.watching.live.settings import WINDOW_S
 from hydrolek_drake.watching.live.sources import Link
 from hydrolek_drake.watching.words import beside_text, headline, size_text, title_of
 
@@ -110,6 +111,7 @@ def _windows(series: WindowSeries, follower: Follower, busy: bool, passed_over: 
         "count": series.count,
         "passed_over": passed_over,
         "busy": busy,
+        "length": WINDOW_S,
         "gathered": round(follower.windows.seconds, 1),
         "headline": headline(series.watched()) if series.count else "",
         "effects": [],
