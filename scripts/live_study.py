@@ -134,7 +134,7 @@ def stream(out, hours):
 def faults(out):
     """Leakages that begin after a minute of health, and gaps and jumps of the clock before."""
     fitted, healthy = prepared(out)
-    for leakage in (5e-14, 1e-13, 2e-13, 4e-13):
+    for leakage in (0.0, 2e-14, 5e-14, 1e-13, 2e-13, 4e-13):
         follower = Follower(fitted, healthy, FALSE_ALARMS)
         rng = np.random.default_rng(6)
         begin = 0.0

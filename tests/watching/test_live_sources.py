@@ -49,7 +49,12 @@ def test_bad_lines_are_counted_and_bad_names_refused():
     reader = LineReader({}, "stream")
     [samples] = reader.read([HEAD, "0,1,2", "0.01,1", "0.02,x,3", "0.03,1_0,3", "0.04,1,2"])
     assert samples.time.tolist() == [0.0, 0.04] and reader.bad == 3 and reader.bad_in_a_row == 0
-    for head in ("time_s,joint.angle_furlong", "time_s,other", "a,b", "time_s,joint.angle_deg,joint.angle_rad"):
+    for head in (
+        "time_s,joint.angle_furlong",
+        "time_s,other",
+        "a,b",
+        "time_s,joint.angle_deg,joint.angle_rad",
+    ):
         with pytest.raises(InputError):
             LineReader({}, "stream").read([head])
     with pytest.raises(InputError, match="names"):
@@ -190,7 +195,12 @@ def test_a_sender_of_nonsense_is_told_so_and_cut_off(rig):
 
     source = TcpSource("127.0.0.1", 0, rig, accepts=accepts)
     try:
-        for said in ("time_s,other\n", HEAD + "x,y,1\n" * BAD_IN_A_ROW, "time_s,joint.command_V\n0,1\n", "7" * 70000):
+        for said in (
+            "time_s,other\n",
+            HEAD + "x,y,1\n" * BAD_IN_A_ROW,
+            "time_s,joint.command_V\n0,1\n",
+            "7" * 70000,
+        ):
             sender = _Sender(source.port)
             sender.say(said)
             assert sender.hear().removeprefix("OK").strip().startswith("ERROR")

@@ -131,10 +131,7 @@ def healthy_of(
     rng = np.random.default_rng(seed)
     interval = float(np.median([usual_interval(recording.time) for recording in recordings]))
     told = [_innovations(rig, joints, recording, lost, rng) for recording in recordings]
-    with np.errstate(invalid="ignore"):
-        together = np.concatenate([innovations for _, innovations in told])
-        count = np.isfinite(together).sum(axis=0)
-        scale = np.sqrt(np.nansum(together**2, axis=0) / np.where(count, count, np.nan))
+    scale = np.sqrt(_mean(np.concatenate([innovations for _, innovations in told]) ** 2))
     scale = np.where(scale > 0.0, scale, np.nan)
     runs = [_blocks(scale, interval, *each) for each in told]
     number = sum(len(run) for run in runs)
@@ -146,7 +143,7 @@ def healthy_of(
     means = [np.array([block.mean for block in run]) for run in runs if run]
     squares = [np.array([block.square for block in run]) for run in runs if run]
     variance = _long_run(means, np.zeros(scale.shape))
-    level = np.nanmean(np.concatenate(squares), axis=0)
+    level = _mean(np.concatenate(squares))
     spread = _long_run(squares, level)
     bound = (number - 1) / chi2.ppf(1.0 - SURE, number - 1)
     high = level + norm.ppf(SURE) * np.sqrt(spread / number)
@@ -186,8 +183,14 @@ def _blocks(scale: np.ndarray, interval: float, times: np.ndarray, innovations: 
 def _long_run(runs: Sequence[np.ndarray], about: np.ndarray) -> np.ndarray:
     """Variance about a value, times what correlation of neighbours adds in sums of many. # (joints, 3)."""
     off = [run - about for run in runs]
-    variance = np.nanmean(np.concatenate(off) ** 2, axis=0)
-    pairs = [run[1:] * run[:-1] for run in off if len(run) > 1]
-    alike = np.nanmean(np.concatenate(pairs), axis=0) / variance if pairs else np.zeros_like(variance)
-    alike = np.clip(alike, 0.0, _MOST_ALIKE)
+    variance = _mean(np.concatenate(off) ** 2)
+    pairs = [run[1:] * run[:-1] for run in off]
+    alike = np.clip(_mean(np.concatenate(pairs)) / variance, 0.0, _MOST_ALIKE)
     return np.asarray(variance * (1.0 + alike) / (1.0 - alike))
+
+
+def _mean(values: np.ndarray) -> np.ndarray:
+    """Mean of the values that are known, NaN where none is. # (n, joints, 3) -> (joints, 3)."""
+    known = np.isfinite(values)
+    count = known.sum(axis=0)
+    return np.asarray(np.where(known, values, 0.0).sum(axis=0) / np.where(count, count, np.nan))
