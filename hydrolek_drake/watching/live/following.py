@@ -27,7 +27,7 @@ class Event:
 
     Attributes:
         time: of the stream [s].
-        kind: as of `merging.Break`, "unstable", "refused" or "alarm".
+        kind: as of `merging.Break`, "unstable", "refused", "link" or "alarm".
         text: in words.
         now: when it was noticed [s since 1970].
     """
@@ -127,9 +127,24 @@ class Follower:
         for time, row in zip(samples.time.tolist(), values, strict=True):
             self._pass_on(self.merger.push(time, row, arrival), now)
 
+    def note(self, kind: str, text: str, now: float) -> None:
+        """Something happened to the link.
+
+        Args:
+            kind: for the list of events.
+            text: in words.
+            now: [s since 1970].
+        """
+        self._event(np.nan if self.observer.time is None else self.observer.time, kind, text, now)
+
     def flush(self, now: float) -> None:
         """The link is silent: what still waits for late messages is observed."""
         self._pass_on(self.merger.flush(), now)
+
+    @property
+    def asks(self) -> bool:
+        """Whether there are joints of which windows can be asked: those that move alone."""
+        return self.observer.time is None or bool(self.observer.states())
 
     @property
     def settled(self) -> bool:

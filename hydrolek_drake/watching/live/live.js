@@ -85,14 +85,15 @@ function show(status) {
   $("events").replaceChildren(...(status.events.length ? [...status.events].reverse().map(e => { const li = element("li", undefined, e.kind === "alarm" ? "alarm" : "");
     li.append(element("time", new Date(1000 * e.now).toLocaleTimeString("en-GB")), e.text); return li; }) : [element("li", "none so far")]));
   const w = status.windows;
-  $("window").textContent = [w.headline, w.time ? `Last window: ${w.time}.` : "", w.busy ? "A window is being asked." : `Next window: ${w.gathered} of ${w.length} s gathered.`,
+  $("window").textContent = !w.asks ? "The joints of this rig move together: which effect changed is told by hydrolek watch over recordings of them, not here."
+    : [w.headline, w.time ? `Last window: ${w.time}.` : "", w.busy ? "A window is being asked." : `Next window: ${w.gathered} of ${w.length} s gathered.`,
     `${w.count} asked${w.passed_over ? `, ${w.passed_over} passed over` : ""}.`].filter(Boolean).join(" ");
   $("effects").replaceChildren(...w.effects.map(e => { const tr = element("tr", undefined, e.beyond ? "beyond" : "");
     tr.append(element("td", e.joint ? `${e.effect}, ${e.joint}` : e.effect, "text"), element("td", e.title, "text what"), element("td", e.size), element("td", e.beside), element("td", short(e.gain)), element("td", short(e.threshold))); return tr; }));
 }
 
 function redraw(status) {
-  const breaks = status.events.filter(e => !["alarm", "refused"].includes(e.kind) && e.time !== null).map(e => e.time);
+  const breaks = status.events.filter(e => !["alarm", "refused", "link"].includes(e.kind) && e.time !== null).map(e => e.time);
   charts.forEach(chart => draw(chart, breaks));
 }
 let status = null;

@@ -111,6 +111,7 @@ def _windows(series: WindowSeries, follower: Follower, busy: bool, passed_over: 
         "count": series.count,
         "passed_over": passed_over,
         "busy": busy,
+        "asks": follower.asks,
         "length": WINDOW_S,
         "gathered": round(follower.windows.seconds, 1),
         "headline": headline(series.watched()) if series.count else "",

@@ -21,8 +21,8 @@ from hydrolek_drake.watching.live.questions import Questions
 from hydrolek_drake.watching.live.samples import Samples, by_joint, refuse_driven
 from hydrolek_drake.watching.live.series import WindowSeries
 from hydrolek_drake.watching.live.server import LivePage
-from hydrolek_drake.watching.live.settings import POLL_S, SILENT_S, STATE_S
-from hydrolek_drake.watching.live.sources import Source, source_of
+from hydrolek_drake.watching.live.settings import AT_A_TIME, POLL_S, SILENT_S, STATE_S
+from hydrolek_drake.watching.live.sources import Link, Source, source_of
 from hydrolek_drake.watching.live.windows import Window
 from hydrolek_drake.watching.store import Store
 from hydrolek_drake.watching.watch import Watched, drifts_of, key_of_all, training_of, watch
@@ -191,6 +191,8 @@ class _Loop:
         self._questions, self._series, self._server = questions, series, server
         self._options, self._tell = options, tell
         self._told_events = 0
+        self._link_state = "waiting"
+        self._last = self._told = time.monotonic()
         self._alarmed = ""
         self._shown = 0
         self._status = self._state()
@@ -203,36 +205,40 @@ class _Loop:
 
     def run(self, page: LivePage) -> None:
         """Until it is interrupted, or idle for as long as was said."""
-        last = told = time.monotonic()
+        self._last = time.monotonic()
         flushed = False
         while True:
             begun = time.monotonic()
             found = self._source.read()
             for samples, arrival in found:
-                self._follower.take(samples, arrival, time.time())
-                if time.monotonic() - told >= STATE_S:
-                    told = time.monotonic()
-                    self._show(page)
+                for part in samples.parts(AT_A_TIME):
+                    self._follower.take(part, arrival, time.time())
+                    self._serve(page)
             if found:
-                last, flushed = time.monotonic(), False
-            elif not flushed and begun - last >= SILENT_S:
+                self._last, flushed = time.monotonic(), False
+            elif not flushed and begun - self._last >= SILENT_S:
                 self._follower.flush(time.time())
                 flushed = True
-            for seen in self._questions.answers():
-                self._series.add(seen)
-            if begun - told >= STATE_S:
-                told = begun
-                self._show(page)
-            if (
-                self._options.idle is not None
-                and begun - last >= self._options.idle
-                and not self._questions.busy
-            ):
+            self._serve(page)
+            idle = self._options.idle
+            if idle is not None and begun - self._last >= idle and not self._questions.busy:
                 return
             if not found:
                 time.sleep(POLL_S)
 
+    def _serve(self, page: LivePage) -> None:
+        """Take what was answered, and tell the page where it is time."""
+        for seen in self._questions.answers():
+            self._series.add(seen)
+        if time.monotonic() - self._told >= STATE_S:
+            self._told = time.monotonic()
+            self._show(page)
+
     def _show(self, page: LivePage) -> None:
+        link = self._link()
+        if link.state != self._link_state and {link.state, self._link_state} & {"lost", "silent"}:
+            self._follower.note("link", f"link {link.state}: {link.text}", time.time())
+        self._link_state = link.state
         self._status = self._state()
         if page.browsers:
             fresh = [each for each in self._follower.history if each.number > self._shown]
@@ -252,11 +258,20 @@ class _Loop:
             self._tell(self._series.alarmed)
         self._alarmed = self._series.alarmed
 
+    def _link(self) -> Link:
+        """How the source does; one that is open and brings nothing is silent."""
+        link, quiet = self._source.link(), time.monotonic() - self._last
+        if link.state == "open" and quiet >= SILENT_S:
+            return replace(
+                link, state="silent", text=f"nothing has come for a while; {link.text}".rstrip("; ")
+            )
+        return link
+
     def _state(self) -> dict[str, object]:
         return status(
             self._follower,
             self._series,
-            self._source.link(),
+            self._link(),
             self._questions.busy,
             self._questions.passed_over,
         )

@@ -1,7 +1,7 @@
 """Samples as a source brings them, and as the observer takes them: in SI, joint by joint."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -34,6 +34,13 @@ class Samples:
     units: Mapping[str, str] = field(default_factory=dict)
     begins: bool = False
     source: str = "stream"
+
+    def parts(self, count: int) -> Iterator["Samples"]:
+        """The same in parts of so many samples at most."""
+        for first in range(0, self.time.size, count):
+            part = slice(first, first + count)
+            signals = {key: values[part] for key, values in self.signals.items()}
+            yield replace(self, time=self.time[part], signals=signals, begins=self.begins and first == 0)
 
     @staticmethod
     def of(recording: Recording, begins: bool = True) -> "Samples":

@@ -80,6 +80,9 @@ BAG_POLL_S = 5.0
 """Bags that are being written are read so often: each time a process is started for half a second, and recorders write
 chunks of seconds anyway."""
 
+AT_A_TIME = 500
+"""Samples that are observed before the page is served again: a twentieth of a second of work for one joint."""
+
 WAITING = 100_000
 """Samples that wait for the observer at most; beyond, the oldest are dropped, counted and shown."""
 
