@@ -12,17 +12,17 @@ from hydrolek_drake.rollout.rest import START_STEPS
 
 
 @njit(cache=True)
-def pull_all(rows: np.ndarray, spans: float, told: np.ndarray, measured: np.ndarray) -> None:
+def pull_all(rows: np.ndarray, spans: np.ndarray, told: np.ndarray, measured: np.ndarray) -> None:
     """Pull joints that move together to what was measured, as `kernel.integrate` does with one before it moves on.
 
     Args:
         rows: of `joint_rows.room`, with `STATE` and `PLAY`.
-        spans: how far the next move goes, in time constants of the pull.
+        spans: how far the next move goes, in time constants of each joint's pull, shape (n,).
         told: their signals now, before the pull, shape (n, at least 1), the reading first.
         measured: `kernel.PULLED` of them, NaN where there is no value, shape (n, 3).
     """
-    share = 1.0 - math.exp(-spans)
     for i in range(len(rows)):
+        share = 1.0 - math.exp(-spans[i])
         s, by = pulled(state_at(rows, i, STATE), share, told[i, 0], measured[i])
         put_state(rows, i, STATE, s)
         rows[i, PLAY] += by

@@ -155,20 +155,24 @@ class JointsOnwards:
         put_begun(self._rows, self._run.begun)
         self._go(self._run.times, self._run.command_times, self._run.command_values)
 
-    def advance(self, volts: np.ndarray, until: float, pull: tuple[float, np.ndarray] | None = None) -> None:
+    def advance(
+        self, volts: np.ndarray, until: float, pull: tuple[float | np.ndarray, np.ndarray] | None = None
+    ) -> None:
         """Hold commands [V], # (joints,), from now until a time [s].
 
         Args:
             volts: the commands.
             until: [s].
-            pull: as of `JointOnwards.advance`, what was measured # (joints, 3).
+            pull: as of `JointOnwards.advance`: a time constant for all or one for each joint, # (joints,), and what was
+                measured # (joints, 3).
 
         Raises:
             InputError: a joint leaves all bounds.
         """
         times, values = self._commands.add(self.time, volts)
         if pull is not None:
-            pull_all(self._rows, (until - self.time) / pull[0], self.signals, pull[1])
+            spans = (until - self.time) / np.broadcast_to(pull[0], len(self.joints))
+            pull_all(self._rows, np.array(spans), self.signals, pull[1])
         self._go(np.array([self.time, until]), times, values)
         self.time = until
 

@@ -34,8 +34,8 @@ def _made(rig, seconds, seed, leakage=0.0):
     """Time, command and noisy reading of the model itself."""
     rng = np.random.default_rng(seed)
     time = 0.01 * np.arange(round(100 * seconds))
-    steps = rng.uniform(-1.5, 1.5, time.size // 50 + 1)
-    steps[1::2] = -steps[: steps[1::2].size * 2 : 2]  # it stays about where it is
+    steps = rng.uniform(3.0, 5.0, time.size // 50 + 1)
+    steps[1::2] *= -1.0  # it stays about where it is
     volts = np.repeat(steps, 50)[: time.size]
     machine = rig.with_values({"effects.cylinder.cross_port_leakage.conductance_m3_per_s_Pa": leakage})
     step, spool = rig.value("integration.longest_step"), int(rig.value("integration.spool_steps"))
@@ -63,30 +63,59 @@ def _fed(follower, time, volts, reading, begin=0.0, begins=False, arrival=None):
         )
 
 
-def test_innovations_are_those_of_the_rollout_that_is_pulled(rig):
+def test_a_joint_that_is_pulled_step_by_step_is_the_rollout_that_is(rig):
     time, volts, reading = _made(rig, 2.0, 5)
-    observer = Observer(rig, ("joint",), pull_time=0.3)
-    values = np.full((time.size, 1, 4), np.nan)
-    values[:, 0, 0], values[:, 0, 1] = volts, reading
-    told = [observer.step(t, row) for t, row in zip(time.tolist(), values, strict=True)]
-    assert told[0] is None
-    pull = np.full((time.size, 3), np.nan)
-    pull[:, 0] = reading
-    (machine,) = [JointOnwards(rig, "joint", 0.0, float(reading[0]))]
+    measured = np.full((time.size, 3), np.nan)
+    measured[:, 0] = reading
+    machine = JointOnwards(rig, "joint", 0.0, float(reading[0]))
+    begin = machine.states()[0]
+    stepped = [machine.signals[0, 0]]
+    for i in range(time.size - 1):
+        machine.advance(volts[i : i + 1], float(time[i + 1]), (0.3, measured[i : i + 1]))
+        stepped.append(machine.signals[0, 0])
     step, spool = rig.value("integration.longest_step"), int(rig.value("integration.spool_steps"))
     rolled = roll_out(
         rig.records(),
         time,
         volts,
         time,
-        state=machine.states()[0],
+        state=begin,
         longest_step=step,
         spool_steps=spool,
-        pull=(0.3, pull),
+        pull=(0.3, measured),
     )
-    own = np.array([each[0, 0] for each in told[1:]])
-    assert own == pytest.approx(reading[1:] - rolled.signals.reading[1:], abs=1e-9)
-    assert np.std(own) < 3.0 * NOISE
+    assert stepped == pytest.approx(rolled.signals.reading, abs=1e-9)
+    free = roll_out(rig.records(), time, volts, time, state=begin, longest_step=step, spool_steps=spool)
+    assert np.abs(np.array(stepped) - free.signals.reading).max() > 1e-5
+
+
+def test_innovations_of_the_machine_itself_are_its_noise(rig):
+    time, volts, reading = _made(rig, 12.0, 5)
+    observer = Observer(rig, ("joint",))
+    values = np.full((time.size, 1, 4), np.nan)
+    values[:, 0, 0], values[:, 0, 1] = volts, reading
+    told = [observer.step(t, row) for t, row in zip(time.tolist(), values, strict=True)]
+    assert told[0] is None and np.ptp(reading) > 100.0 * NOISE
+    own = np.array([each[0, 0] for each in told[200:]])
+    assert own.std() == pytest.approx(NOISE, rel=0.1)
+    assert abs(np.corrcoef(own[1:], own[:-1])[0, 1]) < 0.15  # white
+
+
+def test_a_command_that_changed_while_samples_were_lost_is_no_fault(rig, healthy):
+    time, volts, reading = _made(rig, 30.0, 18)
+    changes = np.flatnonzero(np.diff(volts))[2::3] + 1
+    keep = np.ones(time.size, dtype=bool)
+    keep[np.concatenate([changes, changes + 1])] = False  # the machine was commanded what nobody has heard of
+    follower = Follower(rig, healthy, 0.005)
+    _fed(follower, time[keep], volts[keep], reading[keep])
+    assert follower.merger.counts.lost == 2 * changes.size >= 30
+    assert follower.alarm_text == "" and not follower.events
+    doubted, first = Observer(rig, ("joint",), healthy.response), changes[0]
+    for i in (*range(first), first + 2):
+        sure = doubted.sure.all()
+        doubted.step(float(time[i]), np.array([[volts[i], reading[i], np.nan, np.nan]]))
+    assert sure
+    assert not doubted.sure.any()
 
 
 def test_joints_that_move_together_are_pulled_as_one_by_itself(rig):

@@ -6,7 +6,6 @@ import struct
 
 import numpy as np
 import pytest
-import tornado.httpclient
 import tornado.websocket
 
 from hydrolek_drake.errors import InputError
@@ -27,12 +26,18 @@ SAMPLE = Observed(
 MESSAGE_DATA = 1
 
 
+async def _publish(server):
+    while True:
+        server.publish(SAMPLE)
+        await asyncio.sleep(0.05)
+
+
 def test_a_panel_gets_signals_and_innovations():
     server = FoxgloveServer(("joint",), 0)
 
     async def watch():
-        request = tornado.httpclient.HTTPRequest(f"ws://127.0.0.1:{server.port}/")
-        socket = await tornado.websocket.websocket_connect(request, subprotocols=["foxglove.sdk.v1"])
+        address = f"ws://127.0.0.1:{server.port}/"
+        socket = await tornado.websocket.websocket_connect(address, subprotocols=["foxglove.sdk.v1"])
         topics = {}
         while len(topics) < 3:
             said = await socket.read_message()
@@ -42,15 +47,13 @@ def test_a_panel_gets_signals_and_innovations():
         subscriptions = [{"id": i, "channelId": topics[topic]} for i, topic in enumerate(wanted)]
         await socket.write_message(json.dumps({"op": "subscribe", "subscriptions": subscriptions}))
         found = {}
+        sending = asyncio.ensure_future(_publish(server))  # what is sent before a panel asks is not kept
         while len(found) < 2:
-            server.publish(SAMPLE)
-            try:
-                said = await asyncio.wait_for(socket.read_message(), 0.2)
-            except asyncio.TimeoutError:
-                continue
+            said = await socket.read_message()
             if isinstance(said, bytes) and said[0] == MESSAGE_DATA:
                 number, stamp = struct.unpack_from("<IQ", said, 1)
                 found[wanted[number]] = (stamp, json.loads(said[13:]))
+        sending.cancel()
         socket.close()
         return set(topics), found
 

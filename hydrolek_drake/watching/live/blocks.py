@@ -18,7 +18,7 @@ from hydrolek_drake.recordings import Recording
 from hydrolek_drake.recordings.clock import gap_follows, usual_interval
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.kernel import PULLED
-from hydrolek_drake.watching.live.observing import Observer
+from hydrolek_drake.watching.live.observing import Observer, Response
 from hydrolek_drake.watching.live.samples import Samples, by_joint
 from hydrolek_drake.watching.live.settings import (
     BLOCK_S,
@@ -29,6 +29,12 @@ from hydrolek_drake.watching.live.settings import (
     SURE,
     WHOLE,
 )
+
+_SPEED_S = 0.1
+"""Speeds are told by differences over so long, in which a joint that moves passes its sensor's noise."""
+
+_REACHED = 0.95
+"""Share of the samples below what counts as reached."""
 
 _MOST_ALIKE = 0.9
 """Correlation of neighbouring blocks that is believed at most: of a few dozen, more cannot be told."""
@@ -98,7 +104,7 @@ class Healthy:
 
     Attributes:
         joints: in the order of the rows.
-        interval: usual one between samples [s].
+        response: how joints follow their commands.
         scale: root mean square of innovations of `kernel.PULLED`; NaN where nothing was measured. # (joints, 3)
         deviation: standard deviation of a block's mean, of sums over many blocks, bounded from above. # (joints, 3)
         square: mean of a block's mean square, bounded from above. # (joints, 3)
@@ -106,11 +112,16 @@ class Healthy:
     """
 
     joints: tuple[str, ...]
-    interval: float
+    response: Response
     scale: np.ndarray
     deviation: np.ndarray
     square: np.ndarray
     shape: np.ndarray
+
+    @property
+    def interval(self) -> float:
+        """Usual one between samples [s]."""
+        return self.response.interval
 
 
 def healthy_of(
@@ -130,9 +141,11 @@ def healthy_of(
     """
     rng = np.random.default_rng(seed)
     interval = float(np.median([usual_interval(recording.time) for recording in recordings]))
-    told = [_innovations(rig, joints, recording, lost, rng) for recording in recordings]
-    scale = np.sqrt(_mean(np.concatenate([innovations for _, innovations in told]) ** 2))
-    scale = np.where(scale > 0.0, scale, np.nan)
+    whole = [_innovations(rig, joints, recording, 0.0, rng, None) for recording in recordings]
+    scale = _root_mean_square(whole)
+    response = Response(interval, _speeds(rig, joints, recordings) / scale[:, 0])
+    told = [_innovations(rig, joints, recording, lost, rng, response) for recording in recordings]
+    scale = _root_mean_square(told)
     runs = [_blocks(scale, interval, *each) for each in told]
     number = sum(len(run) for run in runs)
     if number < LEAST_BLOCKS:
@@ -148,19 +161,44 @@ def healthy_of(
     bound = (number - 1) / chi2.ppf(1.0 - SURE, number - 1)
     high = level + norm.ppf(SURE) * np.sqrt(spread / number)
     return Healthy(
-        tuple(joints), interval, scale, np.sqrt(variance * bound), high, high**2 / (spread * bound)
+        tuple(joints), response, scale, np.sqrt(variance * bound), high, high**2 / (spread * bound)
     )
 
 
+def _root_mean_square(told: Sequence[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
+    """Of innovations, NaN where there are none. # (joints, 3)."""
+    scale = np.sqrt(_mean(np.concatenate([innovations for _, innovations in told]) ** 2))
+    return np.where(scale > 0.0, scale, np.nan)
+
+
+def _speeds(rig: Rig, joints: Sequence[str], recordings: Sequence[Recording]) -> np.ndarray:
+    """Speed for a volt: what a joint reaches, over the largest commands. # (joints,)."""
+    fast, large = [], []
+    for recording in recordings:
+        values = by_joint(rig, joints, Samples.of(recording))
+        steps = max(round(_SPEED_S / usual_interval(recording.time)), 1)
+        moved = np.abs(values[steps:, :, 1] - values[:-steps, :, 1])
+        passed = (recording.time[steps:] - recording.time[:-steps])[:, None]
+        fast.append(np.nanquantile(moved / passed, _REACHED, axis=0))
+        neutral = [rig.value(f"joints.{joint}.command.neutral") for joint in joints]
+        large.append(np.nanquantile(np.abs(values[:, :, 0] - neutral), _REACHED, axis=0))
+    return np.asarray(np.max(fast, axis=0) / np.maximum(np.max(large, axis=0), np.finfo(float).tiny))
+
+
 def _innovations(
-    rig: Rig, joints: Sequence[str], recording: Recording, lost: float, rng: np.random.Generator
+    rig: Rig,
+    joints: Sequence[str],
+    recording: Recording,
+    lost: float,
+    rng: np.random.Generator,
+    response: Response | None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Times and innovations of a recording, from where the observer has settled. # (k,), (k, joints, 3)."""
     keep = rng.random(recording.time.size) >= lost
     values = by_joint(rig, joints, Samples.of(recording))[keep]
     time = recording.time[keep]
     gaps = np.concatenate([[False], gap_follows(recording.time)])[keep]
-    observer = Observer(rig, joints)
+    observer = Observer(rig, joints, response)
     times, found, settled = [], [], np.inf
     for now, row, gap in zip(time.tolist(), values, gaps, strict=True):
         if gap:
@@ -170,7 +208,7 @@ def _innovations(
             settled = now + SETTLED * PULL_S
         elif now >= settled:
             times.append(now)
-            found.append(told.copy())
+            found.append(np.where(observer.sure[:, None], told, np.nan))
     return np.array(times), np.reshape(found, (-1, len(joints), len(PULLED)))
 
 

@@ -83,6 +83,6 @@ class ChangeDetector:
             self.evidence[which] = np.where(self._known, of_all, np.nan)
         if self.alarmed is not None or not np.nanmax(self.evidence, initial=-np.inf) >= self.threshold:
             return False
-        which, joint, quantity = np.unravel_index(int(np.nanargmax(self.evidence)), self.evidence.shape)
-        self.alarmed, self.first = block.end, (int(which), int(joint), int(quantity))
+        first = np.unravel_index(int(np.nanargmax(self.evidence)), self.evidence.shape)
+        self.alarmed, self.first = block.end, (int(first[0]), int(first[1]), int(first[2]))
         return True

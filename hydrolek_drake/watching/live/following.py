@@ -96,7 +96,7 @@ class Follower:
         self._rig, self.healthy, self.joints = rig, healthy, healthy.joints
         self._on_window, self._on_sample = on_window, on_sample
         self.merger = Merger(healthy.interval)
-        self.observer = Observer(rig, self.joints)
+        self.observer = Observer(rig, self.joints, healthy.response)
         self.detector = ChangeDetector(healthy, false_alarms)
         self._gathered = Blocks(healthy.scale, healthy.interval)
         self.windows = Windows(len(self.joints))
@@ -179,8 +179,11 @@ class Follower:
                 self._settled = row.time + SETTLED * PULL_S
         settled = self.settled
         if settled:
-            self._judge(row.time, told, now)
-            if not self.windows.begun:
+            sure = self.observer.sure
+            self._judge(row.time, np.where(sure[:, None], told, np.nan), now)
+            if not sure.all():  # it is not known when a command changed
+                self.windows.restart()
+            elif not self.windows.begun and row.time >= self.observer.unsure_until.max() + PULL_S:
                 self._begin_window()
         window = self.windows.add(row.time, row.values, self.observer.volts, now)
         if window is not None and window.moved(self.joints):

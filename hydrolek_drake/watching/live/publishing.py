@@ -44,7 +44,7 @@ class FoxgloveServer:
             )
         import foxglove
 
-        context = foxglove.Context()
+        self._context = context = foxglove.Context()  # kept: its channels end with it
         self._signals = [
             foxglove.Channel(f"/{joint}/signals", schema=_schema("Signals", _SIGNALS), context=context)
             for joint in joints
