@@ -42,6 +42,15 @@ class LineReader:
         """What comes next begins anew, with names of its own."""
         self._used, self._cells, self._begins = [], 0, True
 
+    def named(self) -> Samples | None:
+        """A sample without values of the signals that are named; None before that."""
+        if not self._used:
+            return None
+        keys = {meaning.key: meaning.unit for _, meaning in self._used if meaning.key != TIME}
+        return Samples(
+            np.full(1, np.nan), {key: np.full(1, np.nan) for key in keys}, keys, source=self._source
+        )
+
     def read(self, lines: Sequence[str]) -> list[Samples]:
         """The samples of some whole lines; with new names between them, in several parts.
 

@@ -261,7 +261,7 @@ class _Loop:
     def _link(self) -> Link:
         """How the source does; one that is open and brings nothing is silent."""
         link, quiet = self._source.link(), time.monotonic() - self._last
-        if link.state == "open" and quiet >= SILENT_S:
+        if link.state == "open" and self._follower.merger.counts.taken and quiet >= SILENT_S:
             return replace(
                 link, state="silent", text=f"nothing has come for a while; {link.text}".rstrip("; ")
             )

@@ -10,8 +10,8 @@ UNSURE = 0.3
 standard deviations of its reading meanwhile."""
 
 LAG_S = 0.5
-"""Spool and oil have followed a command after so long: where the model was told 20 ms late of a step by 8 V, the bench's
-innovations were up to 30 times the noise and rang for 0.35 s."""
+"""Spool and oil have followed a command after so long: where the model was told 20 ms late of a step by 8 V, the
+bench's innovations were up to 30 times the noise and rang for 0.35 s."""
 
 SETTLED = 4.0
 """After so many pull times less than 2 % of a wrong beginning is left; until then innovations are not judged."""

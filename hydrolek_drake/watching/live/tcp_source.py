@@ -129,14 +129,12 @@ class TcpSource:
                 connection.sendall(b"OK\n")
             before = reader.bad
             found = reader.read(text)
-            for samples in found:
-                if samples.begins:
-                    self._accepts(samples)
-            # a sender that comes again goes on by its clock; what it leaves out is a gap
-            found = [replace(samples, begins=False) for samples in found]
-            if found and not named:
+            if not named and (signals := reader.named()) is not None:
+                self._accepts(signals)
                 named = True
                 connection.sendall(b"OK\n")
+            # a sender that comes again goes on by its clock; what it leaves out is a gap
+            found = [replace(samples, begins=False) for samples in found]
             self._keep(found, reader.bad - before)
             if reader.bad_in_a_row >= BAD_IN_A_ROW:
                 raise InputError(
