@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from datetime import datetime, timezone
 
 import numpy as np
 
@@ -19,6 +20,17 @@ from hydrolek_drake.watching.live.windows import Begin, Window, Windows
 
 _ON = 12
 """Place of the time since switching on in a state, see `kernel.integrate`."""
+
+
+_CALENDAR_S = 6e8
+"""Clocks that show more than that count from 1970: before, a machine would have been on for twenty years."""
+
+
+def told_time(seconds: float) -> str:
+    """A time of the stream in words: of a calendar (UTC), or since its clock began."""
+    if seconds < _CALENDAR_S:
+        return f"{seconds:.1f} s of the stream"
+    return datetime.fromtimestamp(seconds, timezone.utc).strftime("%Y-%m-%d %H:%M:%S")
 
 
 @dataclass(frozen=True)
@@ -220,7 +232,7 @@ class Follower:
         which, joint, quantity = first
         return (
             f"Innovations of {self.joints[joint]} ({PULLED[quantity]}, {STATISTICS[which]}) are no longer those of the "
-            f"healthy machine, alarmed at {self.detector.alarmed:.1f} s of the stream."
+            f"healthy machine, alarmed at {told_time(self.detector.alarmed)}."
         )
 
     def _begin_window(self) -> None:

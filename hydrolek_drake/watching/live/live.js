@@ -27,7 +27,7 @@ function build(first) {
 }
 function joint() { return Math.max($("joint").selectedIndex, 0); }
 
-function nice(span) { const raw = span / 4, power = 10 ** Math.floor(Math.log10(raw)); return power * [1, 2, 5, 10].find(step => step * power >= raw); }
+function nice(span) { const raw = span / 6, power = 10 ** Math.floor(Math.log10(raw)); return power * [1, 2, 5, 10].find(step => step * power >= raw); }
 
 function draw(chart, breaks) {
   const j = joint(), canvas = chart.canvas;

@@ -77,7 +77,7 @@ def status(
             **follower.merger.counts.as_dict(),
         },
         "events": [
-            {"time": _number(e.time), "kind": e.kind, "text": e.text, "now": e.now} for e in follower.events
+            {"time": _moment(e.time), "kind": e.kind, "text": e.text, "now": e.now} for e in follower.events
         ],
         "innovations": _innovations(follower),
         "windows": _windows(series, follower, busy, passed_over),
@@ -98,7 +98,7 @@ def _innovations(follower: Follower) -> list[dict[str, Any]]:
                 "joint": joint,
                 "share": _number(max(level, 0.0) / detector.threshold),
                 "what": STATISTICS[int(where[0])],
-                "since": _number(float(detector.since[where[0], place, where[1]])),
+                "since": _moment(float(detector.since[where[0], place, where[1]])),
                 "mean": _number(float(block.mean[place, 0])) if block is not None else None,
                 "rms": _number(math.sqrt(float(block.square[place, 0]))) if block is not None else None,
             }
@@ -143,6 +143,11 @@ def _windows(series: WindowSeries, follower: Follower, busy: bool, passed_over: 
 
 def _numbers(values: np.ndarray) -> list[float | None]:
     return [_number(value) for value in values.tolist()]
+
+
+def _moment(seconds: float) -> float | None:
+    """A time, which may be that of a calendar and has more digits than a number that is shown."""
+    return round(seconds, 4) if math.isfinite(seconds) else None
 
 
 def _number(value: float) -> float | None:
