@@ -42,16 +42,23 @@ def test_pages_of_other_sites_are_kept_out(page):
 
 
 def test_a_browser_is_told_the_whole_and_then_what_is_new(page):
+    async def telling():
+        while True:  # one that has not taken the last message yet is not told the next
+            page.tell({"rows": [[1]]})
+            await asyncio.sleep(0.02)
+
     async def watch():
         socket = await tornado.websocket.websocket_connect(f"ws://127.0.0.1:{page.port}/socket")
         first = json.loads(await socket.read_message())
         await socket.write_message("STOP")  # which nobody heeds
-        page.tell({"rows": [[1]]})
-        second = json.loads(await socket.read_message())
+        task = asyncio.ensure_future(telling())
+        later = [json.loads(await socket.read_message()) for _ in range(3)]
+        task.cancel()
         socket.close()
-        return first, second
+        return first, later
 
-    assert asyncio.run(watch()) == (FIRST, {"rows": [[1]]})
+    first, later = asyncio.run(watch())
+    assert first == FIRST and {"rows": [[1]]} in later
 
 
 def test_a_port_that_is_taken_is_refused(page):
