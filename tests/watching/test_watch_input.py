@@ -49,10 +49,11 @@ def test_limits_take_units():
     ],
     ids=lambda each: " ".join(each) if isinstance(each, list) else "",
 )
-def test_what_is_wrong_with_live_is_said_in_one_line(extra, said, references, tmp_path, monkeypatch, capsys):
+def test_what_is_wrong_with_live_is_said_in_one_line(extra, said, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "healthy.csv").write_text("time_s,joint.command_V,joint.angle_deg\n0,1,2\n0.01,1,2\n")
     for name in ("run.csv", "run.parquet"):
         (tmp_path / name).write_text("")
-    assert run(["watch", "joint_bench", str(references[0]), *extra]) == 2
+    assert run(["watch", "joint_bench", "healthy.csv", *extra]) == 2
     lines = capsys.readouterr().err.strip().splitlines()
     assert said in lines[-1]

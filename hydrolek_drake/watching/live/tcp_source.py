@@ -20,6 +20,8 @@ from hydrolek_drake.watching.live.settings import BAD_IN_A_ROW, LONGEST_LINE, WA
 from hydrolek_drake.watching.live.sources import Link
 
 _TOKEN = "TOKEN"
+_TOLD_S = 0.5
+"""A sender that is refused has so long to hear why."""
 
 
 class TcpSource:
@@ -195,9 +197,16 @@ class _Connection(socketserver.BaseRequestHandler):
 
 
 def _tell(connection: socket.socket, text: str) -> None:
-    """Say why the connection ends, if the sender still hears it."""
+    """Say why the connection ends, if the sender still hears it.
+
+    What it has sent meanwhile is taken for a while: closed with unread data, a connection loses what was said last.
+    """
     try:
-        connection.settimeout(0.5)
+        connection.settimeout(_TOLD_S)
         connection.sendall(f"{' '.join(text.split())}\n".encode("ascii", errors="replace"))
+        connection.shutdown(socket.SHUT_WR)
+        until = time.monotonic() + _TOLD_S
+        while time.monotonic() < until and connection.recv(1 << 16):
+            pass
     except OSError:
         pass
