@@ -10,6 +10,7 @@ from hydrolek_drake.identification.start import without_offset
 from hydrolek_drake.identification.thinning import Blocks, block_size
 from hydrolek_drake.physics.probes import PROBES, SUPPLY
 from hydrolek_drake.rollout.kernel import PULLED
+from hydrolek_drake.rollout.moved import state_at_reading
 from hydrolek_drake.rollout.rest import rest_state_at_reading
 from hydrolek_drake.rollout.rollout import Outcome, Signals
 from hydrolek_drake.rollout.run import Run
@@ -42,6 +43,8 @@ class Experiment:
             that is not known. # (channels, n)
         recorded: what is recorded in place of a part of the model, as probes of the rollout; None for nothing.
         cut: part of the model that `recorded` replaces besides those that the rig names, see `physics.driven`.
+        state: where a joint that does not rest at the beginning is, as an observer left it, see `kernel.integrate`; it
+            is moved to where the sensor reads `start`. None for one that rests. # (17,)
     """
 
     name: str
@@ -62,6 +65,7 @@ class Experiment:
     start_response: np.ndarray | None = None
     recorded: tuple[float, np.ndarray] | None = None
     cut: str | None = None
+    state: np.ndarray | None = None
 
     @property
     def command_at_samples(self) -> np.ndarray:
@@ -109,11 +113,19 @@ class Experiment:
             self.time,
             longest_step or self.longest_step,
             self.spool_steps,
-            state=None if self.start is None else rest_state_at_reading(record, self.start),
+            state=self._begin(record),
             probes=with_recorded(self._with_others(probes), self.recorded),
             pull=None if pull_time is None else (pull_time, self._to_follow()),
             law=law,
         )
+
+    def _begin(self, record: np.ndarray) -> np.ndarray | None:
+        """State at the beginning; None for where the rig rests. # (17,)."""
+        if self.start is None:
+            return self.state
+        if self.state is None:
+            return rest_state_at_reading(record, self.start)
+        return state_at_reading(record, self.state, self.start)
 
     def _with_others(self, probes: tuple[float, np.ndarray] | None) -> tuple[float, np.ndarray] | None:
         """Probes with what the other joints do added."""

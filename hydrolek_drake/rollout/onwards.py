@@ -16,6 +16,7 @@ from hydrolek_drake.physics.serial_arm import scratch
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.joint_rows import room
 from hydrolek_drake.rollout.kernel import SIGNALS
+from hydrolek_drake.rollout.moved import pull_all
 from hydrolek_drake.rollout.rest import rest_state
 from hydrolek_drake.rollout.rollout import PreparedJoint
 from hydrolek_drake.rollout.together import JointsTogether, RunTogether, moving_with, put_begun
@@ -77,18 +78,37 @@ class JointOnwards:
         neutral = record["command"]["neutral"]
         self._go(np.array([time]), np.array([time]), neutral)
 
-    def advance(self, volts: np.ndarray, until: float) -> None:
+    def advance(self, volts: np.ndarray, until: float, pull: tuple[float, np.ndarray] | None = None) -> None:
         """Hold a command [V], # (1,), from now until a time [s].
+
+        Args:
+            volts: the command.
+            until: [s].
+            pull: as in an observer: time constant [s], and `kernel.PULLED` as measured now, NaN where there is no
+                value, # (1, 3), towards which the state is pulled before it moves on; None for a free rollout.
 
         Raises:
             InputError: the joint leaves all bounds.
         """
         times, values = self._commands.add(self.time, volts)
-        self._go(np.array([self.time, until]), times, values[:, 0])
+        whole = (
+            None if pull is None else (pull[0], np.vstack([pull[1], pull[1]]))
+        )  # the last row pulls nothing
+        self._go(np.array([self.time, until]), times, values[:, 0], whole)
         self.time = until
 
-    def _go(self, times: np.ndarray, command_times: np.ndarray, command_values: np.ndarray) -> None:
-        done = self._machine.roll_out(command_times, command_values, times, state=self._state)
+    def states(self) -> np.ndarray:
+        """Where it is, as `kernel.integrate` takes it up again. # (1, 17)."""
+        return self._state[None].copy()
+
+    def _go(
+        self,
+        times: np.ndarray,
+        command_times: np.ndarray,
+        command_values: np.ndarray,
+        pull: tuple[float, np.ndarray] | None = None,
+    ) -> None:
+        done = self._machine.roll_out(command_times, command_values, times, state=self._state, pull=pull)
         if done.diverged is not None:
             raise InputError(f"{self.joints[0]}: {done.diverged}")
         self._state = done.state
@@ -135,13 +155,24 @@ class JointsOnwards:
         put_begun(self._rows, self._run.begun)
         self._go(self._run.times, self._run.command_times, self._run.command_values)
 
-    def advance(self, volts: np.ndarray, until: float) -> None:
+    def advance(
+        self, volts: np.ndarray, until: float, pull: tuple[float | np.ndarray, np.ndarray] | None = None
+    ) -> None:
         """Hold commands [V], # (joints,), from now until a time [s].
+
+        Args:
+            volts: the commands.
+            until: [s].
+            pull: as of `JointOnwards.advance`: a time constant for all or one for each joint, # (joints,), and what was
+                measured # (joints, 3).
 
         Raises:
             InputError: a joint leaves all bounds.
         """
         times, values = self._commands.add(self.time, volts)
+        if pull is not None:
+            spans = (until - self.time) / np.broadcast_to(pull[0], len(self.joints))
+            pull_all(self._rows, np.array(spans), self.signals, pull[1])
         self._go(np.array([self.time, until]), times, values)
         self.time = until
 

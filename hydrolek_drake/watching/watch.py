@@ -112,21 +112,12 @@ def watch(
     Raises:
         InputError: a reference recording that cannot be used, or a folder of another watch.
     """
-    drifts = {"": DRIFT, **(drift or {})}
+    drifts = drifts_of(drift)
     count = cores or os.cpu_count() or 1
     if not reference:
         raise InputError("a watch needs one reference recording of the healthy machine at least")
-    training: list[tuple[Path, str, list[Experiment], Stamp]] = []
-    for path in reference:
-        recording = _read(rig, path)
-        experiments = _usable(rig, recording)
-        digest = digest_of(path)
-        if any(digest == known for _, known, _, _ in training):
-            raise InputError(f"reference {path} has the content of another one; a recording counts once")
-        if any(experiments[0].name == own[0].name for _, _, own, _ in training):  # files of two folders
-            experiments = [replace(e, name=f"{e.name} {len(training) + 1}") for e in experiments]
-        training.append((path, digest, experiments, stamp_of(path, recording)))
-    store = Store(folder, key_of(rig, [digest for _, digest, _, _ in training], drifts))
+    training = training_of(rig, reference)
+    store = Store(folder, key_of_all(rig, training, drifts))
     own = None if pool is not None else ThreadPoolExecutor(count)
     try:
         with threadpool_limits(limits=1, user_api="blas"):
@@ -138,9 +129,57 @@ def watch(
             own.shutdown()
 
 
+def drifts_of(drift: Mapping[str, float] | None) -> dict[str, float]:
+    """Drift by name, that of all others by "", see `watch`."""
+    return {"": DRIFT, **(drift or {})}
+
+
+@dataclass(frozen=True)
+class Trained:
+    """A reference recording that can be used.
+
+    Attributes:
+        path: its file.
+        digest: hash of its content.
+        experiments: its joints.
+        stamp: when it was made.
+    """
+
+    path: Path
+    digest: str
+    experiments: list[Experiment]
+    stamp: Stamp
+
+
+def training_of(rig: Rig, reference: Sequence[Path]) -> list[Trained]:
+    """The reference recordings of a watch.
+
+    Raises:
+        InputError: one cannot be used, or is there twice.
+    """
+    training: list[Trained] = []
+    for path in reference:
+        recording = _read(rig, path)
+        experiments = _usable(rig, recording)
+        digest = digest_of(path)
+        if any(digest == known.digest for known in training):
+            raise InputError(f"reference {path} has the content of another one; a recording counts once")
+        if any(
+            experiments[0].name == known.experiments[0].name for known in training
+        ):  # files of two folders
+            experiments = [replace(e, name=f"{e.name} {len(training) + 1}") for e in experiments]
+        training.append(Trained(path, digest, experiments, stamp_of(path, recording)))
+    return training
+
+
+def key_of_all(rig: Rig, training: Sequence[Trained], drifts: Mapping[str, float]) -> str:
+    """What a watch's results belong to."""
+    return key_of(rig, [each.digest for each in training], dict(drifts))
+
+
 def _watched(
     rig: Rig,
-    training: list[tuple[Path, str, list[Experiment], Stamp]],
+    training: list[Trained],
     recordings: Sequence[Path],
     store: Store,
     drifts: Mapping[str, float],
@@ -152,25 +191,27 @@ def _watched(
     """See `watch`."""
     assert pool is not None
     kept = store.reference()
-    experiments = [e for _, _, own, _ in training for e in own]
+    experiments = [e for each in training for e in each.experiments]
     session = Session(rig, experiments, pool, cores, drifts, None if kept is None else kept[0], say)
     if kept is None:
         told = []
-        for path, digest, own, stamp in training[:LEFT_OUT]:
-            say(f"reference {path}")
+        for each in training[:LEFT_OUT]:
+            say(f"reference {each.path}")
+            own = each.experiments
             known = session.knowledge_without(own[0].name) if len(training) > 1 else None
-            told.append(Seen(str(path), digest, stamp, asked(session, own, known), reference=True))
+            answer = asked(session, own, known)
+            told.append(Seen(str(each.path), each.digest, each.stamp, answer, reference=True))
         store.keep_reference(session.posterior, told)
     else:
         told = kept[1]
     seen = store.seen()
     anew = 0
     for number, path in enumerate(recordings, start=1):
-        each = _seen_of(session, path, seen, say, f"recording {number} of {len(recordings)}, {path}")
-        if each is not None:
+        new = _seen_of(session, path, seen, say, f"recording {number} of {len(recordings)}, {path}")
+        if new is not None:
             anew += 1
-            seen[each.digest] = each
-            store.keep(each)
+            seen[new.digest] = new
+            store.keep(new)
     healthy = healthy_by([each.answer for each in told if each.answer is not None])
     ordered = tuple(sorted(seen.values(), key=lambda each: (each.stamp.seconds, each.recording)))
     answers = [each.answer for each in ordered if each.answer is not None]

@@ -33,3 +33,27 @@ def test_limits_take_units():
     assert one.size == pytest.approx(0.0174533, rel=1e-5) and other.size == 2e-12
     with pytest.raises(InputError, match="finite"):
         limits_of(["cylinder.coulomb_friction=inf"])
+
+
+@pytest.mark.parametrize(
+    ("extra", "said"),
+    [
+        (["--live", "nowhere.csv"], "nowhere.csv"),
+        (["--live", "tcp://127.0.0.1"], "HOST:PORT"),
+        (["--live", "run.parquet"], "while they are written"),
+        (["--live", "run.csv", "--recordings", "."], "either --recordings or --live"),
+        (["--recordings", ".", "--port", "6351"], "--port"),
+        (["--recordings", ".", "--foxglove", "8765"], "--foxglove"),
+        (["--live", "run.csv", "--idle", "-1"], "--idle"),
+        (["--live", "run.csv", "--token", "short"], "--token"),
+    ],
+    ids=lambda each: " ".join(each) if isinstance(each, list) else "",
+)
+def test_what_is_wrong_with_live_is_said_in_one_line(extra, said, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "healthy.csv").write_text("time_s,joint.command_V,joint.angle_deg\n0,1,2\n0.01,1,2\n")
+    for name in ("run.csv", "run.parquet"):
+        (tmp_path / name).write_text("")
+    assert run(["watch", "joint_bench", "healthy.csv", *extra]) == 2
+    lines = capsys.readouterr().err.strip().splitlines()
+    assert said in lines[-1]

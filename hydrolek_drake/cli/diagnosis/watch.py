@@ -1,5 +1,6 @@
 """`hydrolek watch`: what changed on a machine since its healthy reference."""
 
+import math
 from pathlib import Path
 from typing import Annotated
 
@@ -13,6 +14,9 @@ from hydrolek_drake.watching.listing import listed
 ALARM = 3
 """Exit status where there is an alarm."""
 
+PAGE_PORT = 6351
+"""Of the page of `--live`: next to those of the link and of a stream."""
+
 
 def watch(
     rig: Annotated[str, typer.Argument(metavar="RIG", help="name of a built-in rig, or a rig file")],
@@ -20,9 +24,36 @@ def watch(
         list[Path], typer.Argument(metavar="REFERENCE", help="recordings of the healthy machine")
     ],
     recordings: Annotated[
-        list[Path],
+        list[Path] | None,
         typer.Option(metavar="FOLDER|FILE", help="later recordings: files, or folders of them (repeatable)"),
-    ],
+    ] = None,
+    live: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE|FOLDER|tcp://HOST:PORT",
+            help="in place of --recordings: follow a file or bag that grows, a folder in which recordings appear, or "
+            "listen for a stream; until Ctrl-C",
+        ),
+    ] = None,
+    port: Annotated[
+        int | None,
+        typer.Option(min=0, max=65535, help="of the page of --live, on this machine; 6351 if not given"),
+    ] = None,
+    foxglove: Annotated[
+        int | None,
+        typer.Option(min=0, max=65535, metavar="PORT", help="with --live: publish for Foxglove there (8765)"),
+    ] = None,
+    token: Annotated[
+        str | None,
+        typer.Option(
+            envvar="HYDROLEK_LINK_TOKEN",
+            help="with --live: what a sender over a network must show first; a new one is made if none is given",
+        ),
+    ] = None,
+    idle: Annotated[
+        float | None,
+        typer.Option(metavar="SECONDS", help="with --live: end once nothing has come for so long"),
+    ] = None,
     drift: Annotated[
         list[str] | None,
         typer.Option(
@@ -65,7 +96,15 @@ def watch(
         raise InputError(f"--false-alarms {false_alarms:g}: a probability between 0 and 1 is needed")
     refuse_twice(reference)
     drifts = dict(_drift(each) for each in drift or [])
-    files = listed(recordings, reference)
+    if (live is None) == (not recordings):
+        raise InputError("watch: give either --recordings or --live")
+    given = {"--port": port, "--foxglove": foxglove, "--idle": idle}
+    for name, value in given.items():
+        if live is None and value is not None:
+            raise InputError(f"{name} is an option of --live")
+    if idle is not None and not 0.0 < idle < math.inf:
+        raise InputError(f"--idle {idle:g}: a number of seconds above zero is needed")
+    files = listed(recordings or [], reference)
 
     from hydrolek_drake.rigs import load_rig
 
@@ -80,6 +119,16 @@ def watch(
             raise InputError(f"reference {path}: no such file")
 
     from hydrolek_drake.watching.alarms import AlarmRule
+
+    if live is not None:
+        from hydrolek_drake.cli.diagnosis.watch_live import watch_live
+        from hydrolek_drake.watching.live.running import Options
+
+        rule = AlarmRule(false_alarms, persistence)
+        options = Options(live, out, drifts, rule, PAGE_PORT if port is None else port, foxglove, token, idle)
+        if watch_live(loaded, reference, options, limits):
+            raise typer.Exit(ALARM)
+        return
     from hydrolek_drake.watching.results import write_watch
     from hydrolek_drake.watching.watch import watch as run_watch
     from hydrolek_drake.watching.words import sentences

@@ -1,0 +1,218 @@
+"""The live watch measured: processor share, two hours with a bad link, gaps and jumps, and faults that begin.
+
+python scripts/live_study.py share                     # ten joints at 100 Hz, processor time a second
+python scripts/live_study.py prepare --out out/live    # three references of the bench, fitted
+python scripts/live_study.py stream --out out/live     # two hours, 5 % each lost, doubled and late, as fast as it goes
+python scripts/live_study.py faults --out out/live     # leakages that begin after a minute
+
+The bench is the challenge's (equations and an integrator of its own), so that the fitted model is not the machine.
+"""
+
+import argparse
+import json
+import resource
+import time
+from pathlib import Path
+
+import numpy as np
+
+from hydrolek_drake.challenge.build import build_of
+from hydrolek_drake.challenge.cases import driven, with_concealed
+from hydrolek_drake.challenge.drawing import SIZING_STEP_S
+from hydrolek_drake.challenge.driving import SAMPLE_S
+from hydrolek_drake.recordings import Recording, read_recording, write_signals
+from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.watching.live.blocks import healthy_of
+from hydrolek_drake.watching.live.following import Follower
+from hydrolek_drake.watching.live.running import fitted_rig
+from hydrolek_drake.watching.live.samples import Samples
+from hydrolek_drake.watching.live.settings import LOST
+from hydrolek_drake.watching.watch import drifts_of, watch
+
+FALSE_ALARMS = 0.005
+PIECE_S = 600.0
+LATEST_S = 0.2
+UNITS = {"joint.command": "V", "joint.angle": "rad"}
+LEAKAGE = "cylinder.cross_port_leakage"
+
+
+def bench(leakage=0.0):
+    """The challenge's bench with numbers of its own."""
+    build = build_of(load_rig("joint_bench"))
+    rng = np.random.default_rng(7)
+    own = {f: build.rig.value(path) * float(rng.uniform(0.92, 1.08)) for f, path in build.spread.items()}
+    machine = build.nominal._replace(**own)
+    if leakage:
+        machine = with_concealed(machine, {LEAKAGE: {"conductance_m3_per_s_Pa": leakage}})
+    return build, machine
+
+
+def played(build, machine, seconds, seed):
+    """Command and rounded, noisy reading of a drive."""
+    rng = np.random.default_rng(seed)
+    noise, resolution = (build.rig.value(f"sensor.{name}") for name in ("noise", "resolution"))
+    done = driven(build, machine, "open", seconds, rng, noise, SIZING_STEP_S)
+    reading = done.reading + noise * rng.standard_normal(done.reading.size)
+    return done.volts, np.round(reading / resolution) * resolution
+
+
+def references(out):
+    """Files of the reference, made if they are missing."""
+    out.mkdir(parents=True, exist_ok=True)
+    build, machine = bench()
+    paths = [out / f"reference_{number}.csv" for number in range(3)]
+    for number, path in enumerate(paths):
+        if not path.exists():
+            volts, angle = played(build, machine, 40.0, 10 + number)
+            time_s = np.arange(volts.size) * SAMPLE_S
+            write_signals(path, time_s, {"joint.command": volts, "joint.angle": angle}, UNITS)
+    return paths
+
+
+def prepared(out):
+    """Fitted rig and what healthy innovations are like."""
+    paths, rig = references(out), load_rig("joint_bench")
+    watch(rig, paths, [], folder=out / "watch", cores=1)
+    fitted, joints = fitted_rig(rig, paths, out / "watch", drifts_of(None))
+    return fitted, healthy_of(fitted, joints, [read_recording(path) for path in paths])
+
+
+def spoilt(time_s, volts, angle, rng):
+    """Messages in the order in which a bad link brings them: 5 % each lost, doubled and late; and when they come."""
+    count = time_s.size
+    keep = np.flatnonzero(rng.random(count) >= LOST)
+    again = keep[rng.random(keep.size) < LOST]
+    order = np.concatenate([keep, again])
+    arrival = time_s[order] + 0.002
+    late = rng.random(order.size) < LOST
+    arrival[late] += rng.uniform(0.0, LATEST_S, late.sum())
+    by = np.argsort(arrival, kind="stable")
+    order = order[by]
+    return Samples(
+        time_s[order], {"joint.command": volts[order], "joint.angle": angle[order]}, UNITS
+    ), arrival[by]
+
+
+def fed(follower, samples, arrival, at_a_time=50):
+    """Hand messages on in small parts, as they come."""
+    for first in range(0, samples.time.size, at_a_time):
+        part = slice(first, first + at_a_time)
+        signals = {key: values[part] for key, values in samples.signals.items()}
+        follower.take(Samples(samples.time[part], signals, UNITS), float(arrival[part][-1]), time.time())
+
+
+def memory_mb():
+    """What this process takes now [MB]."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * resource.getpagesize() / 1e6
+
+
+def stream(out, hours):
+    """A healthy machine for hours over a bad link."""
+    fitted, healthy = prepared(out)
+    windows = []
+    follower = Follower(fitted, healthy, FALSE_ALARMS, on_window=lambda w: windows.append(w.time.size))
+    build, machine = bench()
+    rng, begin, memory = np.random.default_rng(5), 0.0, []
+    for number in range(round(hours * 3600.0 / PIECE_S)):
+        volts, angle = played(build, machine, PIECE_S, 1000 + number)
+        time_s = begin + np.arange(volts.size) * SAMPLE_S
+        spent = time.process_time()
+        fed(follower, *spoilt(time_s, volts, angle, rng))
+        spent = time.process_time() - spent
+        begin = float(time_s[-1]) + 60.0  # the machine is set up anew: a gap of a minute
+        memory.append(memory_mb())
+        evidence = float(np.nanmax(follower.detector.evidence))
+        print(
+            f"{begin:.0f} s: {memory[-1]:.1f} MB, {1e3 * spent / PIECE_S:.2f} ms processor time a second, evidence "
+            f"{evidence:.1f} of {follower.detector.threshold:.1f}, windows {len(windows)}, {follower.alarm_text!r}, "
+            f"{json.dumps(follower.merger.counts.as_dict())}, events {follower.happened}",
+            flush=True,
+        )
+
+
+def faults(out):
+    """Leakages that begin after a minute of health, and gaps and jumps of the clock before."""
+    fitted, healthy = prepared(out)
+    for leakage in (0.0, 2e-14, 5e-14, 1e-13, 2e-13, 4e-13):
+        follower = Follower(fitted, healthy, FALSE_ALARMS)
+        rng = np.random.default_rng(6)
+        begin = 0.0
+        for seconds, size, seed, jump in (
+            (30.0, 0.0, 21, 5.0),
+            (30.0, 0.0, 22, -20.0),
+            (120.0, leakage, 23, 0.0),
+        ):
+            volts, angle = played(*bench(size), seconds, seed)
+            time_s = begin + np.arange(volts.size) * SAMPLE_S
+            fed(follower, *spoilt(time_s, volts, angle, rng))
+            onset = begin
+            begin = float(time_s[-1]) + jump
+        events = "; ".join(f"{e.time:.2f} s {e.text}" for e in follower.events)
+        when = follower.detector.alarmed
+        after = "never" if when is None else f"{when - onset:.1f} s"
+        print(f"leakage {leakage:g} m^3/(s Pa): alarmed after {after}; {events}", flush=True)
+
+
+def share(seconds):
+    """Ten joints of both arms that move at once."""
+    rig = load_rig("hydrolek")
+    joints = tuple(j for j in rig.joints if j[-2:] in ("j1", "j2", "j3", "j4", "j5"))
+    from hydrolek_drake.rollout.onwards import onwards
+
+    rng = np.random.default_rng(3)
+    time_s = np.arange(0.0, seconds, 0.01)
+    volts = np.repeat(rng.uniform(-0.5, 0.5, (time_s.size // 100 + 1, len(joints))), 100, axis=0)[
+        : time_s.size
+    ]
+    (machine,) = onwards(rig, joints, 0.0, {})
+    places = [machine.joints.index(joint) for joint in joints]
+    neutral = np.array([rig.value(f"joints.{joint}.command.neutral") for joint in machine.joints])
+    reading = []
+    for now, row in zip(time_s, volts, strict=True):
+        reading.append(machine.signals[places][:, [0, 3, 4]])
+        full = neutral.copy()
+        full[places] = row
+        machine.advance(full, now + 0.01)
+    noise = np.array([rig.value(f"joints.{joint}.sensor.noise") for joint in joints])
+    measured = np.array(reading)
+    measured[:, :, 0] += noise * rng.standard_normal(measured.shape[:2])
+    measured[:, :, 1:] += 1e4 * rng.standard_normal(measured[:, :, 1:].shape)
+    signals = {}
+    for place, joint in enumerate(joints):
+        signals[f"{joint}.command"], signals[f"{joint}.angle"] = volts[:, place], measured[:, place, 0]
+        signals[f"{joint}.pressure_a"] = measured[:, place, 1]
+        signals[f"{joint}.pressure_b"] = measured[:, place, 2]
+    half = time_s.size // 2
+    recording = Recording("made", time_s[:half], {k: v[:half] for k, v in signals.items()}, Path("made.csv"))
+    healthy = healthy_of(rig, joints, [recording])
+    follower = Follower(rig, healthy, FALSE_ALARMS)
+    rest = {key: values[half:] for key, values in signals.items()}
+    spent, count = time.process_time(), time_s.size - half
+    for first in range(0, count, 5):
+        part = {key: values[first : first + 5] for key, values in rest.items()}
+        follower.take(Samples(time_s[half + first : half + first + 5], part), 0.0, time.time())
+    spent = time.process_time() - spent
+    print(
+        f"{len(joints)} joints ({len(machine.joints)} stepped): {100 * spent / (count * 0.01):.1f} % of a core"
+    )
+    print(f"alarm: {follower.alarm_text!r}; scale {np.round(healthy.scale[:, 0] / noise, 2)} of the noise")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("what", choices=("share", "prepare", "stream", "faults"))
+    parser.add_argument("--out", type=Path, default=Path("out/live"))
+    parser.add_argument("--hours", type=float, default=2.0)
+    parser.add_argument("--seconds", type=float, default=60.0)
+    given = parser.parse_args()
+    if given.what == "share":
+        share(given.seconds)
+    elif given.what == "prepare":
+        print(prepared(given.out)[1])
+    elif given.what == "stream":
+        stream(given.out, given.hours)
+    else:
+        faults(given.out)
