@@ -233,11 +233,12 @@ def _beside(known: Known, best: Judged) -> Judged:
 def _astray(known: Known) -> bool:
     """Whether the best structure leaves more of the held-out data than the training data lead one to expect.
 
-    That is the noise where it explains these; else its own discrepancy, which differs between movements by more.
+    That is as much, to what noise is known to; where it does not explain these, what it leaves is its own discrepancy,
+    which differs between movements by more.
     """
     best = known.judged[0]
     left = best.hypothesis.fit.over_noise
-    return best.over_noise > (NOISE.ahead if left <= NOISE.ahead else NOISE.explained_ahead * left)
+    return best.over_noise > max(left, 1.0) * (NOISE.ahead if left <= NOISE.ahead else NOISE.explained_ahead)
 
 
 def _far_in_all(known: Known) -> bool:
