@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.search.cost import cost, dispersion, price
+from hydrolek_drake.diagnosis.search.cost import cost, dispersion
 from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.splitting import short_blocks
@@ -92,13 +92,9 @@ class Judged:
 
 
 def with_probabilities(judged: Sequence[Judged]) -> list[Judged]:
-    """The same, with probabilities, the most probable first.
-
-    What the best structure leaves beyond the noise makes the likelihood flatter, and not what is known before any data.
-    """
+    """The same, with probabilities, the most probable first."""
     scale = dispersion_of(min(judged, key=lambda j: j.half_chi_squared))
-    prior = np.array([price(j.hypothesis) for j in judged])
-    support = np.array([j.support for j in judged]) / scale - (1.0 - 1.0 / scale) * prior
+    support = np.array([j.support for j in judged]) / scale
     weight = np.exp(support - support.max())
     weight /= weight.sum()
     ranked = sorted(zip(weight.tolist(), judged, strict=True), key=lambda pair: -pair[0])

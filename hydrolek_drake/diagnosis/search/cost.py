@@ -2,7 +2,7 @@
 
 import math
 
-from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE
+from hydrolek_drake.diagnosis.settings import GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 from hydrolek_drake.identification.least_squares import Fit
 
@@ -22,12 +22,6 @@ def misfit(fit: Fit) -> float:
     """
     share = fit.objective / max(fit.counted, 1)
     return fit.counted * (1.0 + math.log(share)) if share > 1.0 else fit.objective
-
-
-def price(structure: Hypothesis) -> float:
-    """Log-odds against a structure before any data, for its additions and their parameters."""
-    additions = sum(c.cost for c in structure.effects)
-    return EVIDENCE.effect_cost * additions + EVIDENCE.parameter_cost * structure.extra
 
 
 def dispersion(squares: float, counted: int, parameters: int) -> float:
