@@ -63,7 +63,8 @@ class TcpSource:
         except (OSError, OverflowError, UnicodeError) as error:
             reason = getattr(error, "strerror", None) or str(error)
             raise InputError(
-                f"--live: cannot listen at {host}:{port}: {reason}; choose another port"
+                f"--live: cannot listen at {host}:{port}: {reason}; "
+                "choose an address of this computer, or another port"
             ) from None
         self.port: int = self._server.server_address[1]
         self._host = host
