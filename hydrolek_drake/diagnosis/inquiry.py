@@ -168,8 +168,8 @@ class Inquiry:
         self.say("holding the structures against data that none of them was fitted to")
         weighted = tuple(held_out)
         try:
-            weighted = tuple(weighted_by(bench, found.best, held_out))
             bench.training = tuple(weighted_by(bench, found.best, bench.training))
+            weighted = tuple(weighted_by(bench, found.best, held_out))
             judged = judge_structures(bench, found, weighted, self.settings, self.cores)
         except KeyboardInterrupt:
             interrupted = True

@@ -10,8 +10,7 @@ from hydrolek_drake.identification.start import without_offset
 from hydrolek_drake.identification.thinning import Blocks, block_size
 from hydrolek_drake.physics.probes import PROBES, SUPPLY
 from hydrolek_drake.rollout.kernel import PULLED
-from hydrolek_drake.rollout.moved import state_at_reading
-from hydrolek_drake.rollout.rest import rest_state_at_reading
+from hydrolek_drake.rollout.rest import rest_state_at_reading, state_at_reading
 from hydrolek_drake.rollout.rollout import Outcome, Signals
 from hydrolek_drake.rollout.run import Run
 

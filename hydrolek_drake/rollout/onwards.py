@@ -4,19 +4,20 @@ Steps of the integration end where a call ends and where a delayed command arriv
 times that are asked for; so calls from row to row of a rollout give its numbers.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict
 
 import numpy as np
 
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import command
 from hydrolek_drake.physics.records import as_usual
 from hydrolek_drake.physics.serial_arm import scratch
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.joint_rows import room
-from hydrolek_drake.rollout.kernel import SIGNALS
-from hydrolek_drake.rollout.moved import pull_all
+from hydrolek_drake.rollout.joint_rows import PLAY, STATE, put_state, room, state_at
+from hydrolek_drake.rollout.kernel import SIGNALS, pulled
 from hydrolek_drake.rollout.rest import rest_state
 from hydrolek_drake.rollout.rollout import PreparedJoint
 from hydrolek_drake.rollout.together import JointsTogether, RunTogether, moving_with, put_begun
@@ -232,3 +233,20 @@ def onwards(
         ]
         found.append(JointsOnwards(rig, moving, time, np.array(own)))
     return found
+
+
+@njit(cache=True)
+def pull_all(rows: np.ndarray, spans: np.ndarray, told: np.ndarray, measured: np.ndarray) -> None:
+    """Pull joints that move together to what was measured, as `kernel.integrate` does with one before it moves on.
+
+    Args:
+        rows: of `joint_rows.room`, with `STATE` and `PLAY`.
+        spans: how far the next move goes, in time constants of each joint's pull, shape (n,).
+        told: their signals now, before the pull, shape (n, at least 1), the reading first.
+        measured: `kernel.PULLED` of them, NaN where there is no value, shape (n, 3).
+    """
+    for i in range(len(rows)):
+        share = 1.0 - math.exp(-spans[i])
+        s, by = pulled(state_at(rows, i, STATE), share, told[i, 0], measured[i])
+        put_state(rows, i, STATE, s)
+        rows[i, PLAY] += by

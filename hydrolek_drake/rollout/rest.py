@@ -126,3 +126,27 @@ def rest_pressures(joint: Any, side: float, needed: float) -> tuple[float, float
         p_a = joint.supply.tank_pressure
         p_b = _quotient(p.area_a * p_a - needed / lever, p.area_b)
     return p_a, p_b
+
+
+def state_at_reading(joint: np.ndarray, state: np.ndarray, reading: float) -> np.ndarray:
+    """A state, such as an observer's, moved to where the sensor reads a value [rad or m]; all else stays as it is.
+
+    Args:
+        joint: parameter record, shape (1,).
+        state: as of `kernel.integrate`, shape (17,).
+        reading: what was measured [rad or m].
+    """
+    there = state.copy()
+    _move_to_reading(joint, float(reading), there)
+    return there
+
+
+@njit(cache=True)
+def _move_to_reading(joints: np.ndarray, reading: float, state: np.ndarray) -> None:
+    for _ in range(START_STEPS):
+        off = reading - sensor.reading(state[11], state[12], joints[0])
+        if off == 0.0:
+            break
+        state[4] += off
+        state[9] += off
+        state[11] += off

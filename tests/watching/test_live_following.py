@@ -11,8 +11,8 @@ from hydrolek_drake.physics import sensor
 from hydrolek_drake.recordings import Recording, read_recording
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
-from hydrolek_drake.rollout.moved import state_at_reading
 from hydrolek_drake.rollout.onwards import JointOnwards, JointsOnwards
+from hydrolek_drake.rollout.rest import state_at_reading
 from hydrolek_drake.watching.live import windows as gathered
 from hydrolek_drake.watching.live.blocks import healthy_of
 from hydrolek_drake.watching.live.following import Follower
