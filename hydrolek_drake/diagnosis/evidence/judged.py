@@ -65,23 +65,16 @@ class Judged:
         return self.hypothesis.fit.over_noise <= NOISE.ahead and not self.explains_ahead
 
     @property
-    def ahead(self) -> float:
-        """The same; where it is far off, what the model leaves of both data fitted together, see `NOISE.far`."""
-        if self.over_noise <= NOISE.far:
-            return self.over_noise
-        return self.unaccounted
-
-    @property
-    def unaccounted(self) -> float:
-        """Held-out root mean square over the noise that the parameters' uncertainty does not account for."""
-        return math.sqrt(2.0 * self.half_chi_squared / max(self.held_out_counted, 1))
+    def log_density(self) -> float:
+        """Of the held-out data given the training data, less what is the same for all structures."""
+        return -self.half_chi_squared - 0.5 * self.spread
 
     @property
     def support(self) -> float:
         """Log-likelihood of held-out and training data, less the cost of its effects and parameters in each."""
         effect = max(EVIDENCE.effect_cost, 0.5 * GAINS.fidelity * self.held_out_counted)
         added = effect * len(self.hypothesis.effects) + EVIDENCE.parameter_cost * self.hypothesis.extra
-        return -self.half_chi_squared - 0.5 * self.spread - added - 0.5 * cost(self.hypothesis)
+        return self.log_density - added - 0.5 * cost(self.hypothesis)
 
     @property
     def half_chi_squared(self) -> float:

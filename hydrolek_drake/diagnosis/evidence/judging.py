@@ -90,12 +90,12 @@ def pays(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
 
 
 def predicts(judged: Judged, others: Sequence[Judged]) -> bool:
-    """Whether a hypothesis predicts the held-out data better than everything that it contains.
+    """Whether the held-out data are denser given a hypothesis than given everything that it contains.
 
     What lowers the error of the training data alone stands for something else there, such as an error of the step.
     """
     return all(
-        other.ahead > judged.ahead
+        other.log_density < judged.log_density
         for other in others
         if _to_pay(judged.hypothesis, other.hypothesis) > -math.inf
     )

@@ -245,8 +245,18 @@ def _told_apart(runner: Runner) -> float:
     What reaches the noise there, to two standard deviations of its squares, is not told apart by it: what promised most
     goes on.
     """
+    return max(runner.place.objective, _at_noise(runner))
+
+
+def _at_noise(runner: Runner) -> float:
+    """Squares up to which a fit may be at the noise, to two standard deviations of them."""
     count = runner.place.problem.counted
-    return max(runner.place.objective, NOISE.at**2 * count + 2.0 * math.sqrt(2.0 * count))
+    return NOISE.at**2 * count + 2.0 * math.sqrt(2.0 * count)
+
+
+def above_noise(runner: Runner) -> bool:
+    """Whether a structure surely leaves more than noise on its rung."""
+    return runner.place.objective > _at_noise(runner)
 
 
 def _distinct(runners: Sequence[Runner], count: int) -> list[Runner]:

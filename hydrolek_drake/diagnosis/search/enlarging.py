@@ -10,6 +10,7 @@ from hydrolek_drake.diagnosis.fitting.race import (
     Entrant,
     Runner,
     Start,
+    above_noise,
     entered,
     hypotheses_of,
     race,
@@ -191,7 +192,8 @@ def _lessened(
     """Backward elimination: the best structure without each addition, and with what may do as well in its place.
 
     That is a special case, and for the forces of a law the same on the other side of the linkage. Each is fitted from
-    where the best structure led, and by continuation.
+    where the best structure led, and by continuation; where the best one is at the noise, as long as an observer
+    follows them to it, since a free rollout leaves no less.
     """
     best = found.best
     if best is found.lessened or not best.effects:
@@ -214,9 +216,13 @@ def _lessened(
     near = not found.nominal_continued and found.baseline.fit.over_noise < NOISE.far
     if len(best.effects) > 1 or near:  # others were fitted so before, or are beyond doubt
         own = [Entrant(each.effects, of_additions(each.values)) for each in entrants]
-        fitted += race(
-            bench, own, (*_steps(settings.continued, best.fit.over_noise < NOISE.far), settings.again), cores
-        )
+        rungs = (*_steps(settings.continued, best.fit.over_noise < NOISE.far), settings.again)
+        runners = entered(bench, own, rungs[0], cores)
+        for step in rungs:
+            runners = run(bench, runners, (step,), cores, _traced("without"))
+            if best.fit.over_noise <= NOISE.above:
+                runners = [r for r in runners if not (r.place.ended and above_noise(r))]
+        fitted += hypotheses_of(bench, runners, rungs[-1])
     for each in fitted:
         found.keep(each)
 

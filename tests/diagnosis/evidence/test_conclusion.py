@@ -91,10 +91,17 @@ def test_what_strayed_far_off_ahead_predicts_by_what_it_leaves_of_both(effect) -
     assert not predicts(strayed, [nominal, strayed])
     fitted_to_both = replace(strayed, chi_squared=0.9**2 * COUNTED)
     assert predicts(fitted_to_both, [nominal, fitted_to_both])
-    near = replace(_judged((effect["sensor.hysteresis"],), 0.9, ahead=1.06), chi_squared=0.9**2 * COUNTED)
-    assert not predicts(
-        near, [_judged((), 1.0, ahead=1.05), near]
-    )  # nothing strayed: what it predicts counts
+
+
+def test_what_parameters_leave_uncertain_is_no_error_ahead(effect) -> None:
+    """What counts is the density of the held-out data, parameters integrated out, and not what one value leaves."""
+    nominal = replace(_judged((), 1.0, ahead=1.05), chi_squared=1.05**2 * COUNTED, spread=9.0)
+    true = _judged((effect["sensor.hysteresis"],), 0.98, ahead=1.06)
+    assert not predicts(true, [nominal, true])
+    known_to = replace(true, chi_squared=1.03**2 * COUNTED, spread=11.0)
+    assert predicts(known_to, [nominal, known_to])
+    vague = replace(known_to, spread=9.0 + 2.0 * (1.05**2 - 1.03**2) * COUNTED)
+    assert not predicts(vague, [nominal, vague])
 
 
 def test_what_is_named_beside_unlisted_physics_may_have_rivals(effect) -> None:
