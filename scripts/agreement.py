@@ -245,14 +245,14 @@ def write_table(out: Path, name: str, table: str) -> None:
 
 
 def main() -> None:
-    """Run the study and write docs/agreement.md, anew after each diagram."""
+    """Run the study and write docs/evidence/agreement.md, anew after each diagram."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--duration", type=float, default=60.0, help="seconds of random voltage per case")
     parser.add_argument("--step", type=float, default=0.4e-3, help="step of the diagram [s]")
     parser.add_argument("--all", action="store_true", help="then each effect on every other joint")
     parser.add_argument("--own", action="store_true", help="at the step that is taken where none is given")
     parser.add_argument("--closed", action="store_true", help="controllers in both executions")
-    parser.add_argument("--out", type=Path, default=Path("docs/agreement.md"))
+    parser.add_argument("--out", type=Path, default=Path("docs/evidence/agreement.md"))
     arguments = parser.parse_args()
     if arguments.closed:
         write_table(arguments.out, CLOSED, closed_table())

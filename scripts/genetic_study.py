@@ -16,7 +16,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--runs", type=int, default=10, help="searches in each row")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--out", type=Path, default=Path(__file__).parents[1] / "docs")
+    parser.add_argument("--out", type=Path, default=Path(__file__).parents[1] / "docs" / "evidence")
     chosen = parser.parse_args()
     begun = time.perf_counter()
     found = run_study(chosen.seed, chosen.runs, lambda what: print(what, flush=True))

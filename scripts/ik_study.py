@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Inverse kinematics measured: Table 5.3's study of the Jacobian transpose, the closed form, and Drake beside it.
 
-Writes the figures as JSON (`--out`) and prints the tables of docs/kinematics.md.
+Writes the figures as JSON (`--out`) and prints the tables of docs/guides/kinematics.md.
 """
 
 import argparse
@@ -139,7 +139,7 @@ def main() -> None:
     parser.add_argument("--drake-targets", type=int, default=300)
     parser.add_argument("--most-iterations", type=int, default=10_000, help="of the Jacobian transpose")
     parser.add_argument("--seed", type=int, default=53)
-    parser.add_argument("--out", type=Path, default=Path("docs/kinematics.json"))
+    parser.add_argument("--out", type=Path, default=Path("docs/evidence/kinematics.json"))
     arguments = parser.parse_args()
     generator = np.random.default_rng(arguments.seed)
 

@@ -2,8 +2,8 @@
 """Table 5.4 with simulated operators: joystick against assisted teleoperation, on one of the project's plants.
 
 Random starts of the right arm and random pipes; every operator grasps each pipe by joystick, joint by joint, and with
-the console: clicks, confirmation, automatic grasp. Writes the figures as JSON (`--out`) and prints them; docs/teleop.md
-has the table, and hydrolek_drake/teleop/operator.yaml the operators' numbers. `--plant full` is the hydraulic machine
+the console: clicks, confirmation, automatic grasp. Writes the figures as JSON (`--out`) and prints them;
+docs/guides/teleop.md has the table, and hydrolek_drake/teleop/operator.yaml the operators' numbers. `--plant full` is the hydraulic machine
 with contact; `--plant sdp` are chapter 6's models of its joints, from simulated step tests, without contact. While an
 operator thinks and the arm stands still with closed valves, the plant is not simulated; the time counts.
 """
@@ -261,10 +261,10 @@ def main() -> None:
     own = 1e3 * operator_entries("hand")["tolerance"]
     parser.add_argument("--tolerance", type=float, default=own, help="of the operator at the tool, mm")
     parser.add_argument("--plant", choices=("full", "sdp"), default="full")
-    parser.add_argument("--out", type=Path, default=None, help="docs/operator_study_PLANT.json if not given")
+    parser.add_argument("--out", type=Path, default=None, help="docs/evidence/operator_study_PLANT.json if not given")
     arguments = parser.parse_args()
     logging.getLogger("drake").setLevel(logging.WARNING)
-    out = arguments.out or Path(f"docs/operator_study_{arguments.plant}.json")
+    out = arguments.out or Path(f"docs/evidence/operator_study_{arguments.plant}.json")
     settings = joint_settings(load_rig("hydrolek"))
     draw_setup(
         np.random.default_rng(arguments.seed)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Pick and place on the hydraulic plant: where the loose pipe ends, how it was held and what it all took.
 
-Writes the figures as JSON (`--out`) and prints them; docs/teleop.md has them.
+Writes the figures as JSON (`--out`) and prints them; docs/guides/teleop.md has them.
 """
 
 import argparse
@@ -81,7 +81,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--places", type=int, default=len(PLACES), help="how many of them")
-    parser.add_argument("--out", type=Path, default=Path("docs/place_study.json"))
+    parser.add_argument("--out", type=Path, default=Path("docs/evidence/place_study.json"))
     parser.add_argument("--add", action="store_true", help="measure only what --out does not hold yet")
     arguments = parser.parse_args()
     logging.getLogger("drake").setLevel(logging.WARNING)

@@ -182,10 +182,10 @@ def _told(effect: str, values: dict[str, float]) -> str:
 
 
 def main() -> None:
-    """Record, diagnose, write docs/riddles.md."""
+    """Record, diagnose, write docs/evidence/riddles.md."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("out/riddles"))
-    parser.add_argument("--page", type=Path, default=Path("docs/riddles.md"))
+    parser.add_argument("--page", type=Path, default=Path("docs/evidence/riddles.md"))
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--only", type=int, help="number of one riddle, from 1")

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Tables of docs/thesis_machine.md, and of docs/control.md on the linear joint 4 and the grasp, from docs/control.json.
+"""Tables of the thesis's results beside ours, from docs/evidence/control.json.
+
+They stand in docs/evidence/thesis_machine.md, and those of the linear joint 4 and the grasp in docs/guides/control.md.
 
 `hydrolek control bench [--plant full] --out DIR` writes the same comparisons as a page; its `bench.json` is what
-docs/control.json keeps under "sdp" and "full".
+docs/evidence/control.json keeps under "sdp" and "full".
 """
 
 import json
@@ -17,7 +19,7 @@ from hydrolek_drake.control.catalogue import CONTROLLERS
 from hydrolek_drake.control.comparison.bench_tables import MEASURES, Measure, beside, text
 from hydrolek_drake.control.comparison.thesis_tables import GRASP_TABLES, MACHINE_TABLES, printed
 
-RESULTS = Path(__file__).parents[1] / "docs" / "control.json"
+RESULTS = Path(__file__).parents[1] / "docs" / "evidence" / "control.json"
 JOINTS = ("right_j1", "right_j2", "right_j3", "right_j4")
 SHOWN = {
     "step": ("rise_s", "overshoot_percent", "switching"),
@@ -25,7 +27,7 @@ SHOWN = {
     "grasp": ("rise_s", "overshoot_percent", "switching"),
 }
 MISPRINTED = {("step", "pip_scaled"), ("grasp", "pi")}
-"""Columns that repeat another table's (docs/thesis_errata.md): G.10's scaled PIP, G.6's PI."""
+"""Columns that repeat another table's (docs/reference/thesis_errata.md): G.10's scaled PIP, G.6's PI."""
 
 LINEAR = ("pip_idz_a", "pip_idz_b", "pip_idz_c", "pip_forward_a", "pip_forward_b", "pip_forward_c")
 
@@ -162,19 +164,19 @@ def tables() -> Iterator[tuple[str, str, list[str]]]:
     results = json.loads(RESULTS.read_text(encoding="utf-8"))
     full, models = results["full"]["trials"], results["sdp"]["trials"]
     measures = {measure.key: measure for measure in MEASURES}
-    yield "thesis_machine.md", "how near", nearness(full)
+    yield "evidence/thesis_machine.md", "how near", nearness(full)
     for sequence, keys in SHOWN.items():
         for key in keys:
             title = f"{sequence}: {measures[key].title}"
-            yield "thesis_machine.md", title, table(full, sequence, measures[key])
-    yield "thesis_machine.md", "sine: mean error of the wrist [mm]", wrist_table(full)
+            yield "evidence/thesis_machine.md", title, table(full, sequence, measures[key])
+    yield "evidence/thesis_machine.md", "sine: mean error of the wrist [mm]", wrist_table(full)
     plain = ("j1", "j2", "j3", "j4")
-    yield "control.md", "step: switching (6.10)", model_table(models, "step", measures["switching"], plain)
-    yield "control.md", "joint 4 with the linear law", linear_table(models)
+    yield "guides/control.md", "step: switching (6.10)", model_table(models, "step", measures["switching"], plain)
+    yield "guides/control.md", "joint 4 with the linear law", linear_table(models)
     for key in ("rise_s", "overshoot_percent", "mse_deg2", "switching"):
         joints = (*plain, "j4_linear")
         yield (
-            "control.md",
+            "guides/control.md",
             f"grasp: {measures[key].title}",
             model_table(models, "grasp", measures[key], joints),
         )

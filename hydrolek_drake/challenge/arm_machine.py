@@ -21,7 +21,8 @@ UNPRESSED = 1e-9
 """A weight that would press a play together by less than this share of its gap is rounding: it takes up no side."""
 
 STEP_S = 2e-5
-"""Half of it changes the angle by 1.2e-4 deg at most, with a play by 1.6e-3 deg: see docs/concealed_effects.md."""
+"""Half of it changes the angle by 1.2e-4 deg at most, with a play by 1.6e-3 deg
+(docs/evidence/concealed_effects.md)."""
 
 SIZE = 14
 """x, x', P_A, P_B, q, q', flow felt by the supply, cylinder's side and its rate, tilt and its rate, flow felt by the

@@ -178,7 +178,7 @@ def forward_path(gains: PipGains, model: TransferFunction) -> tuple[tuple[float,
     where the model B / A stands in the inner loop. The thesis's denominators belong to a model with one
     sample less delay than the gains were designed for: [1, g1 - 1, g2 - g1 + f0, -g2] for a delay of 3.
     The filter acts on the summed error, whose pole at 1 the integrator's A = 1 - z^-1 cancels: the
-    forward-path form of an integrating joint has no integral action left (docs/control.md).
+    forward-path form of an integrating joint has no integral action left (docs/guides/control.md).
 
     Args:
         gains: of the feedback form.

@@ -1,4 +1,4 @@
-"""The catalogue as a page of documentation, `docs/effects.md`."""
+"""The catalogue as a page of documentation, `docs/reference/effects.md`."""
 
 from hydrolek_drake.effects.catalogue import EFFECTS
 from hydrolek_drake.effects.effect import HOOKS, Effect
@@ -33,7 +33,7 @@ Then write this page anew:
 
 ```console
 python -c "from hydrolek_drake.effects import document; print(document.effects_markdown(), end='')" \\
-  > docs/effects.md
+  > docs/reference/effects.md
 ```
 
 | Hook | What the function gives |

@@ -48,7 +48,8 @@ class StepSizes:
 def sizes_for(rig: Rig) -> StepSizes:
     """Steps that a Diagram of a rig takes where none is given, logged at every one of them.
 
-    With them it stays as near the rollout as a sensor's noise (docs/agreement.md). A rollout bears stiff frictions by
+    With them it stays as near the rollout as a sensor's noise (docs/evidence/agreement.md). A rollout bears stiff
+    frictions by
     an implicit method, a Diagram's explicit one needs steps that see them: two of the rollout's, and a quarter of that
     where a play closes, whose blows take 0.2 ms, or a relief valve sticks in its hysteresis, while nothing but the
     line's volume holds the pressure.

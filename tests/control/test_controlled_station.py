@@ -13,7 +13,7 @@ from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.station.step_sizes import StepSizes
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
-import agreement  # the study that docs/agreement.md records
+import agreement  # the study that docs/evidence/agreement.md records
 
 JOINT = "right_j2"
 

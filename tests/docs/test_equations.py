@@ -1,4 +1,4 @@
-"""docs/equations.md is complete and true: every number is there, and every name and command it gives exists."""
+"""docs/reference/equations.md is complete and true: every number is there, every name and command exists."""
 
 import ast
 import importlib
@@ -35,7 +35,7 @@ FIGURES = [
 
 
 def _rows(part, header):
-    lines = (ROOT / "docs" / "equations.md").read_text(encoding="utf-8").split("## Figures")[part]
+    lines = (ROOT / "docs" / "reference" / "equations.md").read_text(encoding="utf-8").split("## Figures")[part]
     cells = [
         [cell.strip() for cell in line.strip("|").split(" | ")]
         for line in lines.splitlines()

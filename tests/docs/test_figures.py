@@ -9,8 +9,8 @@ import pytest
 import yaml
 
 ROOT = Path(__file__).parents[2]
-FIGURES = yaml.safe_load((ROOT / "docs" / "figures.yaml").read_text(encoding="utf-8"))
-PAGES = [*sorted((ROOT / "docs").glob("*.md")), ROOT / "README.md"]
+FIGURES = yaml.safe_load((ROOT / "docs" / "evidence" / "figures.yaml").read_text(encoding="utf-8"))
+PAGES = [*sorted((ROOT / "docs").rglob("*.md")), ROOT / "README.md"]
 
 
 def _values(tree, key):

@@ -1,16 +1,16 @@
-"""docs/effects.md is the catalogue."""
+"""docs/reference/effects.md is the catalogue."""
 
 from pathlib import Path
 
 from hydrolek_drake.effects import EFFECTS, HOOKS
 from hydrolek_drake.effects.document import effects_markdown
 
-PAGE = Path(__file__).parents[2] / "docs" / "effects.md"
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "effects.md"
 
 
 def test_the_page_is_current():
     assert PAGE.read_text(encoding="utf-8") == effects_markdown(), (
-        "docs/effects.md is old; it says how to write it"
+        "docs/reference/effects.md is old; it says how to write it"
     )
 
 

@@ -97,7 +97,7 @@ def _link_input(rng: np.random.Generator) -> Input:
 
 
 def is_good(line: bytes, longest: int) -> bool:
-    """Whether docs/link.md knows a line; written without the code that is tested."""
+    """Whether docs/reference/link.md knows a line; written without the code that is tested."""
     try:
         text = line.decode("ascii").strip()
     except ValueError:

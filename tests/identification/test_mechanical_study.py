@@ -78,7 +78,7 @@ def test_the_beginning_of_a_search_on_a_logarithmic_scale():
 
 @pytest.mark.long("takes half a minute")
 def test_the_multi_objective_search_errs_less_than_the_thesis_in_the_median():
-    """5.46 in Table 4.7; 5 searches on each of 2 experiments, 30 in docs/genetic_study.md."""
+    """5.46 in Table 4.7; 5 searches on each of 2 experiments, 30 in docs/evidence/genetic_study.md."""
     sums = [
         run.relative_errors.sum()
         for seed in (1, 2)

@@ -11,7 +11,7 @@ from hydrolek_drake.kinematics.forward import tool_pose, wrist_position
 from hydrolek_drake.kinematics.jacobian import tool_jacobian, wrist_jacobian
 
 PRINTED = json.loads((Path(__file__).parents[1] / "data" / "appendix_d.json").read_text())["entries"]
-# What docs/thesis_errata.md says is meant: the same factors and signs, brackets where they belong
+# What docs/reference/thesis_errata.md says is meant: the same factors and signs, brackets where they belong
 CORRECTED = {
     "y5": "C2 * (C3 * ((1424 * C5)/5 + (1847 * S5)/100) + C4 * S3 * ((1847 * C5)/100 - (1424 * S5)/5)) - "
     "S2 * (S3 * ((1424 * C5)/5 + (1847 * S5)/100) - C3 * C4 * ((1847 * C5)/100 - (1424 * S5)/5))",

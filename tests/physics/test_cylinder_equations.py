@@ -63,7 +63,7 @@ def test_rod_force_of_4_9(bench_joint):
 )
 def test_hard_stop_of_4_9_opposes_only_what_goes_further_in(bench_joint, stroke, velocity, expected):
     # (4.9) subtracts F_C and prints x K_p v for x < 0, v < 0: positive, so it would pull the rod further in;
-    # the code takes -x K_p v (docs/thesis_errata.md), which opposes the motion at both ends
+    # the code takes -x K_p v (docs/reference/thesis_errata.md), which opposes the motion at both ends
     joint = bench_joint({"cylinder.stop_penetration": 5e6})
     assert_allclose(cylinder.hard_stop_force(stroke, velocity, joint), expected, rtol=1e-12, atol=0)
     assert cylinder.hard_stop_force(stroke, velocity, joint) * velocity >= 0.0

@@ -8,7 +8,7 @@ from hydrolek_drake.physics import sensor
 from hydrolek_drake.physics.records import JOINT
 
 # Table 3.2: V_min, V_max [V], D_min, D_max [deg], printed V_0 [V] and alpha [V/deg]; the rows whose printed
-# scaling follows from their own range (docs/thesis_errata.md lists the others)
+# scaling follows from their own range (docs/reference/thesis_errata.md lists the others)
 AGREEING = {
     "right J1": (3.71, 11.43, -27.0, 40.6, 6.792, 0.114),
     "right J2": (1.11, 13.54, -10.3, 65.6, 2.794, 0.164),

@@ -23,7 +23,7 @@ BENCH = Path(__file__).parents[1] / "data" / "bench"
 SHORT = ("ga",)
 
 WITHIN_DEG = 0.02
-"""What the executions may be apart (docs/agreement.md)."""
+"""What the executions may be apart (docs/evidence/agreement.md)."""
 
 
 @pytest.fixture(scope="module")

@@ -66,7 +66,7 @@ def test_a_slide_with_a_rated_flow_gives_that_flow():
 
 
 def test_the_built_in_link_is_what_the_wizard_writes_from_its_data_sheet(tmp_path):
-    """docs/own_machine.md has the command."""
+    """docs/guides/own_machine.md has the command."""
     text = (built_in_rigs()["hopsan_link"]).read_text()
     assert text.startswith("# Written by `hydrolek rig new`")
 

@@ -14,7 +14,7 @@ from hydrolek_drake.station.station import make_station
 from hydrolek_drake.station.step_sizes import StepSizes, sizes_for
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
-import agreement  # the study that docs/agreement.md records, here for a few seconds a case
+import agreement  # the study that docs/evidence/agreement.md records, here for a few seconds a case
 
 REQUIRED_DEG = 0.02
 STEP = 0.5e-3  # seconds

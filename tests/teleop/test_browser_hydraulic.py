@@ -1,6 +1,6 @@
 """The whole job in a real browser on the hydraulic plant: clicks, grasp, cut, charts, joystick, a saved trial.
 
-With HYDROLEK_PICTURES set to a folder, the pictures of docs/teleop.md are written there.
+With HYDROLEK_PICTURES set to a folder, the pictures of docs/guides/teleop.md are written there.
 """
 
 import csv

@@ -39,7 +39,8 @@ def challenge(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="no machines are drawn: FMUs of this list, and what each conceals, take their place (docs/fmu.md)",
+            help="no machines are drawn: FMUs of this list, and what each conceals, take their place "
+            "(docs/guides/fmu.md)",
         ),
     ] = None,
     out: Annotated[Path, typer.Option(metavar="DIR", help="folder for cases and results")] = Path(

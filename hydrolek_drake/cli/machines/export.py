@@ -25,7 +25,7 @@ def export(
 ) -> None:
     """Write a rig's model as an FMU for co-simulation: commands in, position and pressures out.
 
-    It runs wherever a Python with this package does (docs/fmu.md).
+    It runs wherever a Python with this package does (docs/guides/fmu.md).
     """
     import math
 

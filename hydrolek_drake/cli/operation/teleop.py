@@ -173,8 +173,8 @@ def teleop(
             )
             if not is_loopback(host):
                 output().print(
-                    "from other machines: by this machine's address, or a name given by --allow-host; docs/teleop.md "
-                    "says what is protected, and how to add TLS",
+                    "from other machines: by this machine's address, or a name given by --allow-host; "
+                    "docs/guides/teleop.md says what is protected, and how to add TLS",
                     markup=False,
                     soft_wrap=True,
                 )

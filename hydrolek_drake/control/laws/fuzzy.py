@@ -175,7 +175,7 @@ class TwoInputFuzzyLaw:
     positive error with a negative voltage. With e = angle - set point it closes the loop, but does not brake:
     its middle row is Z whatever the change, and joint and set point may pass each other at full speed. It is
     also lopsided: (P, P) gives NB where its mirror image (N, N) gives P. The rules used here have the same
-    sets, are symmetric, and brake (docs/control.md). `printed_surface` and `appendix_f_surface` give the table
+    sets, are symmetric, and brake (docs/guides/control.md). `printed_surface` and `appendix_f_surface` give the table
     as it is printed.
 
     Attributes:

@@ -32,7 +32,7 @@ class InverseDeadZone:
 
             u / s_n + alpha3 for u < -beta, 0 for -beta <= u <= beta, u / s_p + alpha6 for u > beta
 
-        The thesis prints u / (s_n + alpha3), which does not invert (6.4) (docs/thesis_errata.md).
+        The thesis prints u / (s_n + alpha3), which does not invert (6.4) (docs/reference/thesis_errata.md).
         """
         if output > self.chatter:
             return min(output / self.slope_positive + self.edge_positive_V, self.highest_V)

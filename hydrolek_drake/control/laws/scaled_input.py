@@ -30,7 +30,7 @@ class ScaledInput:
 
             D_p + U f_p for U > 0, 0 for U = 0, D_n + U f_n for U < 0, then limited to S_n .. S_p
 
-        The thesis prints D_n - U f_n, which would reduce the voltage as U falls (docs/thesis_errata.md).
+        The thesis prints D_n - U f_n, which would reduce the voltage as U falls (docs/reference/thesis_errata.md).
         """
         signal = min(max(output, -self.full), self.full)
         voltage = 0.0

@@ -26,7 +26,7 @@ def exponential_rate(voltage_V: ArrayLike, alpha: Sequence[float] | Array) -> Ar
         alpha4 (1 - exp(-alpha5 (v - alpha6)))  for v > alpha6
 
     The thesis prints (1 - alpha1) exp(...), which is not zero at the edge of the dead-zone and does not
-    saturate; this form gives its figures and tables (docs/thesis_errata.md).
+    saturate; this form gives its figures and tables (docs/reference/thesis_errata.md).
 
     Args:
         voltage_V: any shape.
@@ -52,7 +52,7 @@ def linear_rate(voltage_V: ArrayLike, alpha: Sequence[float] | Array, beta: Sequ
         beta3              for v > beta6
 
     The thesis prints the bounds of the second case in reverse, and beta1 as the last value
-    (docs/thesis_errata.md).
+    (docs/reference/thesis_errata.md).
 
     Args:
         voltage_V: any shape.

@@ -1,4 +1,4 @@
-"""Messages of the link as lines of text, version 1 (thesis section 5.2.6; docs/link.md has them all).
+"""Messages of the link as lines of text, version 1 (thesis section 5.2.6; docs/reference/link.md has them all).
 
 Whoever asks sends one line and gets one line. A request is 14 joint angles in degrees, `RATE` with 14 joystick
 deflections in percent, or one of the words below. The answer to angles, deflections, `STOP`, `CONTROL` and `ALIVE` is

@@ -1,4 +1,4 @@
-"""Samples over TCP: a sender connects and writes the lines of a recording's CSV (docs/watching.md).
+"""Samples over TCP: a sender connects and writes the lines of a recording's CSV (docs/guides/watching.md).
 
 One sender at a time. It listens at the loopback address unless told otherwise, and asks for a token then.
 """
