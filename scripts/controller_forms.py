@@ -25,7 +25,9 @@ Array = NDArray[np.float64]
 
 JOINTS = ("j1", "j2", "j3", "j4")
 SIZE_DEG = 30.0
-DURATION_S = 17.0  # of each of the two steps; the mean squared errors of appendix G fit it (docs/guides/control.md)
+DURATION_S = (
+    17.0  # of each of the two steps; the mean squared errors of appendix G fit it (docs/guides/control.md)
+)
 MODEL_S, CONTROL_S = 0.01, 0.05
 RATIO = round(CONTROL_S / MODEL_S)
 RISE_S, OVERSHOOT = 0.03, 1.5  # what counts as reproduced, as for the feedback form (tests/control)

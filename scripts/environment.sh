@@ -14,9 +14,9 @@ if ! "$python" -c 'import sys; sys.exit(sys.version_info < (3, 10))'; then
 fi
 
 # The console's tests drive a browser where there is one.
-extras=test,realsense
+extras=test,docs,realsense
 for browser in chromium chromium-browser google-chrome; do
-  if command -v "$browser" >/dev/null; then extras=test,realsense,browser; fi
+  if command -v "$browser" >/dev/null; then extras=test,docs,realsense,browser; fi
 done
 
 # What is installed depends on these; where they are as on the last run, there is nothing to do.

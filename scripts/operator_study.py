@@ -262,7 +262,9 @@ def main() -> None:
     own = 1e3 * operator_entries("hand")["tolerance"]
     parser.add_argument("--tolerance", type=float, default=own, help="of the operator at the tool, mm")
     parser.add_argument("--plant", choices=("full", "sdp"), default="full")
-    parser.add_argument("--out", type=Path, default=None, help="docs/evidence/operator_study_PLANT.json if not given")
+    parser.add_argument(
+        "--out", type=Path, default=None, help="docs/evidence/operator_study_PLANT.json if not given"
+    )
     arguments = parser.parse_args()
     logging.getLogger("drake").setLevel(logging.WARNING)
     out = arguments.out or Path(f"docs/evidence/operator_study_{arguments.plant}.json")

@@ -171,7 +171,11 @@ def tables() -> Iterator[tuple[str, str, list[str]]]:
             yield "evidence/thesis_machine.md", title, table(full, sequence, measures[key])
     yield "evidence/thesis_machine.md", "sine: mean error of the wrist [mm]", wrist_table(full)
     plain = ("j1", "j2", "j3", "j4")
-    yield "guides/control.md", "step: switching (6.10)", model_table(models, "step", measures["switching"], plain)
+    yield (
+        "guides/control.md",
+        "step: switching (6.10)",
+        model_table(models, "step", measures["switching"], plain),
+    )
     yield "guides/control.md", "joint 4 with the linear law", linear_table(models)
     for key in ("rise_s", "overshoot_percent", "mse_deg2", "switching"):
         joints = (*plain, "j4_linear")

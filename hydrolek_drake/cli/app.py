@@ -8,9 +8,12 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hydrolek_drake.errors import InputError
+
+if TYPE_CHECKING:
+    import typer
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -161,17 +164,29 @@ def _dispatch(arguments: list[str]) -> int:
     return _run_command(name, rest)
 
 
+def typer_app(name: str) -> "typer.Typer":
+    """A command as typer knows it.
+
+    Args:
+        name: one of `COMMANDS`.
+    """
+    import typer
+
+    entry = COMMANDS[name]
+    found: Any = getattr(importlib.import_module(entry.module), entry.attribute)
+    if isinstance(found, typer.Typer):
+        return found
+    app = typer.Typer(add_completion=False, rich_markup_mode=None)
+    app.command()(found)
+    return app
+
+
 def _run_command(name: str, arguments: list[str]) -> int:
     import typer
 
     from hydrolek_drake.linear_algebra import in_one_thread
 
-    entry = COMMANDS[name]
-    found: Any = getattr(importlib.import_module(entry.module), entry.attribute)
-    if not isinstance(found, typer.Typer):
-        app = typer.Typer(add_completion=False, rich_markup_mode=None)
-        app.command()(found)
-        found = app
+    found = typer_app(name)
     click_error = typer.BadParameter.__mro__[
         2
     ]  # ClickException: some versions of typer carry their own click

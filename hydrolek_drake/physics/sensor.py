@@ -29,7 +29,9 @@ STAGE = Stage(
         "position": (),
         "potentiometer": (
             Parameter(
-                "volts_per_degree", "V/deg", "alpha in (3.1), volts per degree (see docs/reference/thesis_errata.md)"
+                "volts_per_degree",
+                "V/deg",
+                "alpha in (3.1), volts per degree (see docs/reference/thesis_errata.md)",
             ),
             Parameter("zero_voltage", "V", "reading at zero degrees, V_0 in (3.2)"),
         ),

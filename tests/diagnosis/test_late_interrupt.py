@@ -3,10 +3,12 @@
 import json
 from pathlib import Path
 
+import jsonschema
 import pytest
 
 from hydrolek_drake.cli.app import run
 from hydrolek_drake.diagnosis import diagnosis, inquiry
+from hydrolek_drake.diagnosis.report.schema import report_schema
 
 PAIR = Path(__file__).parents[1] / "data" / "bench" / "practice_02"
 
@@ -39,6 +41,7 @@ def test_what_is_known_is_kept_and_written(tmp_path, monkeypatch, where, what, l
     recordings = [str(PAIR / "train.csv"), "--holdout", str(PAIR / "holdout.csv")]
     status = run(["diagnose", "joint_bench", *recordings, "--out", str(tmp_path)])
     report = json.loads((tmp_path / "report.json").read_text())
+    jsonschema.Draft202012Validator(report_schema()).validate(report)
     assert status == 130
     assert report["verdict"] == verdict
     assert report["fit"]["with_effects"]["holdout_over_noise"] < 1.1

@@ -6,11 +6,13 @@ Two pairs, or with --long all fourteen, which takes six minutes on two cores.
 import json
 from pathlib import Path
 
+import jsonschema
 import numpy as np
 import pyarrow.parquet as parquet
 import pytest
 
 from hydrolek_drake.cli.app import run
+from hydrolek_drake.diagnosis.report.schema import report_schema
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.replay import compare, replay
 from hydrolek_drake.rigs import load_rig
@@ -64,6 +66,7 @@ def diagnosed(tmp_path_factory):
 )
 def test_the_concealed_effect_is_named_and_modelled(diagnosed, pair: str) -> None:
     report = json.loads((diagnosed(pair) / "report.json").read_text())
+    jsonschema.Draft202012Validator(report_schema()).validate(report)
     truth = LABELS[pair]["effects"]
     assert {e["id"] for e in report["effects"]} == set(truth)
     assert report["verdict"] == ("missing_physics" if truth else "none")

@@ -35,7 +35,9 @@ FIGURES = [
 
 
 def _rows(part, header):
-    lines = (ROOT / "docs" / "reference" / "equations.md").read_text(encoding="utf-8").split("## Figures")[part]
+    lines = (
+        (ROOT / "docs" / "reference" / "equations.md").read_text(encoding="utf-8").split("## Figures")[part]
+    )
     cells = [
         [cell.strip() for cell in line.strip("|").split(" | ")]
         for line in lines.splitlines()

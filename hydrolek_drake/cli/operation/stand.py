@@ -17,7 +17,9 @@ _Vector = tuple[float, float, float]
 def stand(
     site: Annotated[
         Path | None,
-        typer.Argument(metavar="[SITE]", help="YAML of pipe, grasp, cut and blocks; docs/guides/kinematics.md"),
+        typer.Argument(
+            metavar="[SITE]", help="YAML of pipe, grasp, cut and blocks; docs/guides/kinematics.md"
+        ),
     ] = None,
     pipe_point: Annotated[
         _Vector | None,

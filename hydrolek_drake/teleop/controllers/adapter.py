@@ -71,7 +71,9 @@ def load_adapter(text: str) -> Arms:
         each for each in ("period", "advance", "measured", "signals", "close") if not hasattr(arms, each)
     ]
     if missing:
-        raise InputError(f"adapter {text}: it has no '{missing[0]}'; docs/reference/link.md shows what is needed")
+        raise InputError(
+            f"adapter {text}: it has no '{missing[0]}'; docs/reference/link.md shows what is needed"
+        )
     if not (isinstance(arms.period, (int, float)) and 0.0 < arms.period < np.inf):
         raise InputError(f"adapter {text}: period = {arms.period!r} must be seconds above 0")
     checked(arms.measured(), text)
