@@ -44,6 +44,32 @@ class Posterior:
         return with_drift(self.mean, self.information / self.scale, drift)
 
 
+@dataclass(frozen=True)
+class Reference:
+    """What a session is made of once its reference was fitted; it can be sent to another computer.
+
+    Attributes:
+        rig: the machine's nominal model.
+        training: the reference recordings.
+        drift: path or beginning or section of one -> drift in ranges; "" for all others.
+        posterior: of the machine's own numbers.
+    """
+
+    rig: Rig
+    training: tuple[Experiment, ...]
+    drift: Mapping[str, float]
+    posterior: Posterior
+
+    def session(self, pool: Executor, cores: int) -> "Session":
+        """The session, on this computer.
+
+        Args:
+            pool: threads.
+            cores: that roll out at the same time.
+        """
+        return Session(self.rig, self.training, pool, cores, self.drift, self.posterior)
+
+
 class Session:
     """A rig with its reference: what every question about a later recording needs.
 
@@ -83,6 +109,7 @@ class Session:
         """
         joints = list(dict.fromkeys(e.joint for e in training))
         self.rig, self.cores = rig, cores
+        self._training, self._drift = tuple(training), dict(drift)
         self.joints = tuple(joints)
         nominal = free_of_joints(rig, set(joints))
         self.bench = Workbench(rig, nominal, training, pool, cores)
@@ -102,6 +129,11 @@ class Session:
             self.hypothesis = Hypothesis(
                 (), problem.parameters.values(kept.mean), fit_of(place), self.bench.fine
             )
+
+    @property
+    def reference(self) -> Reference:
+        """The same for another computer."""
+        return Reference(self.rig, self._training, self._drift, self.posterior)
 
     @property
     def knowledge(self) -> Knowledge:

@@ -8,11 +8,9 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from hydrolek_drake.diagnosis.structures.splitting import reasons_against
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.recorded import experiments_of
-from hydrolek_drake.recordings import Recording, read_recording
+from hydrolek_drake.identification.search.cluster_jobs import ClusterJobs
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.watching.alarms import (
     Alarm,
@@ -24,6 +22,7 @@ from hydrolek_drake.watching.alarms import (
     judged,
 )
 from hydrolek_drake.watching.asking import Answer, asked
+from hydrolek_drake.watching.questions import answered, questions_of, read_one, usable
 from hydrolek_drake.watching.reference import Session
 from hydrolek_drake.watching.settings import DRIFT, LEFT_OUT
 from hydrolek_drake.watching.stamps import Stamp, stamp_of
@@ -93,6 +92,7 @@ def watch(
     rule: AlarmRule | None = None,
     cores: int | None = None,
     pool: Executor | None = None,
+    cluster: ClusterJobs | None = None,
     say: Callable[[str], None] = lambda text: None,
 ) -> Watched:
     """Ask every later recording what differs from the reference; what was asked before is not asked again.
@@ -107,6 +107,7 @@ def watch(
         rule: of the alarm.
         cores: that roll out at the same time; all by default.
         pool: threads, or a cluster's; threads of its own by default.
+        cluster: whose workers ask the later recordings, one each at a time; None to ask them here.
         say: told what is being done.
 
     Raises:
@@ -122,7 +123,16 @@ def watch(
     try:
         with threadpool_limits(limits=1, user_api="blas"):
             return _watched(
-                rig, training, recordings, store, drifts, rule or AlarmRule(), count, pool or own, say
+                rig,
+                training,
+                recordings,
+                store,
+                drifts,
+                rule or AlarmRule(),
+                count,
+                pool or own,
+                cluster,
+                say,
             )
     finally:
         if own is not None:
@@ -159,8 +169,8 @@ def training_of(rig: Rig, reference: Sequence[Path]) -> list[Trained]:
     """
     training: list[Trained] = []
     for path in reference:
-        recording = _read(rig, path)
-        experiments = _usable(rig, recording)
+        recording = read_one(rig, path)
+        experiments = usable(rig, recording)
         digest = digest_of(path)
         if any(digest == known.digest for known in training):
             raise InputError(f"reference {path} has the content of another one; a recording counts once")
@@ -186,6 +196,7 @@ def _watched(
     rule: AlarmRule,
     cores: int,
     pool: Executor | None,
+    cluster: ClusterJobs | None,
     say: Callable[[str], None],
 ) -> Watched:
     """See `watch`."""
@@ -206,12 +217,10 @@ def _watched(
         told = kept[1]
     seen = store.seen()
     anew = 0
-    for number, path in enumerate(recordings, start=1):
-        new = _seen_of(session, path, seen, say, f"recording {number} of {len(recordings)}, {path}")
-        if new is not None:
-            anew += 1
-            seen[new.digest] = new
-            store.keep(new)
+    for new in answered(session, questions_of(session, recordings, seen, say), cluster):
+        anew += 1
+        seen[new.digest] = new
+        store.keep(new)
     healthy = healthy_by([each.answer for each in told if each.answer is not None])
     ordered = tuple(sorted(seen.values(), key=lambda each: (each.stamp.seconds, each.recording)))
     answers = [each.answer for each in ordered if each.answer is not None]
@@ -219,61 +228,3 @@ def _watched(
     return Watched(
         rig, tuple(told), ordered, rule, healthy, judgements, alarm_of(answers, judgements, rule), anew
     )
-
-
-def _seen_of(
-    session: Session, path: Path, seen: Mapping[str, Seen], say: Callable[[str], None], title: str
-) -> Seen | None:
-    """What a recording says; None if its content was seen before."""
-    try:
-        digest = digest_of(path)
-    except InputError as error:
-        digest = f"unreadable {path}"
-        return None if digest in seen else Seen(str(path), digest, _no_stamp(path), None, str(error))
-    if digest in seen:
-        return None
-    say(title)
-    recording = None
-    try:
-        recording = _read(session.rig, path)
-        experiments = _usable(session.rig, recording)
-        missing = sorted({e.joint for e in experiments} - set(session.joints))
-        if missing:
-            raise InputError(f"{path} drives {', '.join(missing)}, of which the reference shows nothing")
-        answer = asked(session, experiments)
-    except InputError as error:
-        return Seen(str(path), digest, stamp_of(path, recording), None, str(error))
-    except (
-        ValueError,
-        ArithmeticError,
-    ) as error:  # numbers that nobody foresaw; one recording stops no watch
-        return Seen(str(path), digest, stamp_of(path, recording), None, f"{path} could not be asked: {error}")
-    return Seen(str(path), digest, stamp_of(path, recording), answer)
-
-
-def _no_stamp(path: Path) -> Stamp:
-    try:
-        return stamp_of(path)
-    except OSError:
-        return Stamp(0.0, "none")
-
-
-def _read(rig: Rig, path: Path) -> Recording:
-    from hydrolek_drake.checking.clock import refuse_other_clock
-
-    recording = read_recording(path, rig.columns, dead_time=rig.dead_time)
-    refuse_other_clock(rig, recording)
-    return recording
-
-
-def _usable(rig: Rig, recording: Recording) -> list[Experiment]:
-    """Experiments of a recording that can carry a diagnosis.
-
-    Raises:
-        InputError: it cannot, and why.
-    """
-    experiments = experiments_of(rig, recording)
-    reasons = reasons_against(recording, experiments)
-    if reasons:
-        raise InputError(f"{recording.source}: {reasons[0]}")
-    return experiments

@@ -29,6 +29,13 @@ def challenge(
     workers: Annotated[
         int | None, typer.Option(help="threads; as many as there are cores by default")
     ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="diagnose on an existing Dask cluster, one case on each worker, such as tcp://host:8786",
+        ),
+    ] = None,
     earlier: Annotated[
         Path | None,
         typer.Option(
@@ -55,19 +62,21 @@ def challenge(
         if value is not None and value < 1:
             raise InputError(f"{name} {value}: at least 1 is needed")
 
+    if cluster is not None and (workers is not None or plants is not None):
+        raise InputError(
+            "--cluster is for drawn machines on other computers: no --workers, no --plants beside it"
+        )
+
     from concurrent.futures import ThreadPoolExecutor
 
     from hydrolek_drake.challenge.build import BENCH, rig_names
-    from hydrolek_drake.challenge.cases import digest, labels_of, read_case, record
+    from hydrolek_drake.challenge.cases import digest, labels_of
+    from hydrolek_drake.challenge.diagnosed import Series
     from hydrolek_drake.challenge.drawing import KINDS, draw_cases
     from hydrolek_drake.challenge.results import earlier_scores, write_results
-    from hydrolek_drake.challenge.scoring import score, summaries_markdown
+    from hydrolek_drake.challenge.scoring import summaries_markdown
     from hydrolek_drake.cli.output import console, progress
-    from hydrolek_drake.diagnosis.diagnosis import diagnose
-    from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
-    from hydrolek_drake.diagnosis.report.as_json import as_json
     from hydrolek_drake.files import read_kept, write_whole
-    from hydrolek_drake.recordings import read_recording
     from hydrolek_drake.rigs import load_rig
     from hydrolek_drake.runs.report import prepare_folder
 
@@ -77,7 +86,7 @@ def challenge(
     foreign: dict[str, Any] = {}
     rigs: dict[str, Any] = {}
     if plants is not None:
-        from hydrolek_drake.challenge.plants import read_plants, record_plant
+        from hydrolek_drake.challenge.plants import read_plants
 
         foreign = read_plants(plants)
         prepare_folder(out)
@@ -108,34 +117,12 @@ def challenge(
     told: list[dict[str, Any]] = json.loads(labels)[:first]
     scored = earlier_scores(earlier, sha256) if earlier else {}
     try:
-        count = workers or os.cpu_count() or 1
-        with progress("starting") as tell, ThreadPoolExecutor(count) as pool:
-            for number, label in enumerate(told, start=1):
-                if label["name"] in scored:
-                    continue
-                tell(f"case {number} of {len(told)} ...")
-                folder = out / f"{label['name']}_{sample}"
-                report = folder / "report.json"
-                if not report.exists():
-                    if foreign:
-                        plant = foreign[label["name"]]
-                        machine = plant.rig
-                        record_plant(plant, folder)
-                    else:
-                        case = read_case(label)
-                        machine = rigs[case.rig]
-                        record(machine, case, folder)
-                    recordings = [
-                        read_recording(folder / f"{side}.csv", machine.columns)
-                        for side in ("train", "holdout")
-                    ]
-                    done = diagnose(machine, recordings[:1], recordings[1:], pool, cores=count)
-                    if INTERRUPTED in done.reasons:
-                        raise KeyboardInterrupt
-                    write_whole(report, json.dumps(as_json(done), indent=1))
-                answered = read_kept(report, "the report of a case diagnosed before", ("verdict",))
-                tell(f"case {number} of {len(told)}: {answered['verdict']}")
-                scored[label["name"]] = score(label, answered)
+        with progress("starting") as tell:
+            cases_left = Series(told, scored, out, sample, rigs, foreign, tell)
+            if cluster is None:
+                cases_left.here(workers or os.cpu_count() or 1)
+            else:
+                cases_left.over(cluster)
     finally:  # interrupted too: what is known by then
         known_by_now = [scored[label["name"]] for label in told if label["name"] in scored]
         told_by = write_results(out, sha256, known_by_now)

@@ -1,8 +1,9 @@
 """`hydrolek watch`: what changed on a machine since its healthy reference."""
 
+import contextlib
 import math
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,11 +12,23 @@ from hydrolek_drake.cli.settings import SetOption, parse_settings
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.watching.listing import listed
 
+if TYPE_CHECKING:
+    from hydrolek_drake.identification.search.cluster_jobs import ClusterJobs
+
 ALARM = 3
 """Exit status where there is an alarm."""
 
 PAGE_PORT = 6351
 """Of the page of `--live`: next to those of the link and of a stream."""
+
+
+def _cluster(address: str | None) -> "contextlib.AbstractContextManager[ClusterJobs | None]":
+    """A cluster that asks recordings, if one is named."""
+    if address is None:
+        return contextlib.nullcontext()
+    from hydrolek_drake.identification.search.cluster_jobs import ClusterJobs
+
+    return ClusterJobs(address)
 
 
 def watch(
@@ -78,6 +91,13 @@ def watch(
     workers: Annotated[
         int | None, typer.Option(min=1, help="threads; as many as there are cores by default")
     ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="ask recordings on an existing Dask cluster, one on each worker, such as tcp://host:8786",
+        ),
+    ] = None,
     set_: SetOption = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="folder for table and page, and to go on from")
@@ -98,6 +118,10 @@ def watch(
     drifts = dict(_drift(each) for each in drift or [])
     if (live is None) == (not recordings):
         raise InputError("watch: give either --recordings or --live")
+    if cluster is not None and (live is not None or workers is not None):
+        raise InputError(
+            "--cluster is for --recordings on other computers: no --live, no --workers beside it"
+        )
     given = {"--port": port, "--foxglove": foxglove, "--idle": idle}
     for name, value in given.items():
         if live is None and value is not None:
@@ -133,7 +157,7 @@ def watch(
     from hydrolek_drake.watching.watch import watch as run_watch
     from hydrolek_drake.watching.words import sentences
 
-    with progress("starting") as tell:
+    with progress("starting") as tell, _cluster(cluster) as jobs:
         watched = run_watch(
             loaded,
             reference,
@@ -142,6 +166,7 @@ def watch(
             drift=drifts,
             rule=AlarmRule(false_alarms, persistence),
             cores=workers,
+            cluster=jobs,
             say=lambda text: tell(f"{text} ..."),
         )
         told = sentences(watched, limits)
