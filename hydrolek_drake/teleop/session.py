@@ -259,6 +259,8 @@ class OperatorSession:
         machine = self._machine.state()
         with self._lock:
             self._after_moving(machine)
+            moving = self._stage is Stage.MOVING
+            done, left = self._undertaking.progress(machine) if moving else (0.0, None)
             return {
                 "stage": self._stage.name.lower(),
                 "instruction": self._stage.value,
@@ -284,6 +286,8 @@ class OperatorSession:
                 "angles_deg": np.degrees(machine.position).round(2).tolist(),
                 "desired_deg": np.degrees(machine.desired).round(2).tolist(),
                 "seconds": self._undertaking.seconds(),
+                "done": round(done, 4),
+                "left_s": None if left is None else round(left, 1),
                 "manual": machine.manual,
                 "limits_deg": _SLIDERS_DEG,
                 "signals": None if machine.signals is None else shown(machine.signals),

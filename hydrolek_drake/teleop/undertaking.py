@@ -11,6 +11,7 @@ from hydrolek_drake.teleop.machine_state import MachineState
 from hydrolek_drake.teleop.plan import TaskPlan
 from hydrolek_drake.teleop.sequencer import Mode
 from hydrolek_drake.teleop.stages import STEPS_OF
+from hydrolek_drake.teleop.time_left import TimeLeft
 
 
 class Undertaking:
@@ -31,6 +32,7 @@ class Undertaking:
         self._asked: object = None  # the planning whose plan is still wanted
         self._began: float | None = None
         self._took: float | None = None
+        self._left: TimeLeft | None = None
         self.plan: TaskPlan | None = None
         self.held: tuple[TaskPlan, str] | None = None
 
@@ -71,7 +73,7 @@ class Undertaking:
                 except InputError as error:
                     failed(error)
                     return
-                self.plan = plan
+                self.plan, self._left = plan, TimeLeft(plan)
                 started(plan)
 
         def after(planning: "Future[None]") -> None:
@@ -108,6 +110,14 @@ class Undertaking:
         ):  # an aborted release is begun again from the task before it
             self.held = (plan, state.step)
         return state
+
+    def progress(self, state: MachineState) -> tuple[float, float | None]:
+        """Share of the task under way that is done, and seconds that are left; see `TimeLeft`.
+
+        Args:
+            state: of the machine while it moves.
+        """
+        return (0.0, None) if self._left is None else self._left.told(state)
 
     def seconds(self) -> float | None:
         """Since the task was confirmed, until it ended."""

@@ -1,5 +1,7 @@
 """The page in a real browser: four clicks, confirmation, stop, resume, done; bad clicks; two browsers."""
 
+import os
+
 import numpy as np
 import pytest
 from casting import cast_crossing
@@ -45,6 +47,33 @@ def test_four_clicks_in_a_browser_do_the_task(browser, served):
     page.click("#resume")
     page.wait_for_function("() => document.querySelector('#say').innerText.includes('Done after')")
     assert page.locator("li.done").count() == 6 and not errors
+
+
+def test_while_the_arms_move_task_time_left_and_charts_are_on_one_screen(browser, served):
+    page = browser.new_page()
+    page.set_viewport_size({"width": 1372, "height": 882})
+    page.goto(served.address)
+    click_the_pipe(page)
+    page.keyboard.press("Enter")
+    page.wait_for_function(
+        "() => /about .* left/.test(document.querySelector('#whole').innerText)", timeout=60_000
+    )
+    page.evaluate("window.scrollTo(0, 0)")
+    if "HYDROLEK_PICTURES" in os.environ:
+        page.wait_for_timeout(4000)
+        page.screenshot(path=os.path.join(os.environ["HYDROLEK_PICTURES"], "console_time_left.png"))
+    for name in ("#tasks", "#camera .picture", "#last"):
+        box = page.locator(name).bounding_box()
+        assert box["y"] >= 0.0 and box["y"] + box["height"] <= 882.0, name
+    assert not page.locator("#edge_sliders").is_visible()
+    before = int(page.get_attribute("#whole", "aria-valuenow"))
+    page.wait_for_function(
+        "before => Number(document.querySelector('#whole').getAttribute('aria-valuenow')) > before",
+        arg=before,
+    )
+    says(page, "Done after", timeout=120_000)
+    assert not page.locator("#whole").is_visible() and page.locator("#edge_sliders").is_visible()
+    page.close()
 
 
 def test_bad_clicks_are_told_in_the_browser_and_a_second_one_watches(browser, served):
