@@ -30,7 +30,7 @@ function makeCharts(box, keys, pace) {
   function draw({canvas, chart, arm}) {
     const ratio = window.devicePixelRatio || 1, w = canvas.clientWidth, h = canvas.clientHeight;
     if (!w) return;
-    if (canvas.width !== Math.round(w * ratio)) { canvas.width = Math.round(w * ratio); canvas.height = Math.round(h * ratio); }
+    if (canvas.width !== Math.round(w * ratio) || canvas.height !== Math.round(h * ratio)) { canvas.width = Math.round(w * ratio); canvas.height = Math.round(h * ratio); }
     const c = canvas.getContext("2d"), left = 44, bottom = 18, top = 16, now = samples[samples.length - 1].t;
     c.setTransform(ratio, 0, 0, ratio, 0, 0); c.clearRect(0, 0, w, h);
     const joints = shown.flatMap((input, i) => input.checked ? [i] : []);
