@@ -16,6 +16,7 @@ from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.identification.search.cluster_jobs import ClusterJobs
 from hydrolek_drake.recordings import Recording, read_recording
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.runs.remaining import Remaining
 from hydrolek_drake.watching.asking import Answer, asked
 from hydrolek_drake.watching.reference import Reference, Session
 from hydrolek_drake.watching.stamps import Stamp, stamp_of
@@ -34,7 +35,7 @@ def questions_of(
     session: Session, recordings: Sequence[Path], known: Mapping[str, Seen], say: Callable[[str], None]
 ) -> Iterator[Question]:
     """Recordings whose content was not seen before, each read when it is its turn."""
-    given = set(known)
+    given, remaining = set(known), Remaining(len(recordings))
     for number, path in enumerate(recordings, start=1):
         try:
             digest = digest_of(path)
@@ -42,11 +43,13 @@ def questions_of(
             digest = f"unreadable {path}"
             if digest not in given:
                 yield Question(Seen(str(path), digest, _no_stamp(path), None, str(error)), [])
+            remaining.one_ended(at_once=True)
             continue
         if digest in given:
+            remaining.one_ended(at_once=True)
             continue
         given.add(digest)
-        say(f"recording {number} of {len(recordings)}, {path}")
+        say(f"recording {number} of {len(recordings)}, {path}{remaining.words()}")
         recording = None
         try:
             recording = read_one(session.rig, path)
@@ -59,6 +62,7 @@ def questions_of(
             yield Question(Seen(str(path), digest, stamp_of(path, recording), None, problem), [])
         else:
             yield Question(Seen(str(path), digest, stamp_of(path, recording), None), experiments)
+            remaining.one_ended()
 
 
 def answered(session: Session, questions: Iterable[Question], cluster: ClusterJobs | None) -> Iterator[Seen]:

@@ -118,7 +118,7 @@ def challenge(
     scored = earlier_scores(earlier, sha256) if earlier else {}
     try:
         with progress("starting") as tell:
-            cases_left = Series(told, scored, out, sample, rigs, foreign, tell)
+            cases_left = Series(told, scored, out, sample, rigs, foreign, tell, tell.more)
             if cluster is None:
                 cases_left.here(workers or os.cpu_count() or 1)
             else:
