@@ -3,7 +3,7 @@
 
 Every form of a family is simulated on the SDP models (6.2), (6.3), (6.20), many at a time, for the steps of appendix G,
 and judged by the printed rise time and overshoot, each measured against the set point and against the final value, as
-MATLAB's `stepinfo` does. Prints the tables of docs/guides/control.md; in brackets how far a form is off, in what
+MATLAB's `stepinfo` does. Prints the tables of docs/evidence/control.md; in brackets how far a form is off, in what
 counts as reproduced (0.03 s, 1.5 points).
 """
 
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 JOINTS = ("j1", "j2", "j3", "j4")
 SIZE_DEG = 30.0
 DURATION_S = (
-    17.0  # of each of the two steps; the mean squared errors of appendix G fit it (docs/guides/control.md)
+    17.0  # of each of the two steps; the mean squared errors of appendix G fit it (docs/evidence/control.md)
 )
 MODEL_S, CONTROL_S = 0.01, 0.05
 RATIO = round(CONTROL_S / MODEL_S)

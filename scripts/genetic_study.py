@@ -1,6 +1,8 @@
-"""The study of thesis sections 4.5 and 4.6: searches compared on the mechanical model; results go to docs/.
+"""The study of thesis sections 4.5 and 4.6: searches compared on the mechanical model.
 
-Run as `python scripts/genetic_study.py [--runs 10] [--seed 1] [--out docs]`.
+Results go to docs/evidence and docs/pictures.
+
+Run as `python scripts/genetic_study.py [--runs 10] [--seed 1] [--out DIR]`.
 """
 
 import argparse
@@ -16,12 +18,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--runs", type=int, default=10, help="searches in each row")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--out", type=Path, default=Path(__file__).parents[1] / "docs" / "evidence")
+    parser.add_argument("--out", type=Path, help="folder for all of it; the documentation's if not given")
     chosen = parser.parse_args()
     begun = time.perf_counter()
     found = run_study(chosen.seed, chosen.runs, lambda what: print(what, flush=True))
     seconds = time.perf_counter() - begun
-    written = write_study(found, chosen.out, chosen.seed, datetime.date.today().isoformat(), seconds)
+    docs = Path(__file__).parents[1] / "docs"
+    folder, pictures = docs / "evidence", docs / "pictures"
+    if chosen.out is not None:
+        folder, pictures = chosen.out, chosen.out / "pictures"
+    today = datetime.date.today().isoformat()
+    written = write_study(found, folder, pictures, chosen.seed, today, seconds)
     print(as_markdown(found), *written, sep="\n")
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Inverse kinematics measured: Table 5.3's study of the Jacobian transpose, the closed form, and Drake beside it.
 
-Writes the figures as JSON (`--out`) and prints the tables of docs/guides/kinematics.md.
+Writes the figures as JSON (`--out`) and prints the tables of docs/evidence/kinematics.md.
 """
 
 import argparse

@@ -3,7 +3,7 @@
 
 Random starts of the right arm and random pipes; every operator grasps each pipe by joystick, joint by joint, and with
 the console: clicks, confirmation, automatic grasp. Writes the figures as JSON (`--out`) and prints them;
-docs/guides/teleop.md has the table, and hydrolek_drake/teleop/operator.yaml the operators' numbers. `--plant full`
+docs/evidence/teleop.md has the table, and hydrolek_drake/teleop/operator.yaml the operators' numbers. `--plant full`
 is the hydraulic machine with contact; `--plant sdp` are chapter 6's models of its joints, from simulated step tests,
 without contact. While an operator thinks and the arm stands still with closed valves, the plant is not simulated; the
 time counts.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Pick and place on the hydraulic plant: where the loose pipe ends, how it was held and what it all took.
 
-Writes the figures as JSON (`--out`) and prints them; docs/guides/teleop.md has them.
+Writes the figures as JSON (`--out`) and prints them; docs/evidence/teleop.md has them.
 """
 
 import argparse

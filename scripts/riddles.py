@@ -182,10 +182,10 @@ def _told(effect: str, values: dict[str, float]) -> str:
 
 
 def main() -> None:
-    """Record, diagnose, write docs/evidence/riddles.md."""
+    """Record, diagnose, write the table (docs/evidence/riddles.md has it)."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("out/riddles"))
-    parser.add_argument("--page", type=Path, default=Path("docs/evidence/riddles.md"))
+    parser.add_argument("--page", type=Path, help="for the table; riddles.md in --out if not given")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--only", type=int, help="number of one riddle, from 1")
@@ -208,7 +208,7 @@ def main() -> None:
             print(number, report["verdict"], [e["id"] for e in report["effects"]], solved(riddle, report))
             reports.append(report)
     if arguments.only is None:
-        write_whole(arguments.page, markdown(riddles, reports))
+        write_whole(arguments.page or arguments.out / "riddles.md", markdown(riddles, reports))
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 """From picture to grasp and cut, measured on the hydraulic plant: error at the grasp by source, cut, and times.
 
 Pipes upright, lying and tilted, at three distances, either arm grasping. Writes the figures as JSON (`--out`) and
-prints them; docs/guides/teleop.md has the table.
+prints them; docs/evidence/teleop.md has the table.
 """
 
 import argparse

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Tables of the thesis's results beside ours, from docs/evidence/control.json.
 
-They stand in docs/evidence/thesis_machine.md, and those of the linear joint 4 and the grasp in docs/guides/control.md.
+They stand in docs/evidence/thesis_machine.md, and those of Table 6.10, the linear joint 4 and the grasp in
+docs/evidence/control.md.
 
 `hydrolek control bench [--plant full] --out DIR` writes the same comparisons as a page; its `bench.json` is what
 docs/evidence/control.json keeps under "sdp" and "full".
@@ -172,15 +173,15 @@ def tables() -> Iterator[tuple[str, str, list[str]]]:
     yield "evidence/thesis_machine.md", "sine: mean error of the wrist [mm]", wrist_table(full)
     plain = ("j1", "j2", "j3", "j4")
     yield (
-        "guides/control.md",
+        "evidence/control.md",
         "step: switching (6.10)",
         model_table(models, "step", measures["switching"], plain),
     )
-    yield "guides/control.md", "joint 4 with the linear law", linear_table(models)
+    yield "evidence/control.md", "joint 4 with the linear law", linear_table(models)
     for key in ("rise_s", "overshoot_percent", "mse_deg2", "switching"):
         joints = (*plain, "j4_linear")
         yield (
-            "guides/control.md",
+            "evidence/control.md",
             f"grasp: {measures[key].title}",
             model_table(models, "grasp", measures[key], joints),
         )

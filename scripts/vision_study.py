@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Vision measured: intersection over union on labelled frames, and the targets' error on rendered pipes.
 
-Writes the figures as JSON (`--out`) and prints a summary; docs/guides/vision.md has the tables.
+Writes the figures as JSON (`--out`) and prints a summary; docs/evidence/vision.md has the tables.
 """
 
 import argparse

@@ -89,9 +89,8 @@ def thesis_target(pixel: ArrayLike, depth: ArrayLike) -> Array:
     X_t = Z tan(0.089 (x - 320)) + 275 mm,  Y_t = Z tan(0.089 (y - 240)),  Z_t = Z
 
     Two things differ from the real camera, and are kept here as printed: equal angles a pixel are not a
-    pinhole's (docs/guides/vision.md has the difference), and the signs. Pixels count downwards, so Y_t is positive
-    below
-    the centre; and a point in the middle of the picture lies 275 mm to the *left* of the right shoulder.
+    pinhole's (docs/evidence/vision.md has the difference), and the signs. Pixels count downwards, so Y_t is positive
+    below the centre; and a point in the middle of the picture lies 275 mm to the *left* of the right shoulder.
 
     Args:
         pixel: x to the right and y down, in px, shape (..., 2).

@@ -142,7 +142,7 @@ def test_mean_squared_errors_of_g_3s_linear_joint_4(linear, tuning):
 
 
 def test_tuning_c_of_g_3s_linear_joint_4(linear):
-    """Rise time within 5 %, overshoot within half a point; of a and b the errors agree (docs/guides/control.md)."""
+    """Rise time within 5 %, overshoot within half a point; of a and b the errors agree (docs/evidence/control.md)."""
     theirs = STEP_TABLES["pip_idz_c"]
     measured = linear["pip_idz_c"].step
     assert measured.rise_s == pytest.approx(theirs["rise_s"]["j4_linear"], rel=0.05)

@@ -15,7 +15,7 @@ from hydrolek_drake.control.laws.pi import PiLaw
 from hydrolek_drake.control.thesis_gains import entry, voltage_limit_V
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
-import controller_forms  # the search that docs/guides/control.md tells
+import controller_forms  # the search that docs/evidence/control.md tells
 
 STEP = {"j1": 30.0, "j2": 30.0, "j3": -30.0, "j4": 30.0}
 
@@ -54,7 +54,7 @@ def test_pip_with_scaled_input(joint):
 @pytest.mark.parametrize("joint", ("j1", "j2", "j3"))
 @pytest.mark.parametrize("tuning", "abc")
 def test_forward_path_with_the_sum_one_sample_late(tuning, joint):
-    """Joint 2 against the set point, 1 and 3 against the final value, as by `stepinfo` (docs/guides/control.md)."""
+    """Joint 2 against the set point, 1 and 3 against the final value, as by `stepinfo` (docs/evidence/control.md)."""
     rise, overshoot = _measured(f"pip_forward_{tuning}", joint, 17.0, against_final=joint != "j2")
     printed = _printed(f"pip_forward_{tuning}", joint)
     assert rise == pytest.approx(printed[0], abs=0.04 if (joint, tuning) == ("j3", "c") else 0.03)

@@ -35,9 +35,8 @@ FIGURES = [
 
 
 def _rows(part, header):
-    lines = (
-        (ROOT / "docs" / "reference" / "equations.md").read_text(encoding="utf-8").split("## Figures")[part]
-    )
+    page = ROOT / "docs" / "reference" / "equations.md"
+    lines = page.read_text(encoding="utf-8").split("## Figures")[part]
     cells = [
         [cell.strip() for cell in line.strip("|").split(" | ")]
         for line in lines.splitlines()

@@ -36,7 +36,7 @@ def test_5_2_as_printed():
 
 
 def test_5_2_misses_the_pinhole_by_18_mm_at_most():
-    """docs/guides/vision.md: equal angles a pixel against the pinhole camera with the same field of view, at 1 m."""
+    """docs/evidence/vision.md: equal angles a pixel against the pinhole camera with the same field of view, at 1 m."""
     camera, middle = thesis_camera(), np.array([320.0, 240.0])
     columns = np.arange(0, 640, 5.0)
     printed = thesis_target(np.stack([columns, np.full_like(columns, 240)], -1), 1.0)[:, 0] - 0.275

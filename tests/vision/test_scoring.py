@@ -28,7 +28,7 @@ def test_score_is_the_intersection_over_the_union(pipe):
 
 
 def test_on_rendered_tables_a_wrong_selection_says_that_it_is_unsure():
-    """Required: mean 0.92, and none below 0.5 without a warning; a part of the tables of docs/guides/vision.md."""
+    """Required: mean 0.92, and none below 0.5 without a warning; a part of the tables of docs/evidence/vision.md."""
     clicks = []
     for seed in (50, 51, 52):
         generator = np.random.default_rng(seed)

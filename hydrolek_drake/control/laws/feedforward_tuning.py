@@ -59,7 +59,7 @@ def tuning_data() -> dict[str, Any]:
 
 @cache
 def tuning() -> FeedforwardTuning:
-    """The tuning found on perturbed machines (docs/guides/control.md)."""
+    """The tuning found on perturbed machines (docs/evidence/control.md)."""
     return FeedforwardTuning(**{key: float(item["value"]) for key, item in tuning_data()["tuning"].items()})
 
 

@@ -14,7 +14,7 @@ class ForwardPathLaw:
         den(z^-1) u_k = num(z^-1) s_k
 
     where s is the sum of errors up to now, or with `delayed_sum` up to the sample before: a forward-Euler
-    integrator, which is the form that gives Table G.4 (docs/guides/control.md). num = k_I (1 - z^-1) cancels the
+    integrator, which is the form that gives Table G.4 (docs/evidence/control.md). num = k_I (1 - z^-1) cancels the
     sum's pole, so the law acts on the error itself and leaves a steady error inside the chatter band.
 
     Past outputs enter limited, which is all the anti-windup that this form needs.

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.files import results_folder, write_results
+from hydrolek_drake.files import write_results
 from hydrolek_drake.identification.genetic.settings import SIMPLE
 from hydrolek_drake.identification.mechanical.mechanical_model import mechanical_parameters
 from hydrolek_drake.identification.mechanical.study import Run, study_data
@@ -139,17 +139,15 @@ def learning_picture(runs: Sequence[Run], name: str) -> bytes:
 
 
 def write_study(
-    found: dict[str, list[Run]], folder: Path, seed: int, date: str, seconds: float
+    found: dict[str, list[Run]], folder: Path, pictures: Path, seed: int, date: str, seconds: float
 ) -> list[Path]:
-    """Write JSON, tables and pictures; each under a temporary name first."""
-    with results_folder(folder / "pictures"):
-        pass
+    """Write JSON and tables to one folder, pictures to another; each under a temporary name first."""
     contents: dict[str, bytes] = {
         "genetic_study.json": (json.dumps(as_json(found, seed, date, seconds), indent=1) + "\n").encode(),
         "genetic_study_tables.md": (
             f"# Results of scripts/genetic_study, {date}, seed {seed}, {seconds / 60.0:.0f} min\n\n"
             + as_markdown(found)
         ).encode(),
-        **{f"pictures/{name}.png": learning_picture(found["sweep"], name) for name in CURVES},
     }
-    return write_results(folder, contents)
+    drawn = {f"{name}.png": learning_picture(found["sweep"], name) for name in CURVES}
+    return write_results(folder, contents) + write_results(pictures, drawn)
