@@ -145,7 +145,7 @@ def write_study(
     contents: dict[str, bytes] = {
         "genetic_study.json": (json.dumps(as_json(found, seed, date, seconds), indent=1) + "\n").encode(),
         "genetic_study_tables.md": (
-            f"# Results of scripts/genetic_study, {date}, seed {seed}, {seconds / 60.0:.0f} min\n\n"
+            f"# Results of scripts/genetic_study.py, {date}, seed {seed}, {seconds / 60.0:.0f} min\n\n"
             + as_markdown(found)
         ).encode(),
     }
