@@ -10,7 +10,8 @@ from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.lockstep import Place, descend, fit_of, with_slopes
+from hydrolek_drake.identification.lockstep import descend, with_slopes
+from hydrolek_drake.identification.place import Place, fit_of
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.replay.display import display_unit

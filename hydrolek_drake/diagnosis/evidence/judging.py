@@ -26,7 +26,8 @@ from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import Fit
-from hydrolek_drake.identification.lockstep import Place, descend, with_slopes
+from hydrolek_drake.identification.lockstep import descend, with_slopes
+from hydrolek_drake.identification.place import Place
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
 

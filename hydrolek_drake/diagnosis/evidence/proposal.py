@@ -18,7 +18,8 @@ from hydrolek_drake.diagnosis.settings import EXPERIMENTS, GAINS
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.channel import Channel
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.lockstep import Place, with_slopes
+from hydrolek_drake.identification.lockstep import with_slopes
+from hydrolek_drake.identification.place import Place
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
 

@@ -14,8 +14,9 @@ from hydrolek_drake.diagnosis.settings import FITS, NOISE, Rung
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.lockstep import Place, descend, fit_of, with_slopes
+from hydrolek_drake.identification.lockstep import descend, with_slopes
 from hydrolek_drake.identification.parameter_set import Free
+from hydrolek_drake.identification.place import Place, fit_of
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
 

@@ -26,7 +26,8 @@ from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.lockstep import Place, descend
+from hydrolek_drake.identification.lockstep import descend
+from hydrolek_drake.identification.place import Place
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
 

@@ -8,8 +8,8 @@ import numpy as np
 from hydrolek_drake.identification.continuation import Continuation
 from hydrolek_drake.identification.experiment import Experiment
 from hydrolek_drake.identification.least_squares import GOOD_ENOUGH, Fit, fit_from
-from hydrolek_drake.identification.lockstep import Place, fit_of
 from hydrolek_drake.identification.parameter_set import ParameterSet
+from hydrolek_drake.identification.place import Place, fit_of
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether, problem_of
 from hydrolek_drake.identification.secant_descent import SecantDescent
