@@ -19,11 +19,11 @@ This page is written by `hydrolek_drake.effects.document.effects_markdown()`; a 
 _HOW_TO = """## How to add an effect: one file and one test
 
 1. Add `<stage>_<name>.py` to the folder of `hydrolek_drake/effects/listed/` that it belongs to. It declares
-   `EFFECT = Effect(id="<stage>.<name>", ...)` with equation, formula, source, parameters (each with a neutral value, its unit at the end of its name), what to
-   inspect on the machine and what it can be confused with, and registers one compiled function per hook with
-   `@EFFECT.hook("<hook>")` above `@njit`. The function must return the hook's neutral contribution when the effect's
-   size is neutral. `cylinder_coulomb_friction.py` is a good pattern. The file is found by itself; the rig files, both
-   executions and this page know it at once.
+   `EFFECT = Effect(id="<stage>.<name>", ...)` with equation, formula, source, parameters (each with a neutral
+   value, its unit at the end of its name), what to inspect on the machine and what it can be confused with, and
+   registers one compiled function per hook with `@EFFECT.hook("<hook>")` above `@njit`. The function must return the
+   hook's neutral contribution when the effect's size is neutral. `cylinder_coulomb_friction.py` is a good pattern.
+   The file is found by itself; the rig files, both executions and this page know it at once.
 2. Add its closed form to `tests/effects/test_effect_laws.py` and a size to the tables of
    `tests/effects/test_catalogue.py`, `tests/rollout/test_bench_recordings.py` and `scripts/agreement_effects.json`,
    whose tests then check that neutral changes nothing bit for bit, that it shows when on, that the integration
