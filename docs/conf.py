@@ -9,6 +9,7 @@ import hydrolek_drake
 
 project = "hydrolek_drake"
 author = "the authors of hydrolek_drake"
+html_show_copyright = False
 version = release = hydrolek_drake.__version__
 
 extensions = [
