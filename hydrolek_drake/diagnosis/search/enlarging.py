@@ -24,7 +24,7 @@ from hydrolek_drake.diagnosis.search.openings import Opening, observed
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import GAINS, NOISE, Rung, Settings
 from hydrolek_drake.diagnosis.structures.addition import names_of
-from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, widenings
+from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, redundant, widenings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
 
@@ -191,9 +191,10 @@ def _lessened(
 ) -> None:
     """Backward elimination: the best structure without each addition, and with what may do as well in its place.
 
-    That is a special case, and for the forces of a law the same on the other side of the linkage. Each is fitted from
-    where the best structure led, and by continuation; where the best one is at the noise, as long as an observer
-    follows them to it, since a free rollout leaves no less.
+    That is a special case; for the forces of a law the same on the other side of the linkage; and for a law the effects
+    that are known at its stage, since it may describe one of them that was fitted in a wrong local minimum. Each is
+    fitted from where the best structure led, and by continuation; where the best one is at the noise, as long as an
+    observer follows them to it, since a free rollout leaves no less.
     """
     best = found.best
     if best is found.lessened or not best.effects:
@@ -211,6 +212,7 @@ def _lessened(
         for start in special.starts[: settings.starts]
     ]
     entrants += _across(best)
+    entrants += _named_in_place(best, candidates, settings)
     rung = replace(settings.again, keep=len(entrants))
     fitted = race(bench, entrants, (rung,), cores)
     near = not found.nominal_continued and found.baseline.fit.over_noise < NOISE.far
@@ -225,6 +227,28 @@ def _lessened(
         fitted += hypotheses_of(bench, runners, rungs[-1])
     for each in fitted:
         found.keep(each)
+
+
+def _named_in_place(
+    structure: Hypothesis, candidates: Sequence[Candidate], settings: Settings
+) -> list[Entrant]:
+    """The same structure with an effect that is known at the stage of its law in place of this."""
+    law = [c for c in structure.effects if isinstance(c, LawTerm)]
+    places = {(c.joint, c.stage) for c in law}
+    rest = tuple(c for c in structure.effects if c not in law)
+    values = {
+        path: value
+        for path, value in structure.values.items()
+        if not any(path.startswith(c.path + ".") for c in law)
+    }
+    return [
+        Entrant((*rest, candidate), {**values, **start})
+        for candidate in candidates
+        if (candidate.joint, candidate.stage) in places
+        and candidate.size_path not in structure.ids
+        and not redundant(rest, candidate)
+        for start in candidate.starts[: settings.starts]
+    ]
 
 
 def _across(structure: Hypothesis) -> list[Entrant]:
