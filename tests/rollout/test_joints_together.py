@@ -62,7 +62,9 @@ def _off_deg(
     ids=["healthy", "droop", "payload", "friction and leak", "rocking base", "play"],
 )
 def test_joints_move_as_in_the_diagram(two_joints, values) -> None:
-    step = 1e-4 if any("backlash" in path for path in values) else None  # contacts, as in docs/evidence/agreement.md
+    step = (
+        1e-4 if any("backlash" in path for path in values) else None
+    )  # contacts, as in docs/evidence/agreement.md
     assert _off_deg(two_joints.with_values(values), step).max() < ALLOWED_DEG
 
 
