@@ -9,7 +9,7 @@ from typing import Any
 
 from hydrolek_drake.compiled import use_cache_for_this_source
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 
 FUNCTIONS = ("diagnose", "fit", "load_rig", "read", "replay", "to_pandas", "watch")
 

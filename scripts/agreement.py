@@ -28,7 +28,7 @@ from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.files import read_kept, write_whole
 from hydrolek_drake.physics import load
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.rigs.geometry import FROM_ARM
+from hydrolek_drake.rigs.arm_loads import FROM_ARM
 from hydrolek_drake.rigs.reading import rig_from_tree
 from hydrolek_drake.rigs.rig import Rig
 from hydrolek_drake.rollout import roll_out

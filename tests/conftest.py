@@ -1,5 +1,6 @@
 """Order of the tests, which of them run, and what several folders have need of: two joints that move together."""
 
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
@@ -64,17 +65,36 @@ def recorded_together() -> Callable[..., tuple[Recording, np.ndarray]]:
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Tests that take long are wanted now and then, and not with every change."""
-    parser.addoption("--long", action="store_true", help="also run the tests that are marked long")
+    parser.addoption("--all", action="store_true", help="also run the tests that are marked thorough")
+    parser.addoption("--long", action="store_true", help="run all of these, and those that are marked long")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Long tests are skipped unless they are asked for.
+    """Thorough and long tests are skipped unless they are asked for.
 
     Groups that stay together come first: they take long, and at the end one worker would wait for the other.
     """
     items.sort(key=lambda item: item.get_closest_marker("xdist_group") is None)
     if config.getoption("--long"):
         return
+    cases: Counter[str] = Counter()
     for item in items:
+        name = item.nodeid.partition("[")[0]
+        cases[name] += 1
         if (marker := item.get_closest_marker("long")) is not None:
             item.add_marker(pytest.mark.skip(reason=f"{marker.args[0]}: --long"))
+        elif not config.getoption("--all") and _is_thorough(item, cases[name]):
+            item.add_marker(pytest.mark.skip(reason="of the second tier: --all"))
+
+
+def _is_thorough(item: pytest.Item, number: int) -> bool:
+    """Whether a test is marked so and is none of the cases that the mark leaves to each change.
+
+    Args:
+        item: the test.
+        number: of the case, among those of the test.
+    """
+    if (marker := item.get_closest_marker("thorough")) is None:
+        return False
+    but = marker.kwargs.get("but", 0)
+    return number > but if isinstance(but, int) else item.callspec.id not in but

@@ -44,6 +44,11 @@ COMMANDS: dict[str, CommandEntry] = {
         "diagnose",
         "find out what physics the model leaves out, and model it",
     ),
+    "demo": CommandEntry(
+        "hydrolek_drake.cli.diagnosis.demo",
+        "demo",
+        "diagnose the project's own recordings of a machine that leaks",
+    ),
     "watch": CommandEntry(
         "hydrolek_drake.cli.diagnosis.watch",
         "watch",

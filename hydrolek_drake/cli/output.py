@@ -6,6 +6,7 @@ from contextlib import contextmanager
 
 from rich.console import Console
 from rich.markup import escape
+from rich.table import Table
 
 from hydrolek_drake.cli.telling import Telling, kept_alive
 
@@ -56,3 +57,13 @@ def progress(first: str) -> Iterator[Telling]:
 
         with kept_alive(Telling(line, _LOG_S, first=first), _LOG_S / 4) as telling:
             yield telling
+
+
+def text_table(head: list[str], body: list[list[str]]) -> Table:
+    """Rows of text as a table of the terminal."""
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
+    for i, title in enumerate(head):
+        table.add_column(escape(title), justify="left" if i == 0 else "right")
+    for row in body:
+        table.add_row(*row)
+    return table

@@ -6,7 +6,6 @@ joint limits, that is the cylinders' strokes, or one clear reason why there is n
 
 import math
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,24 +13,14 @@ from numpy.typing import ArrayLike, NDArray
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.chain import Chain, arm_chain
 from hydrolek_drake.kinematics.direction_kernel import solve_direction
+from hydrolek_drake.kinematics.obstacles import ON_LIMIT, Obstacle, find_obstacle
 from hydrolek_drake.kinematics.position_kernel import solve_position
 
 Array = NDArray[np.float64]
 
-ON_LIMIT = 1e-6
-"""Angle in rad: a joint this little outside its limit is set onto it, which moves the tool by some 2 um at most."""
-
 _MOST_POSTURES = 32
 _NO_AIM = np.zeros(3)
 _PARALLEL = 1e-12  # squared sine of an angle that counts as none
-
-
-class Obstacle(Enum):
-    """What keeps the arm from a target."""
-
-    POSITION = "position"
-    ORIENTATION = "orientation"
-    STROKE_LIMITS = "stroke limits"
 
 
 @dataclass(frozen=True)
@@ -142,8 +131,6 @@ def _failure(chain: Chain, target: Array, aim: Array | None, explain: bool) -> I
     none = np.empty((0, 6))
     if not explain:
         return InverseResult(none)
-    from hydrolek_drake.kinematics.obstacles import find_obstacle
-
     obstacle, reason = find_obstacle(chain, target, aim)
     return InverseResult(none, obstacle, reason)
 

@@ -1,20 +1,31 @@
 """Why an arm cannot reach a target: too far, the direction, or the ends of the cylinders' strokes."""
 
 import math
+from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hydrolek_drake.kinematics.chain import Chain
 from hydrolek_drake.kinematics.direction_kernel import direction_of, solve_direction
-from hydrolek_drake.kinematics.inverse import ON_LIMIT, Obstacle
 from hydrolek_drake.kinematics.position_kernel import solve_position
 
 Array = NDArray[np.float64]
 
+ON_LIMIT = 1e-6
+"""Angle in rad: a joint this little outside its limit is set onto it, which moves the tool by some 2 um at most."""
+
 _ANY_ANGLE = np.array([np.full(5, -np.pi), np.full(5, np.pi)])
 _NO_AIM = np.zeros(3)
 _NOT_WORTH_NAMING = 1e-4  # rad: a joint's excess beside larger ones of other joints
+
+
+class Obstacle(Enum):
+    """What keeps the arm from a target."""
+
+    POSITION = "position"
+    ORIENTATION = "orientation"
+    STROKE_LIMITS = "stroke limits"
 
 
 def find_obstacle(chain: Chain, target: Array, aim: Array | None) -> tuple[Obstacle, str]:

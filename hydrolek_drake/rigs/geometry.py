@@ -1,28 +1,38 @@
-"""Checks across a rig's parameters, and the loads that follow from the arms' geometry."""
+"""Checks across a rig's parameters."""
 
-import functools
 import math
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import Protocol
 
 from hydrolek_drake.effects.catalogue import EFFECTS
+from hydrolek_drake.effects.effect import Effect
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.valve import EDGES
-from hydrolek_drake.rigs.entries import Entry
-
-if TYPE_CHECKING:
-    from hydrolek_drake.rigs.rig import Rig
-
-FROM_ARM = (
-    "inertia",
-    "gravity_cos",
-    "gravity_sin",
-    "payload_inertia",
-    "payload_gravity_cos",
-    "payload_gravity_sin",
-)
 
 
-def check(rig: "Rig") -> None:
+class Checked(Protocol):
+    """What of a rig is looked at here, see `rig.Rig`; a rig checks itself, so that it stands above this."""
+
+    @property
+    def path(self) -> Path:
+        """The file it came from."""
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of the moving joints."""
+
+    @property
+    def variants(self) -> dict[str, str]:
+        """The chosen variant of each stage."""
+
+    def value(self, path: str) -> float:
+        """Value of a parameter in SI."""
+
+    def owner(self, effect: Effect, joint: str) -> str:
+        """The joint whose parameters of an effect act on `joint`."""
+
+
+def check(rig: Checked) -> None:
     """Refuse a rig whose parameters contradict each other.
 
     Raises:
@@ -42,7 +52,7 @@ def check(rig: "Rig") -> None:
     _check_supply(rig)
 
 
-def _check_supply(rig: "Rig") -> None:
+def _check_supply(rig: Checked) -> None:
     """Effects on the pump, which all joints share, stand at the first joint alone."""
     first = rig.joints[0]
     for joint in rig.joints[1:]:
@@ -56,14 +66,14 @@ def _check_supply(rig: "Rig") -> None:
                 )
 
 
-def _check_signs(rig: "Rig", where: str) -> None:
+def _check_signs(rig: Checked, where: str) -> None:
     for name in ("linkage.direction", "command.polarity"):
         sign = rig.value(f"{where}.{name}")
         if abs(sign) != 1.0:
             raise InputError(f"{rig.path}: {where}.{name}: {sign:g} is not a direction; use 1 or -1")
 
 
-def _check_sensor(rig: "Rig", where: str) -> None:
+def _check_sensor(rig: Checked, where: str) -> None:
     lower, upper = (rig.value(f"{where}.sensor.{name}") for name in ("travel_lower", "travel_upper"))
     if not lower < upper:
         raise InputError(
@@ -78,7 +88,7 @@ def _check_sensor(rig: "Rig", where: str) -> None:
         )
 
 
-def _check_triangle(rig: "Rig", where: str, lower: float, upper: float) -> None:
+def _check_triangle(rig: Checked, where: str, lower: float, upper: float) -> None:
     if rig.variants[f"{where}.linkage"] != "triangle":
         return
     a, b, offset, direction = (
@@ -111,7 +121,7 @@ def _check_triangle(rig: "Rig", where: str, lower: float, upper: float) -> None:
             )
 
 
-def _check_valve(rig: "Rig", where: str) -> None:
+def _check_valve(rig: Checked, where: str) -> None:
     if rig.variants[f"{where}.valve"] == "none":
         return
     if rig.variants[f"{where}.valve"] == "four_edges":
@@ -130,28 +140,3 @@ def _check_valve(rig: "Rig", where: str) -> None:
                 f"{rig.path}: {where}.valve: full_opening_{side} ({full:g} m) must be larger than "
                 f"overlap_{side} ({overlap:g} m)"
             )
-
-
-def arm_entries() -> dict[str, Entry]:
-    """Placeholders for what `Rig.value` asks of the MultibodyPlant when it is needed."""
-    return {
-        name: Entry(float("nan"), "", "from urdf/hydrolek.urdf with the other joints held")
-        for name in FROM_ARM
-    }
-
-
-@functools.cache
-def arm_load(joint: str, held: tuple[tuple[str, float], ...]) -> dict[str, float]:
-    """`FROM_ARM` values of one joint at a posture of the others."""
-    from hydrolek_drake.kinematics.arms import load_of_joint  # loads Drake, which SI-only rigs never need
-
-    load = load_of_joint(joint, dict(held))
-    values = (
-        load.inertia,
-        load.gravity_cos,
-        load.gravity_sin,
-        load.inertia_per_kg,
-        load.gravity_cos_per_kg,
-        load.gravity_sin_per_kg,
-    )
-    return dict(zip(FROM_ARM, values, strict=True))

@@ -6,8 +6,8 @@ from typing import Any
 from hydrolek_drake.effects.catalogue import EFFECTS
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.records import JOINT_STAGES, SHARED_STAGES
+from hydrolek_drake.rigs.declarations import LONGEST_STEP, SPOOL_STEPS
 from hydrolek_drake.rigs.parts import USES
-from hydrolek_drake.rigs.rig import LONGEST_STEP, SPOOL_STEPS
 
 _TEXT = {"type": "string"}
 _NUMBER = {"type": ["number", "string"]}

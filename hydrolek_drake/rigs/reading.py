@@ -10,10 +10,12 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.parameters import Stage
 from hydrolek_drake.physics.records import JOINT_STAGES, SHARED_STAGES
 from hydrolek_drake.rigs import geometry
+from hydrolek_drake.rigs.arm_loads import FROM_ARM, arm_entries
+from hydrolek_drake.rigs.declarations import LONGEST_STEP, SPOOL_STEPS
 from hydrolek_drake.rigs.driven_by import read_driven_by
 from hydrolek_drake.rigs.entries import Entry, parse_entry
 from hydrolek_drake.rigs.keys import refuse_unknown
-from hydrolek_drake.rigs.rig import LONGEST_STEP, SPOOL_STEPS, Rig
+from hydrolek_drake.rigs.rig import Rig
 from hydrolek_drake.rigs.short_law import LawTerm, read_law
 
 
@@ -99,7 +101,7 @@ def _read_stage(
         full = f"{where}.{p.name}"
         if p.name in section:
             entries[full] = parse_entry(section[p.name], p, f"{path}: {full}")
-        elif variant == "arm" and p.name in geometry.FROM_ARM:
+        elif variant == "arm" and p.name in FROM_ARM:
             continue
         elif p.neutral is not None:
             entries[full] = Entry(p.neutral, p.unit, "neutral: not part of this machine")
@@ -107,7 +109,7 @@ def _read_stage(
             raise InputError(f"{path}: {full} is missing: {p.meaning} [{p.unit}]")
     if variant == "arm":
         units = {p.name: p.unit for p in parameters}
-        for name, entry in geometry.arm_entries().items():
+        for name, entry in arm_entries().items():
             entries.setdefault(f"{where}.{name}", replace(entry, unit=units[name]))
     _check_same_as(where, tuple(p.name for p in parameters), path, entries)
 

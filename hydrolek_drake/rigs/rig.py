@@ -9,22 +9,19 @@ from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.effects.catalogue import EFFECTS, effect_named
+from hydrolek_drake.effects.catalogue import EFFECTS
 from hydrolek_drake.effects.effect import Effect
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import supply
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.records import JOINT, JOINT_STAGES, SHARED_STAGES
 from hydrolek_drake.rigs import geometry
+from hydrolek_drake.rigs.arm_loads import FROM_ARM, arm_load
+from hydrolek_drake.rigs.declarations import declared
 from hydrolek_drake.rigs.driven_by import counts, signals_of
 from hydrolek_drake.rigs.entries import Entry, parse_quantity
 from hydrolek_drake.rigs.short_law import LawTerm, law_record
 from hydrolek_drake.rigs.writing import written_tree
-
-LONGEST_STEP = Parameter("longest_step", "s", "upper bound of the rollout's integration step", lowest=1e-6)
-SPOOL_STEPS = Parameter(
-    "spool_steps", "1", "steps of the spool within one step of the rest", lowest=1.0, highest=10_000.0
-)
 
 
 @dataclass(frozen=True)
@@ -66,9 +63,9 @@ class Rig:
         section, _, name = full.rpartition(".")
         if entry.same_as is not None:
             return self.value(f"{section}.{entry.same_as}")
-        if name in geometry.FROM_ARM and math.isnan(entry.value):
+        if name in FROM_ARM and math.isnan(entry.value):
             joint = section.split(".")[1]
-            return geometry.arm_load(joint, tuple(sorted(self.posture_without(joint).items())))[name]
+            return arm_load(joint, tuple(sorted(self.posture_without(joint).items())))[name]
         return entry.value
 
     @property
@@ -119,7 +116,7 @@ class Rig:
         values = {}
         for path, text in settings.items():
             full = self.full_path(path)
-            values[full] = parse_quantity(text, declaration(self, full), f"--set {path}={text}")
+            values[full] = parse_quantity(text, declared(full, self.variants), f"--set {path}={text}")
         return self.with_values(values)
 
     def owner(self, effect: Effect, joint: str) -> str:
@@ -174,19 +171,12 @@ class Rig:
 
     def as_tree(self) -> dict[str, Any]:
         """The rig as a tree that can be written as a file and loads to the same rig."""
-        return written_tree(self)
+        return written_tree(self.tree, self.entries, self.variants, self.joints, self.laws)
 
 
 def declaration(rig: Rig, full_path: str) -> Parameter:
     """What is declared about a parameter: unit, meaning, bounds."""
-    if full_path.startswith("integration."):
-        return LONGEST_STEP if full_path.endswith("longest_step") else SPOOL_STEPS
-    section, _, name = full_path.rpartition(".")
-    if ".effects." in section:
-        effect = effect_named(section.split(".effects.")[1])
-        return next(p for p in effect.parameters if p.name == name)
-    stage = {**SHARED_STAGES, **JOINT_STAGES}[section.split(".")[-1]]
-    return next(p for p in stage.parameters(rig.variants[section]) if p.name == name)
+    return declared(full_path, rig.variants)
 
 
 def _fill(record: Any, stage: Stage, where: str, rig: Rig) -> None:

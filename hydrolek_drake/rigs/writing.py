@@ -2,28 +2,40 @@
 
 import copy
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
+from hydrolek_drake.rigs.declarations import declared
 from hydrolek_drake.rigs.entries import Entry, written_entry
-
-if TYPE_CHECKING:
-    from hydrolek_drake.rigs.rig import Rig
+from hydrolek_drake.rigs.short_law import LawTerm
 
 
-def written_tree(rig: "Rig") -> dict[str, Any]:
-    """The rig's tree with its present values; what is neutral, or follows from the arms, is left out."""
-    from hydrolek_drake.rigs.rig import declaration
+def written_tree(
+    read: Mapping[str, Any],
+    entries: Mapping[str, Entry],
+    variants: Mapping[str, str],
+    joints: tuple[str, ...],
+    laws: Mapping[str, tuple[LawTerm, ...]],
+) -> dict[str, Any]:
+    """The rig's tree with its present values; what is neutral, or follows from the arms, is left out.
 
-    tree = copy.deepcopy(rig.tree)
+    Args:
+        read: the tree that it was read from.
+        entries: as of `rig.Rig`, and so are the others.
+        variants: of its stages.
+        joints: that move.
+        laws: of them.
+    """
+    tree: dict[str, Any] = copy.deepcopy(dict(read))
     held = tree.pop("_held", None)
     tree.pop("effects", None)  # each joint gets its own below
     for sections in tree["joints"].values():
         sections.pop("effects", None)
         sections.pop("law", None)
-    for joint, terms in rig.laws.items():
+    for joint, terms in laws.items():
         tree["joints"][joint]["law"] = [term.as_tree() for term in terms]
-    for path, entry in rig.entries.items():
-        neutral = entry.value == declaration(rig, path).neutral
+    for path, entry in entries.items():
+        neutral = entry.value == declared(path, variants).neutral
         if ".effects." in path:
             left_out = neutral and entry.range is None
         else:
@@ -32,7 +44,7 @@ def written_tree(rig: "Rig") -> dict[str, Any]:
             _write(tree, path, entry)
     if held:
         tree["joints"].update(held)
-        tree["keep"] = list(rig.joints)
+        tree["keep"] = list(joints)
     return tree
 
 

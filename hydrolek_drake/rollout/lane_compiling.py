@@ -7,7 +7,6 @@ which gives the same numbers to the last bit (`tests/rollout/test_lanes.py`).
 
 import contextlib
 import hashlib
-import os
 import subprocess
 import sys
 import threading
@@ -18,9 +17,6 @@ import numba
 import numpy as np
 from llvmlite.binding import get_host_cpu_name
 
-from hydrolek_drake.physics.law import LAW
-from hydrolek_drake.physics.probes import PROBES
-from hydrolek_drake.physics.records import JOINT
 from hydrolek_drake.rollout.lane_view import Kind
 
 WORTH = 200
@@ -83,7 +79,7 @@ def _begin(
     """A process that compiles the loop for machines of a joint's kind, and outlives this one if need be."""
     told = (spool_steps, int(probed), int(together))
     process = subprocess.Popen(
-        [sys.executable, "-m", "hydrolek_drake.rollout.lane_compiling", *map(str, told)],
+        [sys.executable, "-m", "hydrolek_drake.rollout.lane_program", *map(str, told)],
         stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
@@ -93,31 +89,3 @@ def _begin(
     with contextlib.suppress(BrokenPipeError), process.stdin as to:
         to.write(joint.tobytes() + (b"" if law is None else law.tobytes()))
     return process
-
-
-def main() -> None:
-    """Compile the loop for the joint whose record, and the law whose terms, are on standard input."""
-    from hydrolek_drake.rollout.lane_kinds import kind_of
-    from hydrolek_drake.rollout.lanes import one_table
-    from hydrolek_drake.rollout.run import Run
-    from hydrolek_drake.rollout.together_lanes import compile_for
-
-    with contextlib.suppress(OSError, AttributeError):
-        os.nice(10)
-    given = sys.stdin.buffer.read()
-    joint, law = np.frombuffer(given[: JOINT.itemsize], JOINT), np.frombuffer(given[JOINT.itemsize :], LAW)
-    spool_steps, probed, together = (int(given) for given in sys.argv[1:4])
-    if together:
-        compile_for(joint, law if len(law) else None, spool_steps)
-        return
-    step = 1e-3
-    times = np.array([0.0, step])
-    probes = (step, np.zeros((2, len(PROBES)))) if probed else None
-    every = law if len(law) else None  # that of the joint's own record is among them
-    kind = kind_of(joint, spool_steps, every, bool(probed))
-    one_table(kind, [Run(joint, times, np.zeros(2), times, step, spool_steps, probes=probes)], [every])
-    compiled(kind)
-
-
-if __name__ == "__main__":
-    main()

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.station.scenario import Scenario
-from hydrolek_drake.station.scenario_station import scenario_station
+from hydrolek_drake.scenarios.scenario import Scenario
+from hydrolek_drake.scenarios.scenario_station import scenario_station
 from hydrolek_drake.station.simulation import Run, run
 from hydrolek_drake.visualization.station_view import StationView
 

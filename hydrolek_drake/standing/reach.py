@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from hydrolek_drake.kinematics.chain import Chain, arm_chain
 from hydrolek_drake.kinematics.direction_kernel import solve_direction
 from hydrolek_drake.kinematics.frames import fixed_pose
-from hydrolek_drake.kinematics.inverse import ON_LIMIT, inverse_pose, inverse_position
+from hydrolek_drake.kinematics.inverse import inverse_pose, inverse_position
+from hydrolek_drake.kinematics.obstacles import ON_LIMIT
 from hydrolek_drake.kinematics.position_kernel import solve_position
 from hydrolek_drake.standing.base import Placement
 from hydrolek_drake.standing.site import Site

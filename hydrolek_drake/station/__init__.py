@@ -1,1 +1,1 @@
-"""Rig and scenario in, Drake Diagram out; and running it."""
+"""A rig in, a Drake Diagram out; and running it."""

@@ -93,6 +93,7 @@ def test_links_summed_one_by_one_are_the_plants_inertia_and_gravity(name: str) -
 
 
 @pytest.mark.parametrize("name", ARM_JOINTS)
+@pytest.mark.thorough(but=2)
 def test_without_effects_it_moves_as_the_rollout_does(name: str) -> None:
     build = _build(name)
     series = random_series(build.driving, False, 40.0, np.random.default_rng(1))
@@ -104,6 +105,7 @@ def test_without_effects_it_moves_as_the_rollout_does(name: str) -> None:
 
 @pytest.mark.parametrize("effect", LISTED)
 @pytest.mark.parametrize("number", range(1, 6))
+@pytest.mark.thorough(but=20)
 def test_an_effect_changes_both_alike(number: int, effect: str) -> None:
     name = f"hydrolek_{'left' if number % 2 else 'right'}_j{number}"
     build = _build(name)

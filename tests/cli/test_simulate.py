@@ -15,7 +15,7 @@ import pytest
 from hydrolek_drake.cli.app import run
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.runs.running import run_scenario
-from hydrolek_drake.station.scenario import scenario_files
+from hydrolek_drake.scenarios.scenario import scenario_files
 
 ROOT = Path(__file__).parents[2]
 

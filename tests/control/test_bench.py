@@ -163,6 +163,7 @@ def test_unknown_controllers_are_refused():
         bench_on_models(["magic"], ["step"])
 
 
+@pytest.mark.thorough
 def test_the_report_draws_the_wrists_path_and_the_fuzzy_sets(tmp_path):
     """Figures 5.9, 7.11 and appendix F: pictures beside the page, and in it."""
     done = bench_on_models(["fuzzy_appendix_f", "pip_forward_c"], ["grasp"])

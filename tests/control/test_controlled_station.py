@@ -64,6 +64,7 @@ def test_wrong_joints_and_shapes_are_refused(rig, setting):
 
 
 @pytest.mark.parametrize("joint", ("hydrolek_right_j2", "hydrolek_left_j5"))
+@pytest.mark.thorough(but=1)
 def test_closed_loops_agree_at_the_steps_that_are_taken_where_none_is_given(joint):
     """Half of the 0.1 deg by which controllers are judged."""
     assert max(agreement.closed(joint, agreement.CONTROLLERS)) <= 0.05

@@ -33,6 +33,7 @@ PAIR = Path(__file__).parents[1] / "data" / "bench" / "practice_02"
         (inquiry, "judge_structures", (), "interrupted"),
     ],
 )
+@pytest.mark.thorough
 def test_what_is_known_is_kept_and_written(tmp_path, monkeypatch, where, what, lost, verdict) -> None:
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt

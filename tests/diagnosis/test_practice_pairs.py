@@ -64,6 +64,7 @@ def diagnosed(tmp_path_factory):
         for p in list(LABELS)[:-1]
     ],
 )
+@pytest.mark.thorough(but=("practice_02",))
 def test_the_concealed_effect_is_named_and_modelled(diagnosed, pair: str) -> None:
     report = json.loads((diagnosed(pair) / "report.json").read_text())
     jsonschema.Draft202012Validator(report_schema()).validate(report)
@@ -91,6 +92,7 @@ def test_physics_in_no_list_is_recognised_at_its_stage(diagnosed) -> None:
     assert angle.rms * 57.29578 == pytest.approx(report["fit"]["with_effects"]["train_rms"], rel=0.05)
 
 
+@pytest.mark.thorough
 def test_the_report_keeps_the_contract(diagnosed) -> None:
     folder = diagnosed("practice_04")
     report = json.loads((folder / "report.json").read_text())
@@ -108,6 +110,7 @@ def test_the_report_keeps_the_contract(diagnosed) -> None:
     assert with_effects in page and with_effects not in (diagnosed("practice_01") / "report.html").read_text()
 
 
+@pytest.mark.thorough
 def test_the_fitted_rig_is_usable_by_the_other_commands(diagnosed) -> None:
     folder = diagnosed("practice_04")
     rig = load_rig(folder / "rig_fitted.yaml", {})
@@ -120,6 +123,7 @@ def test_the_fitted_rig_is_usable_by_the_other_commands(diagnosed) -> None:
     assert angle.rms * 57.29578 == pytest.approx(report["fit"]["with_effects"]["holdout_rms"], rel=0.05)
 
 
+@pytest.mark.thorough
 def test_residuals_are_what_the_report_says(diagnosed) -> None:
     folder = diagnosed("practice_04")
     report = json.loads((folder / "report.json").read_text())
@@ -141,6 +145,7 @@ def test_workers_must_be_positive(capsys) -> None:
     assert "--workers 0" in capsys.readouterr().err
 
 
+@pytest.mark.thorough
 def test_the_drake_diagram_reproduces_the_improvement(diagnosed) -> None:
     seconds = 8.0
     rig = load_rig(diagnosed("practice_04") / "rig_fitted.yaml", {})
@@ -159,6 +164,7 @@ def test_the_drake_diagram_reproduces_the_improvement(diagnosed) -> None:
     assert error["nominal"] > 2.0 * error["fitted"]
 
 
+@pytest.mark.thorough
 def test_the_fitted_rig_runs_in_the_drake_diagram(diagnosed) -> None:
     report = json.loads((diagnosed(CONFIRMED) / "report.json").read_text())
     [told] = report["diagram"]

@@ -19,7 +19,7 @@ from hydrolek_drake.physics.records import JOINT_STAGES, SHARED_STAGES
 from hydrolek_drake.rigs import built_in_rigs, load_rig
 from hydrolek_drake.rollout.rollout import roll_out
 from hydrolek_drake.runs.running import run_scenario
-from hydrolek_drake.station.scenario import load_scenario, scenario_files
+from hydrolek_drake.scenarios.scenario import load_scenario, scenario_files
 
 _NAME = "mine.yaml"
 _STEPS = 5  # that what was read has to bear: values that are possible one by one

@@ -73,6 +73,7 @@ def test_the_pump_s_effects_belong_to_the_first_joint(two_joints) -> None:
         load_rig("hydrolek", {f"joints.right_j3.{path}": str(RESISTANCE)})
 
 
+@pytest.mark.thorough
 def test_a_shared_pump_that_droops_is_felt_as_in_the_diagram(two_joints) -> None:
     path = "joints.right_j2.effects.supply.pressure_droop.resistance_Pa_s_per_m3"
     machine = two_joints.with_values({path: RESISTANCE})

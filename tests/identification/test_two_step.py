@@ -129,6 +129,7 @@ def test_a_holdout_without_recordings_is_refused():
         only_joint(load_rig("hydrolek"))
 
 
+@pytest.mark.thorough
 def test_both_steps_by_command_on_a_recording_of_a_changed_bench(tmp_path, capsys):
     """The bench stands for an arm: its rollouts are three times as fast."""
     pair = Path(__file__).parents[1] / "data" / "bench" / "practice_01"

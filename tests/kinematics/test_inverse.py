@@ -6,7 +6,8 @@ import pytest
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.chain import arm_chain, joint_limits
 from hydrolek_drake.kinematics.forward import tool_pose, wrist_position
-from hydrolek_drake.kinematics.inverse import Obstacle, inverse_pose, inverse_position
+from hydrolek_drake.kinematics.inverse import inverse_pose, inverse_position
+from hydrolek_drake.kinematics.obstacles import Obstacle
 
 SIDES = ["right", "left"]
 MIRROR = np.array([-1.0, 1.0, 1.0, -1.0, 1.0, -1.0])

@@ -255,6 +255,7 @@ def test_one_damaged_byte_raises_only_input_error(good_files, extension, place, 
         ("import time; time.sleep(100)", "did not end within 5 s"),  # it does not even begin
     ],
 )
+@pytest.mark.thorough
 def test_a_mat_file_that_is_read_for_ever_is_given_up(tmp_path, monkeypatch, program, says):
     """Reading is done in a process of its own, which is ended when its time is up."""
     path = tmp_path / "slow.mat"

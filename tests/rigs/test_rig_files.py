@@ -8,7 +8,8 @@ import yaml
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.records import flat
-from hydrolek_drake.rigs import built_in_rigs, geometry, load_rig
+from hydrolek_drake.rigs import built_in_rigs, load_rig
+from hydrolek_drake.rigs.arm_loads import FROM_ARM
 
 BUILT_IN = sorted(built_in_rigs())
 PLACEHOLDERS = ("-", "?", "todo", "tbd", "none", "unknown")
@@ -196,4 +197,4 @@ def test_loads_that_follow_from_the_arms_are_not_frozen_into_the_written_rig(tmp
 def _arm_load():
     """The bench's load without what an arm's geometry gives."""
     load = load_rig("joint_bench").tree["joints"]["joint"]["load"]
-    return {key: value for key, value in load.items() if key not in geometry.FROM_ARM}
+    return {key: value for key, value in load.items() if key not in FROM_ARM}

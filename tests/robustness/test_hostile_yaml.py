@@ -11,7 +11,7 @@ import hydrolek_drake
 from hydrolek_drake.control.designed import read_model
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import built_in_rigs, load_rig
-from hydrolek_drake.station.scenario import load_scenario, scenario_files
+from hydrolek_drake.scenarios.scenario import load_scenario, scenario_files
 from hydrolek_drake.units import si_factor
 from hydrolek_drake.yaml_files import parse_yaml, read_yaml
 

@@ -61,6 +61,7 @@ def _off_deg(
     ],
     ids=["healthy", "droop", "payload", "friction and leak", "rocking base", "play"],
 )
+@pytest.mark.thorough(but=1)
 def test_joints_move_as_in_the_diagram(two_joints, values) -> None:
     # contacts, as in docs/evidence/agreement.md
     step = 1e-4 if any("backlash" in path for path in values) else None
@@ -73,6 +74,7 @@ def test_both_arms_move_as_in_the_diagram() -> None:
     assert _off_deg(whole, joints=whole.joints, seconds=1.5).max() < ALLOWED_DEG
 
 
+@pytest.mark.thorough
 def test_joints_on_one_pump_move_as_in_the_diagram(on_a_pump) -> None:
     assert _off_deg(on_a_pump).max() < ALLOWED_DEG
     records, setting = on_a_pump.records(), on_a_pump.value("supply.pressure")

@@ -18,7 +18,7 @@ from hydrolek_drake.rollout.lanes import one_by_one
 from hydrolek_drake.rollout.together import JointsTogether
 from hydrolek_drake.rollout.together_lanes import roll_out_together
 
-pytestmark = pytest.mark.xdist_group("joints together")
+pytestmark = [pytest.mark.xdist_group("joints together"), pytest.mark.thorough]
 
 MOVING = ("right_j2", "right_j3")
 STEP = 5e-4

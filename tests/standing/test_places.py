@@ -57,6 +57,7 @@ def _in_site(placement, point):
     return turn @ point + origin
 
 
+@pytest.mark.thorough
 def test_from_the_places_found_the_tools_come_where_they_should_by_forward_kinematics(answer):
     assert len(answer.standings) == 2 and answer.reason == ""
     blade = kinect_entries("targets")["blade_reach"]
@@ -78,6 +79,7 @@ def test_from_the_places_found_the_tools_come_where_they_should_by_forward_kinem
             assert np.linalg.norm(np.cross(end, SITE.pipe.axis)) > SITE.pipe.radius
 
 
+@pytest.mark.thorough
 def test_the_margins_told_are_those_of_the_plan(answer, base):
     for standing in answer.standings:
         room = []
@@ -94,6 +96,7 @@ def test_the_margins_told_are_those_of_the_plan(answer, base):
     assert answer.standings[0].margins.score >= answer.standings[1].margins.score
 
 
+@pytest.mark.thorough
 def test_no_step_of_the_plan_touches_anything_there(answer):
     standing = answer.standings[0]
     around = standing.placement.surroundings((FLOOR,))
@@ -131,6 +134,7 @@ def test_left_is_the_mirror_image_of_right(base, monkeypatch):
     assert count > 3
 
 
+@pytest.mark.thorough
 def test_the_best_place_s_mirror_image_is_a_place_for_the_other_arm(answer, base):
     standing = answer.standings[0]
     theirs = _search(SITE.mirrored(), base)
@@ -170,6 +174,7 @@ def test_where_base_or_boom_would_touch_is_no_place(base):
         search.look(HERE, "right")
 
 
+@pytest.mark.thorough
 def test_the_place_is_written_and_read_back_and_drawn(answer, tmp_path):
     import json
 

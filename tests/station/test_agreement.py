@@ -21,6 +21,7 @@ STEP = 0.5e-3  # seconds
 
 
 @pytest.mark.parametrize("joint", agreement.JOINTS)
+@pytest.mark.thorough(but=3)
 def test_every_instrumented_joint_agrees_with_its_rollout(joint):
     [(_, largest)] = agreement.compare(load_rig(joint), 4.0, STEP, 3)
     assert largest <= REQUIRED_DEG
@@ -32,6 +33,7 @@ ON_THE_ARMS = [e for e in sorted(EFFECTS) if EFFECTS[e].needs.get("supply") != (
 @pytest.mark.parametrize(
     "values", [{}, {"supply.relief_hysteresis": 0.0, "effects.supply.pump_loss.fraction": 0.5}]
 )
+@pytest.mark.thorough
 def test_a_pump_with_its_relief_valve_and_four_edges_agree_with_their_rollout(values):
     """A line that settles in a tenth of a millisecond, in both executions' steps."""
     rig = load_rig("hopsan_link").with_values(values)
@@ -40,6 +42,7 @@ def test_a_pump_with_its_relief_valve_and_four_edges_agree_with_their_rollout(va
 
 
 @pytest.mark.parametrize(("number", "effect"), list(enumerate(ON_THE_ARMS)))
+@pytest.mark.thorough(but=5)
 def test_every_effect_agrees_with_its_rollout(number, effect):
     joint = agreement.JOINTS[number % len(agreement.JOINTS)]
     rig = agreement.with_effect(load_rig(joint), effect)
@@ -101,6 +104,7 @@ def test_forces_at_the_mounts_are_the_joint_moments_of_virtual_work():
     np.testing.assert_allclose(positions[0], positions[1], rtol=0.0, atol=1e-6)
 
 
+@pytest.mark.thorough
 def test_symplectic_euler_stays_near_runge_kutta():
     rig = load_rig("hydrolek_right_j2")
     times, volts = agreement.random_voltage(4.0, np.random.default_rng(9))
@@ -116,6 +120,7 @@ def test_symplectic_euler_stays_near_runge_kutta():
     assert np.degrees(np.abs(ends[0] - ends[1])).max() < 40.0 * 2e-3
 
 
+@pytest.mark.thorough
 def test_an_arm_that_is_thrown_about_does_not_shake_its_wrist_apart():
     """Little damps a wrist whose valves are closed: an integrator that feeds its oil springs is 0.1 deg off, or 5."""
     rig = load_rig("hydrolek")

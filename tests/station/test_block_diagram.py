@@ -2,14 +2,14 @@
 
 import pytest
 
-from hydrolek_drake.station.block_diagram import as_text, scenario_diagram, text_of_svg
-from hydrolek_drake.station.scenario import load_scenario, scenario_files
+from hydrolek_drake.scenarios.block_diagram import as_text, scenario_diagram, text_of_svg
+from hydrolek_drake.scenarios.scenario import load_scenario, scenario_files
 
 
 @pytest.mark.parametrize("name", sorted(scenario_files()))
 def test_committed_picture_is_current(name):
     picture = scenario_files()[name].with_suffix(".svg")
-    assert picture.is_file(), "run python -m hydrolek_drake.station.block_diagram"
+    assert picture.is_file(), "run python -m hydrolek_drake.scenarios.block_diagram"
     shown = text_of_svg(picture.read_text(encoding="utf-8"))
     assert shown == as_text(scenario_diagram(load_scenario(name)))
 

@@ -7,8 +7,8 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings import Recording, write_recording
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.runs.running import run_scenario
-from hydrolek_drake.station.commands import RandomLevels
-from hydrolek_drake.station.scenario import load_scenario, scenario_files
+from hydrolek_drake.scenarios.commands import RandomLevels
+from hydrolek_drake.scenarios.scenario import load_scenario, scenario_files
 
 BENCH = """schema: 1
 rig: joint_bench

@@ -13,7 +13,7 @@ from hydrolek_drake.recordings import Recording, read_recording, write_recording
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.runs.running import run_scenario
 from hydrolek_drake.runs.signals import named_signals
-from hydrolek_drake.station.scenario import load_scenario
+from hydrolek_drake.scenarios.scenario import load_scenario
 
 ARM = """schema: 1
 rig: hydrolek_right_j2

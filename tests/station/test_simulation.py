@@ -6,7 +6,7 @@ import pytest
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.runs.running import ScenarioRun, run_scenario
-from hydrolek_drake.station.scenario import load_scenario
+from hydrolek_drake.scenarios.scenario import load_scenario
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import make_station
 from hydrolek_drake.station.step_sizes import StepSizes

@@ -239,6 +239,7 @@ def test_a_joystick_over_the_socket_stops_with_the_browser_that_holds_it():
     _served(work)
 
 
+@pytest.mark.thorough
 def test_a_task_stops_with_the_browser_in_control_and_the_next_one_resumes_it():
     async def work(console):
         first, second = await _open(console), await _open(console)

@@ -93,6 +93,7 @@ def _move(client, send, seconds=1.0):
     "message",
     [b"hello\n", b"1,2,3\n", b"9" * 2000 + b"\n", b"RATE,1,2\n", b"RATE" + b",101" * 14 + b"\n", b"STOP\n"],
 )
+@pytest.mark.thorough
 def test_a_bad_message_or_a_stop_closes_the_valves_of_a_moving_machine(plant, message):
     client = _watch(plant)
     away = home_posture() + np.radians(4.0) * np.sign(home_posture()[0] - client.stop()[0] + 1e-9)
@@ -103,6 +104,7 @@ def test_a_bad_message_or_a_stop_closes_the_valves_of_a_moving_machine(plant, me
     _stands_still(plant)
 
 
+@pytest.mark.thorough
 def test_a_client_that_leaves_or_falls_silent_closes_the_valves_of_a_moving_machine(plant):
     deflection = np.zeros(14)
     for sign, leaves in ((30.0, True), (-30.0, False)):
@@ -117,6 +119,7 @@ def test_a_client_that_leaves_or_falls_silent_closes_the_valves_of_a_moving_mach
         _stands_still(plant)
 
 
+@pytest.mark.thorough
 def test_asking_for_signals_is_no_sign_of_life(plant):
     client = _watch(plant)
     deflection = np.zeros(14)
@@ -127,6 +130,7 @@ def test_asking_for_signals_is_no_sign_of_life(plant):
     client.close()
 
 
+@pytest.mark.thorough
 def test_the_plant_keeps_to_the_clock_or_tells_its_pace(plant):
     client = _watch(plant)
     begin, first = time.monotonic(), client.signals().time

@@ -78,6 +78,7 @@ def test_the_pipe_is_carried_to_the_place_and_seen_there_and_nothing_is_held_aft
 
 
 @pytest.mark.parametrize("machine", [5.0], indirect=True)  # slow enough to be caught on the way
+@pytest.mark.thorough
 def test_stopped_with_the_pipe_in_hand_it_may_be_aborted_and_released(session, machine):
     _click_all(session)
     session.confirm()

@@ -11,12 +11,12 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.watching.live.bag_source import McapPieces, SqlitePieces
+from hydrolek_drake.watching.live.choosing import source_of
 from hydrolek_drake.watching.live.file_source import FileSource
 from hydrolek_drake.watching.live.folder_source import FolderSource
 from hydrolek_drake.watching.live.lines import LineReader
 from hydrolek_drake.watching.live.samples import by_joint
 from hydrolek_drake.watching.live.settings import BAD_IN_A_ROW
-from hydrolek_drake.watching.live.sources import source_of
 from hydrolek_drake.watching.live.tcp_source import TcpSource
 
 HEAD = "time_s,joint.command_V,joint.angle_deg\n"

@@ -15,7 +15,7 @@ from hydrolek_drake.watching.watch import watch
 
 DAY = 86400.0
 
-pytestmark = pytest.mark.xdist_group("a watched series")
+pytestmark = [pytest.mark.xdist_group("a watched series"), pytest.mark.thorough]
 
 
 @pytest.fixture(scope="module")

@@ -25,8 +25,8 @@ def watch_live(rig: "Rig", reference: Sequence[Path], options: "Options", limits
     """
     from hydrolek_drake.cli.output import console, progress
     from hydrolek_drake.teleop.access import SHORTEST_TOKEN, is_loopback, new_token
+    from hydrolek_drake.watching.live.choosing import TCP
     from hydrolek_drake.watching.live.running import run_live
-    from hydrolek_drake.watching.live.sources import TCP
     from hydrolek_drake.watching.results import write_watch
     from hydrolek_drake.watching.words import sentences
 

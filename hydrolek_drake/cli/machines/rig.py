@@ -33,7 +33,7 @@ def new(
     What nobody knows is assumed, with a wide range, and says so in the file.
     """
     from hydrolek_drake.cli.output import console
-    from hydrolek_drake.rigs.wizard import questions as all_questions
+    from hydrolek_drake.wizard import questions as all_questions
 
     out = console()
     if questions:
@@ -51,7 +51,7 @@ def new(
         _ask(given)
 
     from hydrolek_drake.files import write_whole
-    from hydrolek_drake.rigs.wizard.making import written_rig
+    from hydrolek_drake.wizard.making import written_rig
 
     text, made = written_rig(file.stem, given)
     write_whole(file, text)
@@ -131,7 +131,7 @@ def _pairs(arguments: list[str]) -> dict[str, str]:
 
 def _ask(given: dict[str, str]) -> None:
     """Ask for what is missing, until each answer is one; Enter leaves open what can be assumed."""
-    from hydrolek_drake.rigs.wizard import questions, read_answers
+    from hydrolek_drake.wizard import questions, read_answers
 
     for question in questions().values():
         answers = read_answers(given)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from hydrolek_drake.runs.running import ScenarioRun
-    from hydrolek_drake.station.scenario import Scenario
+    from hydrolek_drake.scenarios.scenario import Scenario
     from hydrolek_drake.visualization.station_view import StationView
 
 _INTERRUPTED = 130
@@ -45,7 +45,7 @@ def simulate(
     from rich.console import Console
 
     from hydrolek_drake.cli.output import console
-    from hydrolek_drake.station.scenario import load_scenario, scenario_files
+    from hydrolek_drake.scenarios.scenario import load_scenario, scenario_files
 
     if scenario is None:
         raise InputError(f"simulate: name a scenario: {', '.join(scenario_files())}; or give a file")

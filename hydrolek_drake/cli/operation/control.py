@@ -2,16 +2,13 @@
 
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from hydrolek_drake.cli.operation.control_study import judge, tune
 from hydrolek_drake.cli.settings import SetOption, parse_settings
 from hydrolek_drake.errors import InputError
-
-if TYPE_CHECKING:
-    from rich.table import Table
 
 control = typer.Typer(
     add_completion=False,
@@ -51,7 +48,7 @@ def bench(
     seed: Annotated[int, typer.Option(help="of the sensors' noise on the full machine")] = 1,
 ) -> None:
     """Every controller on step, sine and grasp, measured as in appendix G, beside the thesis's models or machine."""
-    from hydrolek_drake.cli.output import console, progress
+    from hydrolek_drake.cli.output import console, progress, text_table
     from hydrolek_drake.control.comparison.sequences import NAMES
     from hydrolek_drake.control.names import TITLES, check_names
     from hydrolek_drake.rigs import load_rig
@@ -158,16 +155,3 @@ def _complex(text: str) -> complex:
         return complex(text.replace(" ", ""))
     except ValueError:
         raise InputError(f"--pole {text}: write a number such as 0.7 or 0.7+0.05j") from None
-
-
-def text_table(head: list[str], body: list[list[str]]) -> "Table":
-    """Rows of text as a table of the terminal."""
-    from rich.markup import escape
-    from rich.table import Table
-
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
-    for i, title in enumerate(head):
-        table.add_column(escape(title), justify="left" if i == 0 else "right")
-    for row in body:
-        table.add_row(*row)
-    return table

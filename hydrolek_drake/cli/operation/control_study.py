@@ -31,7 +31,7 @@ def judge(
 
     import numpy as np
 
-    from hydrolek_drake.cli.output import console, progress
+    from hydrolek_drake.cli.output import console, progress, text_table
     from hydrolek_drake.control.catalogue import build_law, rig_setting
     from hydrolek_drake.control.comparison.conditions import Condition, conditions_data, judged_conditions
     from hydrolek_drake.control.comparison.judged import as_json, as_rows
@@ -56,8 +56,6 @@ def judge(
                     seed,
                     learned=learned,
                 )
-    from hydrolek_drake.cli.operation.control import text_table
-
     console().print(text_table(*as_rows(found)))
     if out is not None:
         write_out(out, json.dumps(as_json(found), indent=1) + "\n")

@@ -5,14 +5,16 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from hydrolek_drake.control.laws.law import Array
 from hydrolek_drake.control.models.sdp_model import SdpModel, exponential_rate, thesis_data
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.yaml_files import package_yaml
+
+Array = NDArray[np.float64]
 
 
 @cache

@@ -3,15 +3,13 @@
 import asyncio
 import json
 import logging
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import tornado.websocket
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.console import messages
-
-if TYPE_CHECKING:
-    from hydrolek_drake.teleop.console.server import Console
+from hydrolek_drake.teleop.console.desk import Desk
 
 _LOG = logging.getLogger(__name__)
 
@@ -21,7 +19,7 @@ _WAITING = 32  # messages of one browser that wait for their turn
 class Socket(tornado.websocket.WebSocketHandler):
     """One browser. STOP is heeded at once, whoever sends it; all else in its order, from the one in control."""
 
-    def initialize(self, console: "Console") -> None:
+    def initialize(self, console: Desk) -> None:
         """What the application hands to each request."""
         self.console, self.trusted = console, False
         self._waiting: asyncio.Queue[messages.AnyMessage] = asyncio.Queue(_WAITING)

@@ -1,18 +1,17 @@
 """What the console serves over HTTP: its page, scripts and pictures."""
 
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import tornado.web
 
-if TYPE_CHECKING:
-    from hydrolek_drake.teleop.console.server import Console
+from hydrolek_drake.teleop.console.desk import Desk
 
 
 class Handler(tornado.web.RequestHandler):
     """Answers only under names that the console is served as."""
 
-    def initialize(self, console: "Console") -> None:
+    def initialize(self, console: Desk) -> None:
         """What the application hands to each request."""
         self.console = console
 

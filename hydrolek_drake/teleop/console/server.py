@@ -1,10 +1,8 @@
 """The operator's console: one page, two pictures, one web socket; for this machine only unless told otherwise."""
 
 import asyncio
-import contextlib
 import logging
 from collections.abc import Awaitable, Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import tornado.httpserver
@@ -16,12 +14,10 @@ import tornado.websocket
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.access import new_token
 from hydrolek_drake.teleop.configuration import teleop_entries
-from hydrolek_drake.teleop.console import messages
 from hydrolek_drake.teleop.console.browser_socket import Socket
+from hydrolek_drake.teleop.console.desk import Desk
 from hydrolek_drake.teleop.console.gate import Gate
 from hydrolek_drake.teleop.console.pages import Icon, Nothing, Page, Picture, Script
-from hydrolek_drake.teleop.console.seats import Seats
-from hydrolek_drake.teleop.sequencer import Order
 from hydrolek_drake.teleop.session import OperatorSession
 from hydrolek_drake.teleop.trial import TrialLog
 
@@ -34,7 +30,7 @@ _LIVE_PERIOD = 0.4  # s between live pictures
 _AGAIN = 1.0  # s before what failed is begun again
 
 
-class Console:
+class Console(Desk):
     """Serves a session to browsers. The first one with the token is in control; others watch, and may stop the arms.
 
     Args:
@@ -65,17 +61,14 @@ class Console:
         view_port: int | None = None,
         trials: TrialLog | None = None,
     ) -> None:
-        self.session, self.view_port = session, view_port
         self.token = new_token() if token is None else token
-        self.gate = Gate(host, allowed_hosts, self.token)
-        self.trials = TrialLog(None) if trials is None else trials
+        super().__init__(
+            session,
+            Gate(host, allowed_hosts, self.token),
+            TrialLog(None) if trials is None else trials,
+            view_port,
+        )
         limits = teleop_entries("console")
-        self.most = int(limits["browsers"])
-        self.seats: Seats[Socket] = Seats(limits["mute"], self._control_lost)
-        self.workers = ThreadPoolExecutor(2, thread_name_prefix="console")
-        self._stopper = ThreadPoolExecutor(
-            1, thread_name_prefix="stop"
-        )  # never waits for a camera or a planner
         settings = {"console": self}
         application = tornado.web.Application(
             [
@@ -122,8 +115,7 @@ class Console:
         self._server.stop()
         for browser in list(self.seats.browsers):
             browser.close()
-        self.workers.shutdown(wait=True, cancel_futures=True)
-        self._stopper.shutdown(wait=True)
+        self.end_work()
 
     async def _send_states(self) -> None:
         if not self.seats.browsers:
@@ -140,48 +132,6 @@ class Console:
 
     async def _watch_over_control(self) -> None:
         self.seats.holder()
-
-    def _control_lost(self) -> None:
-        """The arms must not go on without somebody who sees them; does not wait for the machine."""
-        with contextlib.suppress(RuntimeError):  # the console is closed, and the machine with it
-            self._stopper.submit(self.session.lose_operator)
-
-    async def stop(self) -> None:
-        """Stop the arms at once, whatever else is going on, then tell the session so."""
-        loop = asyncio.get_running_loop()
-        await loop.run_in_executor(self._stopper, self.session.halt)
-        await loop.run_in_executor(self.workers, self.session.order, Order.STOP)
-
-    def act(self, message: messages.AnyMessage) -> None:
-        """Do what the browser in control asks for.
-
-        Raises:
-            InputError: It is not possible now.
-        """
-        session = self.session
-        match message:
-            case messages.Click(u=u, v=v):
-                session.click(u, v)
-            case messages.Sliders():
-                session.set_sliders(**message.given())
-            case messages.Fill(name=name):
-                session.set_fill(name)
-            case messages.TaskChoice(name=name):
-                session.set_task(name)
-            case messages.Joystick(deflection=deflection):
-                session.move_by_hand(deflection=deflection)
-            case messages.SlidersTo(angles_deg=angles):
-                session.move_by_hand(towards_deg=angles)
-            case messages.Timer(action=action):
-                self.trials.timer(action)
-            case messages.Ratings():
-                self.trials.save(message.given())
-            case messages.Plain(do="resume"):
-                session.order(Order.RESUME)
-            case messages.Plain(do="abort"):
-                session.order(Order.ABORT)
-            case messages.Plain(do=what):
-                getattr(session, what)()
 
 
 async def _kept_going(what: str, once: Callable[[], Awaitable[None]], period: float) -> None:

@@ -14,6 +14,7 @@ from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.watching.alarms import AlarmRule
 from hydrolek_drake.watching.live.blocks import healthy_of
+from hydrolek_drake.watching.live.choosing import source_of
 from hydrolek_drake.watching.live.following import Follower
 from hydrolek_drake.watching.live.page_state import description, samples_of, status
 from hydrolek_drake.watching.live.publishing import FoxgloveServer
@@ -22,7 +23,7 @@ from hydrolek_drake.watching.live.samples import Samples, by_joint, refuse_drive
 from hydrolek_drake.watching.live.series import WindowSeries
 from hydrolek_drake.watching.live.server import LivePage
 from hydrolek_drake.watching.live.settings import AT_A_TIME, POLL_S, SILENT_S, STATE_S
-from hydrolek_drake.watching.live.sources import Link, Source, source_of
+from hydrolek_drake.watching.live.sources import Link, Source
 from hydrolek_drake.watching.live.windows import Window
 from hydrolek_drake.watching.store import Store
 from hydrolek_drake.watching.watch import Watched, drifts_of, key_of_all, training_of, watch

@@ -32,6 +32,7 @@ def _off_deg(experiments: list[Experiment], machine, reading: np.ndarray) -> lis
 
 
 @pytest.mark.parametrize("resistance", [0.0, 3e10])
+@pytest.mark.thorough
 def test_joints_alone_move_as_beside_each_other(two_joints, recorded_together, resistance):
     machine = two_joints.with_values({DROOP: resistance})
     recording, reading = recorded_together(machine)

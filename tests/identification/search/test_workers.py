@@ -52,6 +52,7 @@ def test_processes_give_the_values_in_order_and_lose_only_the_guilty(evil):
         assert same(evaluate(POINTS[:3]), expected(evil)[:3])  # still at work
 
 
+@pytest.mark.thorough
 def test_an_overdue_evaluation_is_lost_and_the_others_are_not():
     with ProcessWorkers(Bowl("hangs"), 2, overdue=2.0) as evaluate:
         evaluate(POINTS[:2])  # the processes are up before time counts
@@ -77,6 +78,7 @@ def test_chunks_hold_every_point_once():
     np.testing.assert_array_equal(np.concatenate(chunks_of(30, 2, 8)), np.arange(30))
 
 
+@pytest.mark.thorough
 def test_a_cluster_of_processes_one_of_which_is_killed_gives_the_same_search():
     from distributed import LocalCluster
 

@@ -27,6 +27,7 @@ def served(browser, served_console):
     served.end()
 
 
+@pytest.mark.thorough
 def test_four_clicks_in_a_browser_do_the_task(browser, served):
     page = browser.new_page()
     errors = []

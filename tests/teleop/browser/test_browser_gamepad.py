@@ -108,6 +108,7 @@ def test_a_gamepad_moves_the_arm_whose_button_is_held_and_no_other(pad):
         " document.dispatchEvent(new Event('visibilitychange'))",
     ],
 )
+@pytest.mark.thorough(but=1)
 def test_a_lost_gamepad_or_window_stops_the_arms_until_all_is_let_go(pad, lose):
     pad.plug()
     pad.says("hold L1")
@@ -127,6 +128,7 @@ def test_a_lost_gamepad_or_window_stops_the_arms_until_all_is_let_go(pad, lose):
 
 
 @pytest.mark.parametrize("stop", ["key", "button", "others"])
+@pytest.mark.thorough(but=1)
 def test_after_a_stop_a_gamepad_that_is_still_held_moves_nothing(pad, stop):
     pad.plug()
     pad.says("hold L1")

@@ -24,9 +24,8 @@ from hydrolek_drake.workcell.pipe import make_pipe, workcell_entries
 from hydrolek_drake.workcell.scene import home_posture
 from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect
 
-pytestmark = pytest.mark.xdist_group(
-    "console on the hydraulic plant"
-)  # one plant for all, which takes a while
+# one plant for all, which takes a while
+pytestmark = [pytest.mark.xdist_group("console on the hydraulic plant"), pytest.mark.thorough]
 
 PICTURES = os.environ.get("HYDROLEK_PICTURES")
 REQUIRED = 5e-3  # m, at the grasp

@@ -22,6 +22,7 @@ def served(browser, served_console):
     served.end()
 
 
+@pytest.mark.thorough
 def test_pick_and_place_in_a_browser(browser, served):
     page = browser.new_page()
     errors = []

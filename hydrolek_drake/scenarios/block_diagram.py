@@ -1,6 +1,6 @@
 """Block diagrams of the scenarios' stations, drawn from the Drake diagrams that are run.
 
-`python -m hydrolek_drake.station.block_diagram` refreshes `diagrams/<scenario>.svg`; it needs Graphviz's `dot`.
+`python -m hydrolek_drake.scenarios.block_diagram` refreshes `diagrams/<scenario>.svg`; it needs Graphviz's `dot`.
 Each picture carries what it shows as text in its `<metadata>`, so that whether it is current can be told
 without drawing it again.
 """
@@ -16,8 +16,8 @@ from pydrake.systems.framework import Diagram, InputPortIndex, OutputPortIndex, 
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.files import write_whole
-from hydrolek_drake.station.scenario import Scenario, load_scenario, scenario_files
-from hydrolek_drake.station.scenario_station import scenario_station
+from hydrolek_drake.scenarios.scenario import Scenario, load_scenario, scenario_files
+from hydrolek_drake.scenarios.scenario_station import scenario_station
 
 _HIDDEN = ("log_", "scene_graph", "meshcat_visualizer", "cylinder_poses")
 """Systems that only write down or draw; they are not part of the machine."""

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hydrolek_drake.station.commands import Playback
-from hydrolek_drake.station.scenario import Scenario
+from hydrolek_drake.scenarios.commands import Playback
+from hydrolek_drake.scenarios.scenario import Scenario
 from hydrolek_drake.station.simulation import command_source
 from hydrolek_drake.station.station import Station, make_station
 

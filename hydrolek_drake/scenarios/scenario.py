@@ -7,7 +7,7 @@ A scenario is a YAML file; the folder `diagrams` holds those that come with the 
     rig: hydrolek_right_j2            # name or file, beside the scenario or built in
     settings: {supply.pressure: 12 MPa}                # values of the rig, optional
     duration: 8 s
-    command: {kind: constant, joints: {right_j2: 2 V}} # see `station.commands` for all kinds
+    command: {kind: constant, joints: {right_j2: 2 V}} # see `commands` for all kinds
     initial_position: {right_j2: 20 deg, right_j3: 0}  # optional; held joints too
     events: {supply_lost_at: 5 s, commands_zero_at: 5 s}   # optional
     integration: {step: 1 ms, plant_step: 0, log_period: 10 ms, integrator: runge_kutta3}  # optional; steps as
@@ -34,9 +34,9 @@ from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rigs.entries import parse_quantity
 from hydrolek_drake.rigs.keys import refuse_unknown
 from hydrolek_drake.rigs.rig import declaration
-from hydrolek_drake.station.commands import Command, parse_command
-from hydrolek_drake.station.fields import quantity, required
-from hydrolek_drake.station.set_points import Controlled
+from hydrolek_drake.scenarios.commands import Command, parse_command
+from hydrolek_drake.scenarios.fields import quantity, required
+from hydrolek_drake.scenarios.set_points import Controlled
 from hydrolek_drake.station.step_sizes import StepSizes, sizes_for
 from hydrolek_drake.yaml_files import parse_yaml, read_yaml
 

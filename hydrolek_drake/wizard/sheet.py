@@ -94,7 +94,7 @@ def fixed(name: str) -> Mapping[str, Any]:
 
 @cache
 def _tree() -> dict[str, Any]:
-    tree: dict[str, Any] = package_yaml("hydrolek_drake.rigs.wizard", "questions.yaml")
+    tree: dict[str, Any] = package_yaml("hydrolek_drake.wizard", "questions.yaml")
     return tree
 
 

@@ -12,7 +12,7 @@ from hydrolek_drake.recordings import Recording, read_recording, require
 from hydrolek_drake.recordings.resampling import held, linear
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.keys import refuse_unknown
-from hydrolek_drake.station.fields import joints_of, quantity, required, steps
+from hydrolek_drake.scenarios.fields import joints_of, quantity, required, steps
 
 if TYPE_CHECKING:
     from hydrolek_drake.control.loop_command import LoopCommand
@@ -83,7 +83,7 @@ class Controlled:
         Raises:
             InputError: a joint for which no controller can be built.
         """
-        # a controller is designed on a rig: it stands above stations, and only such a scenario has need of it
+        # only such a scenario has need of controllers, which take a while to load
         from hydrolek_drake.control.catalogue import build_law, rig_setting
         from hydrolek_drake.control.laws.operator_path import through_operator_computer
         from hydrolek_drake.control.loop_command import loop_command

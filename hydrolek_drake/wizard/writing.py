@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.rigs.wizard.sheet import SI, Question, Share, fixed, missing, questions
 from hydrolek_drake.units import si_factor
+from hydrolek_drake.wizard.sheet import SI, Question, Share, fixed, missing, questions
 
 SHEET = "data sheet"
 EDGES = ("pa", "pb", "at", "bt")
