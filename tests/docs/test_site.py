@@ -31,4 +31,6 @@ def test_the_site_is_built_without_a_warning_and_needs_no_network(tmp_path):
     for page in pages:
         outside = LOADED.findall(page.read_text(encoding="utf-8"))
         assert not outside, f"{page.name} loads {outside}"
-    assert 'id="hydrolek-diagnose"' in (tmp_path / "reference/generated/commands.html").read_text(encoding="utf-8")
+    assert 'id="hydrolek-diagnose"' in (tmp_path / "reference/generated/commands.html").read_text(
+        encoding="utf-8"
+    )
