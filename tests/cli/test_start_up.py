@@ -72,6 +72,7 @@ def test_help_and_unknown_commands_load_nothing_that_computes(arguments):
     ],
     ids=" ".join,
 )
+@pytest.mark.thorough(but=8)
 def test_bad_input_is_answered_before_anything_that_computes_is_loaded(arguments):
     status, heavy = _loaded(arguments)
     assert status == 2 and heavy <= {"numba"}  # effects are declared beside their compiled functions

@@ -40,6 +40,7 @@ def test_signals_are_those_of_the_control_samples_whatever_the_diagram_is_to_log
 
 
 @pytest.mark.parametrize("name", ("pi", "pid", "pip_idz_b", "feedforward"))
+@pytest.mark.thorough(but=1)
 def test_when_the_supply_is_lost_the_valve_closes(rig, setting, name):
     law = build_law(name, setting, noisy=False)
     run = run_controlled(rig, {JOINT: law}, np.full((120, 1), 60.0), 0.05, supply_lost_at=0.4)

@@ -23,6 +23,7 @@ def cluster():
         yield made
 
 
+@pytest.mark.thorough
 def test_machines_do_the_same_on_a_cluster_one_worker_of_which_is_killed(cluster, bench):
     joint = bench.records()[:1]
     times = np.arange(0.0, 20.0, 0.01)

@@ -66,6 +66,7 @@ def test_a_diagram_that_breaks_down_is_told(rig, recording):
     assert found.diverged is not None and found.diverged in found.sentence()
 
 
+@pytest.mark.thorough
 def test_a_genetic_search_ranks_its_population_alike_on_both(rig, recording, searched):
     short = replace(recording.between(recording.time[0], recording.time[0] + 2.5))
     experiments = experiments_of(rig, short)

@@ -68,6 +68,7 @@ def apart_without(bench) -> float:
 
 
 @pytest.mark.parametrize("probe", LAWS)
+@pytest.mark.thorough(but=3)
 def test_diagram_and_rollout_agree_on_a_law_at_every_stage(bench, apart_without, probe) -> None:
     rig, span = bench
     term, size = LAWS[probe]
@@ -83,6 +84,7 @@ def test_every_input_of_a_law_was_tried() -> None:
     assert set(LAWS) == set(UNITS) == set(PROBES) - {"flow"}
 
 
+@pytest.mark.thorough
 def test_a_law_of_terms_and_one_in_time_run_beside_an_effect(bench) -> None:
     rig, span = bench
     rocking = rig.with_values(

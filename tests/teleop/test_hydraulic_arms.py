@@ -101,6 +101,7 @@ def test_the_reading_is_the_position_with_noise(arms):
         ({"posture": np.zeros(3)}, "14 finite angles"),
     ],
 )
+@pytest.mark.thorough(but=1)
 def test_what_cannot_be_simulated_is_refused(arguments, message):
     named = {"posture": home_posture()} | arguments
     if "rig" in named:

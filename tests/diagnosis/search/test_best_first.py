@@ -118,6 +118,7 @@ def test_what_only_the_held_out_data_show_is_found(answer_of) -> None:
 
 
 @pytest.mark.parametrize("at", [2])
+@pytest.mark.thorough
 def test_an_interrupt_leaves_the_best_answer_so_far(answer_of, at) -> None:
     told: list[str] = []
 

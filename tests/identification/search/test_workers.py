@@ -46,6 +46,7 @@ def same(found, wanted):
 
 
 @pytest.mark.parametrize("evil", [None, "fails", "dies"])
+@pytest.mark.thorough(but=1)
 def test_processes_give_the_values_in_order_and_lose_only_the_guilty(evil):
     with ProcessWorkers(Bowl(evil), 2) as evaluate:
         assert same(evaluate(POINTS), expected(evil))
@@ -60,6 +61,7 @@ def test_an_overdue_evaluation_is_lost_and_the_others_are_not():
 
 
 @pytest.mark.parametrize("workers", [ProcessWorkers, ThreadWorkers])
+@pytest.mark.thorough(but=1)
 def test_a_search_over_processes_or_threads_is_the_search_in_this_thread(workers):
     ends = np.zeros(2), np.ones(2)
     alone = search("de", Bowl(), *ends, 120, np.random.default_rng(0))

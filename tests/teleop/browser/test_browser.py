@@ -100,6 +100,7 @@ def test_bad_clicks_are_told_in_the_browser_and_a_second_one_watches(browser, se
     assert not any(state.valves_open for state in served.states)
 
 
+@pytest.mark.thorough
 def test_before_the_console_answers_only_stop_can_be_pressed_and_it_is_not_forgotten(browser, served):
     page = browser.new_page()
     heard = []
@@ -124,6 +125,7 @@ def test_before_the_console_answers_only_stop_can_be_pressed_and_it_is_not_forgo
         page.wait_for_timeout(50)
 
 
+@pytest.mark.thorough
 def test_an_unsure_object_is_told_in_the_browser_and_a_second_click_shows_the_other(browser, served_console):
     colour, depth, _, _ = cast_crossing(0.01)
 

@@ -108,7 +108,7 @@ def test_a_gamepad_moves_the_arm_whose_button_is_held_and_no_other(pad):
         " document.dispatchEvent(new Event('visibilitychange'))",
     ],
 )
-@pytest.mark.thorough(but=1)
+@pytest.mark.thorough
 def test_a_lost_gamepad_or_window_stops_the_arms_until_all_is_let_go(pad, lose):
     pad.plug()
     pad.says("hold L1")
@@ -128,7 +128,7 @@ def test_a_lost_gamepad_or_window_stops_the_arms_until_all_is_let_go(pad, lose):
 
 
 @pytest.mark.parametrize("stop", ["key", "button", "others"])
-@pytest.mark.thorough(but=1)
+@pytest.mark.thorough
 def test_after_a_stop_a_gamepad_that_is_still_held_moves_nothing(pad, stop):
     pad.plug()
     pad.says("hold L1")
@@ -151,6 +151,7 @@ def test_after_a_stop_a_gamepad_that_is_still_held_moves_nothing(pad, stop):
     pad.moves(0)
 
 
+@pytest.mark.thorough
 def test_gamepads_of_another_kind_are_not_used_and_said(pad):
     for strange in ({"mapping": ""}, {"buttons": [{"pressed": False, "value": 0}] * 9}, {"axes": [0.0, 0.0]}):
         pad.plug(0, **strange)
