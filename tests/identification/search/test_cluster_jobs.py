@@ -58,6 +58,7 @@ def test_every_job_ends_once_and_a_failure_is_its_own(cluster):
             assert result == 100.0 + number**0.5
 
 
+@pytest.mark.thorough
 def test_a_worker_that_dies_costs_what_it_had_at_hand(cluster, tmp_path):
     marker = str(tmp_path / "died")
     jobs = [(number, (marker if number == 3 else str(tmp_path / "no"), number)) for number in range(8)]

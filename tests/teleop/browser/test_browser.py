@@ -50,6 +50,7 @@ def test_four_clicks_in_a_browser_do_the_task(browser, served):
     assert page.locator("li.done").count() == 6 and not errors
 
 
+@pytest.mark.thorough
 def test_while_the_arms_move_task_time_left_and_charts_are_on_one_screen(browser, served):
     page = browser.new_page()
     page.set_viewport_size({"width": 1372, "height": 882})
