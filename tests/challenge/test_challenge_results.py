@@ -78,7 +78,7 @@ def test_an_interrupt_loses_no_score_of_an_earlier_run(tmp_path, monkeypatch) ->
     def interrupted(*given, **named):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("hydrolek_drake.diagnosis.diagnosis.diagnose", interrupted)
+    monkeypatch.setattr("hydrolek_drake.challenge.diagnosed.diagnose", interrupted)
     with pytest.raises(KeyboardInterrupt):
         challenge(cases=2, seed=3, kind="healthy", earlier=tmp_path / "summary.json", out=tmp_path)
     assert json.loads((tmp_path / "summary.json").read_text())["cases"] == [second]

@@ -147,6 +147,15 @@ def report_schema() -> dict[str, Any]:
             },
             "reasons": _texts("remarks on data and verdict"),
             "seconds": _number("duration [s]"),
+            "diagram": {
+                "type": "array",
+                "items": _object(
+                    {},
+                    "one signal of one recording: how far Diagram, rollout and recording are apart",
+                    open_=True,
+                ),
+                "description": "the fitted rig through its Drake diagram; empty with --no-confirm",
+            },
         },
         "what `hydrolek diagnose` found",
     )
