@@ -68,7 +68,7 @@ def apart_without(bench) -> float:
 
 
 @pytest.mark.parametrize("probe", LAWS)
-@pytest.mark.thorough(but=3)
+@pytest.mark.thorough(but=1)
 def test_diagram_and_rollout_agree_on_a_law_at_every_stage(bench, apart_without, probe) -> None:
     rig, span = bench
     term, size = LAWS[probe]

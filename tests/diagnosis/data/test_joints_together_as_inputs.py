@@ -47,6 +47,7 @@ def test_joints_alone_move_as_beside_each_other(two_joints, recorded_together, r
     assert max(told) < ALLOWED_DEG
 
 
+@pytest.mark.thorough
 def test_recordings_are_told_apart_by_name_and_by_their_joints(two_joints, healthy):
     first, _ = healthy
     again = felt_together(two_joints, [*first, *first, *(replace(e, name="other") for e in first)])
