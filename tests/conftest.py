@@ -98,3 +98,14 @@ def _is_thorough(item: pytest.Item, number: int) -> bool:
         return False
     but = marker.kwargs.get("but", 0)
     return number > but if isinstance(but, int) else item.callspec.id not in but
+
+
+@pytest.fixture
+def cluster():
+    """A Dask cluster of two processes on this computer."""
+    from distributed import LocalCluster
+
+    with LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+    ) as made:
+        yield made

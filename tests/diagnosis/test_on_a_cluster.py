@@ -13,16 +13,6 @@ from hydrolek_drake.rollout.lanes import roll_out_lanes
 from hydrolek_drake.rollout.run import Run
 
 
-@pytest.fixture
-def cluster():
-    from distributed import LocalCluster
-
-    with LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
-    ) as made:
-        yield made
-
-
 @pytest.mark.thorough
 def test_machines_do_the_same_on_a_cluster_one_worker_of_which_is_killed(cluster, bench):
     joint = bench.records()[:1]

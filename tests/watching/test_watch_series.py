@@ -124,16 +124,11 @@ def test_kept_recordings_are_whole_json(leaking, planted):
 
 
 @pytest.mark.long("a cluster's workers load the model: a minute")
-def test_over_a_cluster_the_table_is_the_same(machine_days, references, leaking, tmp_path):
-    from distributed import LocalCluster
-
+def test_over_a_cluster_the_table_is_the_same(machine_days, references, leaking, cluster, tmp_path):
     _, whole = leaking
     files = [str(machine_days / "leaking")]
-    with LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
-    ) as cluster:
-        arguments = [*map(str, references), "--recordings", *files, "--out", str(tmp_path)]
-        status = run(["watch", "joint_bench", *arguments, "--cluster", cluster.scheduler_address])
+    arguments = [*map(str, references), "--recordings", *files, "--out", str(tmp_path)]
+    status = run(["watch", "joint_bench", *arguments, "--cluster", cluster.scheduler_address])
     assert status == 3
     one, other = (pq.read_table(folder / "watch.parquet").to_pylist() for folder in (whole, tmp_path))
     assert len(one) == len(other)

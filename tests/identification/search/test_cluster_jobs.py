@@ -9,16 +9,6 @@ from hydrolek_drake.cli.app import run
 from hydrolek_drake.identification.search.cluster_jobs import ClusterJobs
 
 
-@pytest.fixture
-def cluster():
-    from distributed import LocalCluster
-
-    with LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
-    ) as made:
-        yield made
-
-
 def _root(offset: float, number: float) -> float:
     if number < 0.0:
         raise ValueError("no root of a negative number")
