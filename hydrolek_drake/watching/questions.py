@@ -60,6 +60,7 @@ def questions_of(
         except (InputError, ValueError, ArithmeticError) as error:
             problem = told_of(path, error)
             yield Question(Seen(str(path), digest, stamp_of(path, recording), None, problem), [])
+            remaining.one_ended(at_once=True)
         else:
             yield Question(Seen(str(path), digest, stamp_of(path, recording), None), experiments)
             remaining.one_ended()

@@ -23,7 +23,7 @@ from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.search.openings import Opening, observed
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import GAINS, NOISE, Rung, Settings
-from hydrolek_drake.diagnosis.structures.addition import names_of
+from hydrolek_drake.diagnosis.structures.addition import Addition, names_of
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, redundant, widenings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
@@ -200,14 +200,9 @@ def _lessened(
     if best is found.lessened or not best.effects:
         return
     found.lessened = best
-    entrants = [
-        Entrant(best.without(c), {k: v for k, v in best.values.items() if not k.startswith(c.path + ".")})
-        for c in best.effects
-    ]
+    entrants = [Entrant(best.without(c), _values_without(best, [c])) for c in best.effects]
     entrants += [
-        Entrant(
-            effects, {**{k: v for k, v in best.values.items() if not k.startswith(c.path + ".")}, **start}
-        )
+        Entrant(effects, {**_values_without(best, [c]), **start})
         for c, special, effects in narrowings(best.effects, candidates)
         for start in special.starts[: settings.starts]
     ]
@@ -229,6 +224,12 @@ def _lessened(
         found.keep(each)
 
 
+def _values_without(structure: Hypothesis, additions: Sequence[Addition]) -> dict[str, float]:
+    """Values of a structure's parameters but for those of some of its additions."""
+    own = tuple(c.path + "." for c in additions)
+    return {path: value for path, value in structure.values.items() if not path.startswith(own)}
+
+
 def _named_in_place(
     structure: Hypothesis, candidates: Sequence[Candidate], settings: Settings
 ) -> list[Entrant]:
@@ -236,11 +237,7 @@ def _named_in_place(
     law = [c for c in structure.effects if isinstance(c, LawTerm)]
     places = {(c.joint, c.stage) for c in law}
     rest = tuple(c for c in structure.effects if c not in law)
-    values = {
-        path: value
-        for path, value in structure.values.items()
-        if not any(path.startswith(c.path + ".") for c in law)
-    }
+    values = _values_without(structure, law)
     return [
         Entrant((*rest, candidate), {**values, **start})
         for candidate in candidates
@@ -258,11 +255,7 @@ def _across(structure: Hypothesis) -> list[Entrant]:
     if not moved or len(moved) < len(forces):
         return []
     rest = tuple(c for c in structure.effects if c not in forces)
-    values = {
-        path: value
-        for path, value in structure.values.items()
-        if not any(path.startswith(c.path + ".") for c in forces)
-    }
+    values = _values_without(structure, forces)
     for _, told in moved:
         values |= told
     return [Entrant((*rest, *(term for term, _ in moved)), values)]
