@@ -20,6 +20,7 @@ from scipy.stats import chi2
 from hydrolek_drake.diagnosis.evidence.judged import Judged
 from hydrolek_drake.diagnosis.fitting.projection import Across
 from hydrolek_drake.diagnosis.intervals.curvature import Interval, covariance_of, intervals_of
+from hydrolek_drake.diagnosis.intervals.step_error import without_step_error
 from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS
 from hydrolek_drake.diagnosis.structures.weighing import felt_together
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench, moments_of
@@ -48,10 +49,13 @@ class LastNumbers:
         self._step = bench.fine if bench.together else min(hypothesis.step, FITS.last_step * bench.fine)
         self.problem = self._problem(bench.training)
         self._moving = bench.movable(hypothesis.effects, self.problem.parameters)
-        self._descent = SecantDescent(
+        self._descent = self._descending()
+
+    def _descending(self) -> SecantDescent:
+        return SecantDescent(
             self.problem,
             worth=EVIDENCE.worth,
-            stop=bench.interrupted,
+            stop=self._bench.interrupted,
             moving=self._moving,
             slopes=self.problem.jacobian_without_jumps,
         )
@@ -62,8 +66,8 @@ class LastNumbers:
 
     def found(self) -> tuple[Hypothesis, dict[str, Interval]]:
         """The fit, and the intervals of all its numbers, full path -> interval."""
-        bench, before = self._bench, self.problem.evaluations
-        fit = self._descent.from_start(self._begun.fit.unit)
+        bench = self._bench
+        fit = self._corrected(self._descent.from_start(self._begun.fit.unit))
         profiles = self._profiles(fit)
         for _ in range(FITS.anew):
             lowest = max(profiles, key=lambda p: p.improved, default=None)
@@ -71,7 +75,7 @@ class LastNumbers:
                 break
             fit = self._descent.from_start(lowest.lowest)
             profiles = self._profiles(fit)
-        bench.evaluations += self.problem.evaluations - before
+        bench.evaluations += self.problem.evaluations
         parameters = self.problem.parameters
         intervals = intervals_of(parameters, fit)
         for one in profiles:
@@ -84,6 +88,17 @@ class LastNumbers:
             intervals[free.path] = Interval(known.value, min(known.low, low), max(known.high, high))
         values = parameters.values(fit.unit)
         return Hypothesis(self._begun.effects, values, fit, self._step), intervals
+
+    def _corrected(self, fit: Fit) -> Fit:
+        """Fitted on without what the step adds; joints that move together keep it, whose rollouts are of one step."""
+        bench = self._bench
+        if bench.together:
+            return fit
+        there = Hypothesis(self._begun.effects, self.problem.parameters.values(fit.unit), fit, self._step)
+        bench.evaluations += self.problem.evaluations
+        self.problem = self._problem(without_step_error(self.problem, there, self._step, bench.training))
+        self._descent = self._descending()
+        return self._descent.from_start(fit.unit)
 
     def _profiles(self, fit: Fit) -> list[Profile]:
         """Of each number of the effects that least squares moves and that the data tell."""

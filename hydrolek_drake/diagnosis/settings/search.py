@@ -19,6 +19,10 @@ class Fits:
     last_step: float = 0.5
     """Last fits use this fraction of the rig's own step, so that the step's error cannot decide."""
 
+    shorter: float = 8.0
+    """The error that the step of the last fits leaves is told by one so many times shorter: for a method of second
+    order all but a sixty-fourth of it."""
+
     tolerance: float = 1e-3
     """Differences by less than this share are none: a number so near an end of its range (in ranges) cannot move on,
     and two fits of a structure whose squares are so nearly the same stand in the same minimum."""
