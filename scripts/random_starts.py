@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 
 from hydrolek_drake.files import write_whole
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.fit.report import AT_NOISE
-from hydrolek_drake.identification.least_squares import fit_from_afar
+from hydrolek_drake.identification.least_squares.least_squares import fit_from_afar
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.rigs import load_rig
 

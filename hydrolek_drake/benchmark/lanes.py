@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.identification.sensitivity.varied import varied_parameters
 from hydrolek_drake.physics.records import flat, position_of
 from hydrolek_drake.recordings import Recording

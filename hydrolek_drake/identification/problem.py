@@ -7,7 +7,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.sharing import shared_map
 from hydrolek_drake.rollout.lane_view import LANES

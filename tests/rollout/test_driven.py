@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.parameter_set import free_parameters
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.physics.driven import is_driven
 from hydrolek_drake.physics.records import JOINT, as_usual
 from hydrolek_drake.recordings import Recording

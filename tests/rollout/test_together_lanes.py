@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem_together import problem_of
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.physics.law import LAW
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.physics.records import flat, position_of

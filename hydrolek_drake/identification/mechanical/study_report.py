@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.files import write_results
-from hydrolek_drake.identification.genetic.settings import SIMPLE
 from hydrolek_drake.identification.mechanical.mechanical_model import mechanical_parameters
 from hydrolek_drake.identification.mechanical.study import Run, study_data
+from hydrolek_drake.identification.search.genetic.settings import SIMPLE
 
 CURVES = {
     "learning_fitness": ("(4.13) p = inf", "(4.13) p = 1", "(4.13) p = 2", "(4.14) p = inf"),

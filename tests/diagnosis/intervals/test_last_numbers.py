@@ -15,7 +15,7 @@ from hydrolek_drake.diagnosis.intervals.curvature import NORMAL, intervals_of
 from hydrolek_drake.diagnosis.intervals.last_numbers import LastNumbers, with_last_numbers
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
-from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
 ALLOWED = float(chi2.ppf(0.95, 1))

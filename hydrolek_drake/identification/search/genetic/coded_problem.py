@@ -6,8 +6,8 @@ import numpy as np
 from pymoo.core.problem import Problem
 from pymoo.core.sampling import Sampling
 
-from hydrolek_drake.identification.genetic.coding import Coding
 from hydrolek_drake.identification.search.evaluation import Evaluator
+from hydrolek_drake.identification.search.genetic.coding import Coding
 
 
 class CodedProblem(Problem):

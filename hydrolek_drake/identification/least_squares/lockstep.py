@@ -10,9 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrolek_drake.identification.acceptance import Ending, Trial, after
-from hydrolek_drake.identification.normal_equations import NormalEquations
-from hydrolek_drake.identification.place import Place
+from hydrolek_drake.identification.least_squares.acceptance import Ending, Trial, after
+from hydrolek_drake.identification.least_squares.normal_equations import NormalEquations
+from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
 TRIED = (1e-2, 1.0, 1e2)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hydrolek_drake.effects.scales import Scales, hydraulic_scales, motor_scales
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.one_point import inlet_conductance, stroke_and_lever
 

@@ -5,7 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
-from hydrolek_drake.identification.genetic.settings import GeneticSettings
+from hydrolek_drake.identification.search.genetic.settings import GeneticSettings
 
 
 class Coding(Protocol):

@@ -7,13 +7,13 @@ from pymoo.algorithms.base.genetic import GeneticAlgorithm
 from pymoo.core.population import Population
 from pymoo.core.termination import NoTermination
 
-from hydrolek_drake.identification.genetic.coded_problem import CodedProblem, UniformSampling
-from hydrolek_drake.identification.genetic.coding import Coding, coding_for
-from hydrolek_drake.identification.genetic.crossover import crossover_for
-from hydrolek_drake.identification.genetic.mutation import ElementMutation
-from hydrolek_drake.identification.genetic.selection import RouletteSelection
-from hydrolek_drake.identification.genetic.settings import GeneticSettings
 from hydrolek_drake.identification.search.evaluation import Evaluator
+from hydrolek_drake.identification.search.genetic.coded_problem import CodedProblem, UniformSampling
+from hydrolek_drake.identification.search.genetic.coding import Coding, coding_for
+from hydrolek_drake.identification.search.genetic.crossover import crossover_for
+from hydrolek_drake.identification.search.genetic.mutation import ElementMutation
+from hydrolek_drake.identification.search.genetic.selection import RouletteSelection
+from hydrolek_drake.identification.search.genetic.settings import GeneticSettings
 
 STANDING_STILL = 200
 """Generations without any new chromosome after which a search has died out."""

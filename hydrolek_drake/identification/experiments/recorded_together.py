@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.physics.probes import SUPPLY
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.driven_by import SUPPLY as SUPPLY_KEY

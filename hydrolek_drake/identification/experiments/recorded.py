@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from hydrolek_drake.errors import UninformativeError
-from hydrolek_drake.identification.channel import Channel, faithful
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.neighbours import effects_of_others
-from hydrolek_drake.identification.start import resting_position
+from hydrolek_drake.identification.experiments.channel import Channel, faithful
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.experiments.neighbours import effects_of_others
+from hydrolek_drake.identification.experiments.start import resting_position
 from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import driven_joints, measured_position, position_key

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-from hydrolek_drake.identification.least_squares import LeastSquares, fit_from
+from hydrolek_drake.identification.least_squares.least_squares import LeastSquares, fit_from
 
 CONFIDENCE = 0.95
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.identification.place import DAMPED, Place
+from hydrolek_drake.identification.least_squares.place import DAMPED, Place
 
 KEPT = 0.25
 """Slopes that brought this share of the fall that they promised are corrected and used again."""

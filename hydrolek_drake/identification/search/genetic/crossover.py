@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from pymoo.core.crossover import Crossover
 
-from hydrolek_drake.identification.genetic.settings import GeneticSettings
+from hydrolek_drake.identification.search.genetic.settings import GeneticSettings
 
 
 class PointwiseCrossover(Crossover):

@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from hydrolek_drake.identification.descent import Descent, Land
+from hydrolek_drake.identification.least_squares.descent import Descent, Land
 from hydrolek_drake.identification.problem import PULLS_S, Problem
 
 EDGE = 1e-6

@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 from scipy.optimize import least_squares
 
-from hydrolek_drake.identification.steps_taken import StepsTaken
+from hydrolek_drake.identification.least_squares.steps_taken import StepsTaken
 
 
 class Land(Protocol):

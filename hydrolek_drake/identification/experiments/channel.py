@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.identification.thinning import Blocks
+from hydrolek_drake.identification.experiments.thinning import Blocks
 from hydrolek_drake.replay.noise import noise_level
 
 FAITHFUL = 3e-4

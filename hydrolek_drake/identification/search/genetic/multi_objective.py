@@ -6,11 +6,11 @@ import numpy as np
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.util.nds.non_dominated_sorting import NonDominatedSorting
 
-from hydrolek_drake.identification.genetic.coded_problem import CodedProblem
-from hydrolek_drake.identification.genetic.coding import coding_for
-from hydrolek_drake.identification.genetic.settings import GeneticSettings
-from hydrolek_drake.identification.genetic.simple import breed, operators
 from hydrolek_drake.identification.search.evaluation import Evaluator
+from hydrolek_drake.identification.search.genetic.coded_problem import CodedProblem
+from hydrolek_drake.identification.search.genetic.coding import coding_for
+from hydrolek_drake.identification.search.genetic.settings import GeneticSettings
+from hydrolek_drake.identification.search.genetic.simple import breed, operators
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.identification.channel import Channel, faithful
-from hydrolek_drake.identification.neighbours import rows_at, with_recorded
-from hydrolek_drake.identification.start import without_offset
-from hydrolek_drake.identification.thinning import Blocks, block_size
+from hydrolek_drake.identification.experiments.channel import Channel, faithful
+from hydrolek_drake.identification.experiments.neighbours import rows_at, with_recorded
+from hydrolek_drake.identification.experiments.start import without_offset
+from hydrolek_drake.identification.experiments.thinning import Blocks, block_size
 from hydrolek_drake.physics.probes import PROBES, SUPPLY
 from hydrolek_drake.rollout.kernel import PULLED
 from hydrolek_drake.rollout.rest import rest_state_at_reading, state_at_reading

@@ -18,10 +18,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import qmc
 
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.lockstep import descend
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.least_squares.lockstep import descend
+from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.parameter_set import ParameterSet
-from hydrolek_drake.identification.place import Place
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.physics.driven import UPSTREAM
 

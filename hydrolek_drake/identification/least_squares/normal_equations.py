@@ -5,7 +5,7 @@ Marquardt, An algorithm for least-squares estimation of nonlinear parameters, SI
 
 import numpy as np
 
-from hydrolek_drake.identification.place import Place
+from hydrolek_drake.identification.least_squares.place import Place
 
 
 class NormalEquations:
