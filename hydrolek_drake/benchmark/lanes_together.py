@@ -13,9 +13,9 @@ from hydrolek_drake.identification.problem_together import problem_of
 from hydrolek_drake.identification.sensitivity.varied import varied_parameters
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.lanes import one_by_one
-from hydrolek_drake.rollout.together import JointsTogether
-from hydrolek_drake.rollout.together_lanes import roll_out_together
+from hydrolek_drake.rollout.lanes.lanes import one_by_one
+from hydrolek_drake.rollout.together.lanes import roll_out_together
+from hydrolek_drake.rollout.together.together import JointsTogether
 
 
 def measure_lanes_together(

@@ -13,7 +13,7 @@ from hydrolek_drake.replay.by_diagram import moved_by_diagram
 from hydrolek_drake.replay.replay import replay
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
-from hydrolek_drake.rollout.lanes import roll_out_lanes
+from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes
 
 SUPPLY = ("supply.pressure",)
 SPOOL = ("joint.spool",)

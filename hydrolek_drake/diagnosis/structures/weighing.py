@@ -26,7 +26,7 @@ from hydrolek_drake.identification.experiments.neighbours import probes_of
 from hydrolek_drake.identification.experiments.recorded_together import OneRecording, recordings_of
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.together import Together
+from hydrolek_drake.rollout.together.together import Together
 
 
 def weighted_by(

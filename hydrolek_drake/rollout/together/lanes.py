@@ -1,4 +1,4 @@
-"""Many machines whose joints move together, rolled out in lanes: the front door of `together_lane_kernel`."""
+"""Many machines whose joints move together, rolled out in lanes: the front door of `lane_kernel`."""
 
 import os
 from collections.abc import Sequence
@@ -10,17 +10,17 @@ from hydrolek_drake.physics.law import LAW, MOST_TERMS
 from hydrolek_drake.physics.probes import SUPPLY
 from hydrolek_drake.physics.records import flat
 from hydrolek_drake.physics.serial_arm import scratch
-from hydrolek_drake.rollout.joint_rows import room
-from hydrolek_drake.rollout.lane_compiling import compiled, ready
-from hydrolek_drake.rollout.lane_kinds import kind_of
-from hydrolek_drake.rollout.lane_table import filled_up, side_by_side
-from hydrolek_drake.rollout.lane_view import LANES, NUMBERS, Kind
-from hydrolek_drake.rollout.lanes import FEW, OFF, SWITCH
+from hydrolek_drake.rollout.lanes.compiling import compiled, ready
+from hydrolek_drake.rollout.lanes.kinds import kind_of
+from hydrolek_drake.rollout.lanes.lanes import FEW, OFF, SWITCH
+from hydrolek_drake.rollout.lanes.table import filled_up, side_by_side
+from hydrolek_drake.rollout.lanes.view import LANES, NUMBERS, Kind
 from hydrolek_drake.rollout.rest import rest_state
-from hydrolek_drake.rollout.together import NO_LINKS, RunTogether, Together, put_begun
-from hydrolek_drake.rollout.together_kernel import TOLD
-from hydrolek_drake.rollout.together_lane_kernel import integrate_together_lanes
-from hydrolek_drake.rollout.together_lane_programs import BLOCK, NUMBERS_OF_JOINT, TERMS, programs_of
+from hydrolek_drake.rollout.together.joint_rows import room
+from hydrolek_drake.rollout.together.kernel import TOLD
+from hydrolek_drake.rollout.together.lane_kernel import integrate_together_lanes
+from hydrolek_drake.rollout.together.lane_programs import BLOCK, NUMBERS_OF_JOINT, TERMS, programs_of
+from hydrolek_drake.rollout.together.together import NO_LINKS, RunTogether, Together, put_begun
 
 Kinds = tuple[Kind, ...]
 """Of the joints of a machine."""
@@ -35,7 +35,7 @@ def roll_out_together(runs: Sequence[RunTogether], *, at_once: bool = False) -> 
     Args:
         runs: machines, and what each is driven with.
         at_once: compile what is not compiled yet, and wait for it; else the machines are driven one by one until that
-            is done (`lane_compiling`).
+            is done (`lanes.compiling`).
 
     Returns:
         What each of them did, in their order. One that diverges disturbs no other.

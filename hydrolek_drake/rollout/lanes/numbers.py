@@ -16,7 +16,7 @@ from numba.core.typeconv import Conversion
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, lower_cast, models, register_model
 
-from hydrolek_drake.rollout.lane_view import LANES
+from hydrolek_drake.rollout.lanes.view import LANES
 
 _DOUBLE = ir.DoubleType()
 _NUMBERS = ir.VectorType(_DOUBLE, LANES)

@@ -1,4 +1,4 @@
-"""Many machines rolled out in lanes: the front door of `lane_kernel`."""
+"""Many machines rolled out in lanes: the front door of `kernel`."""
 
 import contextlib
 import os
@@ -13,11 +13,11 @@ from hydrolek_drake.physics.law import MOST_TERMS
 from hydrolek_drake.physics.probes import NO_PROBE
 from hydrolek_drake.physics.records import JOINT, flat
 from hydrolek_drake.rollout import kernel
-from hydrolek_drake.rollout.lane_compiling import compiled, ready
-from hydrolek_drake.rollout.lane_kernel import integrate_lanes
-from hydrolek_drake.rollout.lane_kinds import kind_of
-from hydrolek_drake.rollout.lane_table import filled_up, side_by_side
-from hydrolek_drake.rollout.lane_view import LANES, Kind
+from hydrolek_drake.rollout.lanes.compiling import compiled, ready
+from hydrolek_drake.rollout.lanes.kernel import integrate_lanes
+from hydrolek_drake.rollout.lanes.kinds import kind_of
+from hydrolek_drake.rollout.lanes.table import filled_up, side_by_side
+from hydrolek_drake.rollout.lanes.view import LANES, Kind
 from hydrolek_drake.rollout.rest import rest_state
 from hydrolek_drake.rollout.rollout import (
     DIVIDED_BY_ZERO,
@@ -92,7 +92,7 @@ def roll_out_lanes(runs: Sequence[Run], *, at_once: bool = False) -> list[Outcom
     Args:
         runs: machines, and what each is driven with.
         at_once: compile what is not compiled yet, and wait for it; else the machines are driven one by one until that
-            is done (`lane_compiling`).
+            is done (`compiling`).
 
     Returns:
         What each of them did, in their order. One that diverges disturbs no other.

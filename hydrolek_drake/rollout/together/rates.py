@@ -11,7 +11,8 @@ from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics.probes import SUPPLY, Probe, added, no_probe
 from hydrolek_drake.physics.serial_arm import accelerations, factored, moments_of, motion_equation, solved
 from hydrolek_drake.physics.solenoid import GAMMA
-from hydrolek_drake.rollout.joint_rows import (
+from hydrolek_drake.rollout.rates import felt_at
+from hydrolek_drake.rollout.together.joint_rows import (
     BIAS,
     COSINE,
     COSINES,
@@ -36,7 +37,6 @@ from hydrolek_drake.rollout.joint_rows import (
     W,
     state_at,
 )
-from hydrolek_drake.rollout.rates import felt_at
 
 
 @njit

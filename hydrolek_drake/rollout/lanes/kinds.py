@@ -10,7 +10,7 @@ from hydrolek_drake.physics.law import MOST_TERMS
 from hydrolek_drake.physics.records import STAGES, flat, position_of
 from hydrolek_drake.physics.solenoid import steps_needed
 from hydrolek_drake.rollout.drive import acts_early
-from hydrolek_drake.rollout.lane_view import Kind
+from hydrolek_drake.rollout.lanes.view import Kind
 
 GROUPS = (("rod_friction", "load_friction"),)
 """Hooks whose effects take time in every step. A loop over lanes is compiled with a group or without it. What enters at

@@ -1,7 +1,7 @@
 """Joints that move together, integrated in one compiled loop.
 
-Each joint's chain is that of `kernel`, with the same stages of the integrator; what couples joints stands in
-`together_rates`.
+Each joint's chain is that of `rollout.kernel`, with the same stages of the integrator; what couples joints stands in
+`rates`.
 """
 
 import math
@@ -15,7 +15,10 @@ from hydrolek_drake.physics.probes import probe_at
 from hydrolek_drake.physics.serial_arm import CARRIES
 from hydrolek_drake.physics.solenoid import steps_needed
 from hydrolek_drake.rollout.drive import acts_early
-from hydrolek_drake.rollout.joint_rows import (
+from hydrolek_drake.rollout.kernel import SIGNALS, arrived, inertia_at, out_of_bounds, written
+from hydrolek_drake.rollout.rates import kept, turned
+from hydrolek_drake.rollout.together.joint import begins, ends, goes_on, halfway
+from hydrolek_drake.rollout.together.joint_rows import (
     BIAS,
     COMMAND,
     DRIVE,
@@ -33,10 +36,7 @@ from hydrolek_drake.rollout.joint_rows import (
     put_near,
     state_at,
 )
-from hydrolek_drake.rollout.kernel import SIGNALS, arrived, inertia_at, out_of_bounds, written
-from hydrolek_drake.rollout.rates import kept, turned
-from hydrolek_drake.rollout.together_joint import begins, ends, goes_on, halfway
-from hydrolek_drake.rollout.together_rates import (
+from hydrolek_drake.rollout.together.rates import (
     arm_begins,
     arm_equation,
     arm_goes_on,
@@ -119,7 +119,7 @@ def next_stretch_of_all(
     command_values: np.ndarray,
     longest_step: float,
 ) -> tuple[float, int, float]:
-    """As of `kernel.next_stretch`, with the commands of all joints the same: its end, steps and their length.
+    """As of `rollout.kernel.next_stretch`, with the commands of all joints the same: its end, steps and their length.
 
     Args:
         t: [s].

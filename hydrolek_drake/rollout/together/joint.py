@@ -1,6 +1,6 @@
 """What each of some joints does by itself in a step of all of them: its chain, with the others held.
 
-Rows are those of `joint_rows`, of one machine or of one lane (`lane_numbers.LaneRows`).
+Rows are those of `joint_rows`, of one machine or of one lane (`lanes.numbers.LaneRows`).
 """
 
 from typing import Any
@@ -13,7 +13,9 @@ from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.angle import AngleKept, angle_near
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.rollout.drive import Drive, driven_on
-from hydrolek_drake.rollout.joint_rows import (
+from hydrolek_drake.rollout.kernel import first_stage, inertia_at, second_stage
+from hydrolek_drake.rollout.rates import State, Turned, carried_on, rates
+from hydrolek_drake.rollout.together.joint_rows import (
     COMMAND,
     COSINE,
     DRAWN,
@@ -39,8 +41,6 @@ from hydrolek_drake.rollout.joint_rows import (
     slopes_at,
     state_at,
 )
-from hydrolek_drake.rollout.kernel import first_stage, inertia_at, second_stage
-from hydrolek_drake.rollout.rates import State, Turned, carried_on, rates
 
 
 @njit

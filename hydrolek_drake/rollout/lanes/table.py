@@ -10,7 +10,7 @@ from hydrolek_drake.physics.angle import AngleKept
 from hydrolek_drake.physics.law import LAW
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.rollout.drive import Drive
-from hydrolek_drake.rollout.lane_view import LANES, NUMBERS
+from hydrolek_drake.rollout.lanes.view import LANES, NUMBERS
 from hydrolek_drake.rollout.rates import State, Turned
 
 _L = LANES

@@ -1,7 +1,7 @@
-"""What each of some joints does in a step of all of them (`together_joint`), as loops over lanes called by address.
+"""What each of some joints does in a step of all of them (`joint`), as loops over lanes called by address.
 
 Which loop a joint takes is told by its kind. With the loops' addresses as numbers, one compiled program drives machines
-of whatever joints (`together_lane_kernel`), and each kind is compiled once for all of them.
+of whatever joints (`lane_kernel`), and each kind is compiled once for all of them.
 """
 
 from functools import cache
@@ -15,9 +15,8 @@ from numba.extending import intrinsic
 from hydrolek_drake.compiling import COMPILED, njit
 from hydrolek_drake.physics.law import LAW, MOST_TERMS
 from hydrolek_drake.physics.probes import no_probe
-from hydrolek_drake.rollout.joint_rows import DRIVE, ROW_SIZE, X
-from hydrolek_drake.rollout.lane_numbers import lane_rows
-from hydrolek_drake.rollout.lane_view import (
+from hydrolek_drake.rollout.lanes.numbers import lane_rows
+from hydrolek_drake.rollout.lanes.view import (
     LANES,
     NUMBERS,
     Kind,
@@ -26,7 +25,8 @@ from hydrolek_drake.rollout.lane_view import (
     lane_law,
     spool_steps_of,
 )
-from hydrolek_drake.rollout.together_joint import begins, ends, goes_on, halfway
+from hydrolek_drake.rollout.together.joint import begins, ends, goes_on, halfway
+from hydrolek_drake.rollout.together.joint_rows import DRIVE, ROW_SIZE, X
 
 _L = LANES
 H, TIME = ROW_SIZE, ROW_SIZE + 1

@@ -17,7 +17,7 @@ import numba
 import numpy as np
 from llvmlite.binding import get_host_cpu_name
 
-from hydrolek_drake.rollout.lane_view import Kind
+from hydrolek_drake.rollout.lanes.view import Kind
 
 WORTH = 200
 """Machines of a kind that have been asked for before its loop is compiled: a fit of some steps, and no single look."""

@@ -1,4 +1,4 @@
-"""Machines in lanes: the chain of `kernel`, stepped in lockstep, with the lanes as the innermost loop.
+"""Machines in lanes: the chain of `rollout.kernel`, stepped in lockstep, with the lanes as the innermost loop.
 
 Each machine has its own command, moments at which it arrives, and times at which signals are wanted, and so its own
 steps between two rows of signals; a lane that needs fewer than another, or has ended, stands still for the rest. No
@@ -24,7 +24,7 @@ from hydrolek_drake.rollout.kernel import (
     pulled,
     written,
 )
-from hydrolek_drake.rollout.lane_table import (
+from hydrolek_drake.rollout.lanes.table import (
     COMMANDED,
     KEPT,
     NEAR,
@@ -50,7 +50,7 @@ from hydrolek_drake.rollout.lane_table import (
     put_sample,
     state_in,
 )
-from hydrolek_drake.rollout.lane_view import (
+from hydrolek_drake.rollout.lanes.view import (
     LANES,
     NUMBERS,
     early_of,
@@ -147,16 +147,16 @@ def integrate_lanes(
         joints: their records, shape (lanes,).
         numbers: the same as numbers, shape (lanes, n).
         laws: terms of their laws, rows of `law.LAW`, shape (lanes, terms); None without.
-        states: see `kernel.integrate`, shape (lanes, 17); hold the final states afterwards.
+        states: see `rollout.kernel.integrate`, shape (lanes, 17); hold the final states afterwards.
         command_times: [s], infinite behind the last one, shape (lanes, m).
         command_values: [V], NaN there, shape (lanes, m).
         times: when to write [s], shape (lanes, k).
         rows: how many of these there are, shape (lanes,).
         longest_step: [s], shape (lanes,).
         most_steps: at least as many as any machine takes between two of its times.
-        pull_time: as of `kernel.integrate` [s], shape (lanes,).
-        measured: as of `kernel.integrate`, shape (lanes, k, 3), or (lanes, 0, 3) where none is pulled.
-        probe_spacing: as of `kernel.integrate` [s], shape (lanes,).
+        pull_time: as of `rollout.kernel.integrate` [s], shape (lanes,).
+        measured: as of `rollout.kernel.integrate`, shape (lanes, k, 3), or (lanes, 0, 3) where none is pulled.
+        probe_spacing: as of `rollout.kernel.integrate` [s], shape (lanes,).
         probe_places: where the samples of each machine's inputs from outside begin among all, and how many it has,
             shape (lanes, 2).
         probe_values: samples, shape (all, 15); no rows without such inputs.

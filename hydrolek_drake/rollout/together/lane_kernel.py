@@ -1,7 +1,7 @@
-"""Joints that move together of several machines in lanes: the loop of `together_kernel`, stepped in lockstep.
+"""Joints that move together of several machines in lanes: the loop of `kernel`, stepped in lockstep.
 
-What a joint does by itself are loops over lanes of its kind (`together_lane_programs`), the arms' equation of motion is
-that of one machine, compiled for a number of each lane (`lane_numbers`). Machines have their own commands, moments at
+What a joint does by itself are loops over lanes of its kind (`lane_programs`), the arms' equation of motion is
+that of one machine, compiled for a number of each lane (`lanes.numbers`). Machines have their own commands, moments at
 which these arrive, and times at which signals are wanted; one that needs fewer steps than another between two rows, or
 has ended, stands still for the rest.
 """
@@ -13,7 +13,11 @@ import numpy as np
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import command, load
 from hydrolek_drake.physics.probes import no_probe
-from hydrolek_drake.rollout.joint_rows import (
+from hydrolek_drake.rollout.kernel import arrived, inertia_at, out_of_bounds, written
+from hydrolek_drake.rollout.lanes.numbers import lane_array, lane_rows
+from hydrolek_drake.rollout.lanes.view import LANES
+from hydrolek_drake.rollout.rates import kept, turned
+from hydrolek_drake.rollout.together.joint_rows import (
     BIAS,
     COMMAND,
     MASS,
@@ -29,13 +33,9 @@ from hydrolek_drake.rollout.joint_rows import (
     put_near,
     state_at,
 )
-from hydrolek_drake.rollout.kernel import arrived, inertia_at, out_of_bounds, written
-from hydrolek_drake.rollout.lane_numbers import lane_array, lane_rows
-from hydrolek_drake.rollout.lane_view import LANES
-from hydrolek_drake.rollout.rates import kept, turned
-from hydrolek_drake.rollout.together_kernel import next_stretch_of_all, put_payloads
-from hydrolek_drake.rollout.together_lane_programs import BLOCK, TIME, H, call_program
-from hydrolek_drake.rollout.together_rates import arm_begins, arm_equation, arm_goes_on, drawn_by_all
+from hydrolek_drake.rollout.together.kernel import next_stretch_of_all, put_payloads
+from hydrolek_drake.rollout.together.lane_programs import BLOCK, TIME, H, call_program
+from hydrolek_drake.rollout.together.rates import arm_begins, arm_equation, arm_goes_on, drawn_by_all
 
 _L = LANES
 
@@ -102,7 +102,7 @@ def integrate_together_lanes(
         carriers: records that say what hangs on each link. # (lanes, n)
         laws: terms of each joint's law, rows of `law.LAW`. # (lanes, n, terms)
         terms: how many of these a joint has. # (n,)
-        b: the table, see `together_lane_programs`, with the joints' numbers, `STATE`, `DRIVE` and `PLAY`.
+        b: the table, see `lane_programs`, with the joints' numbers, `STATE`, `DRIVE` and `PLAY`.
             # (n, BLOCK, lanes)
         vectors: room of `joint_rows`, of each lane. # (6, n, lanes)
         matrices: the same. # (3, n, n, lanes)

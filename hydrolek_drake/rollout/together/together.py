@@ -13,7 +13,6 @@ from hydrolek_drake.physics.law import LAW, law_of
 from hydrolek_drake.physics.records import as_usual
 from hydrolek_drake.physics.serial_arm import LINK_SIZE, moments_along, scratch
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.joint_rows import DRIVE, PLAY, RATES, SPOOL, STATE, room
 from hydrolek_drake.rollout.kernel import SIGNALS
 from hydrolek_drake.rollout.rest import rest_state
 from hydrolek_drake.rollout.rollout import (
@@ -23,7 +22,8 @@ from hydrolek_drake.rollout.rollout import (
     missing_number,
     why_diverged,
 )
-from hydrolek_drake.rollout.together_kernel import TOLD, integrate_together
+from hydrolek_drake.rollout.together.joint_rows import DRIVE, PLAY, RATES, SPOOL, STATE, room
+from hydrolek_drake.rollout.together.kernel import TOLD, integrate_together
 
 NO_LINKS = np.zeros((0, LINK_SIZE))
 
@@ -65,7 +65,7 @@ class RunTogether:
         records: of the joints. # (joints,)
         carriers: see `carriers_of`. # (joints,)
         laws: of each joint, rows of `law.LAW`.
-        begun: states at rest, see `kernel.integrate`; None where there is none. # (joints, 17)
+        begun: states at rest, see `rollout.kernel.integrate`; None where there is none. # (joints, 17)
         command_times: when commands change [s]. # (m,)
         command_values: held from then on [V]. # (m, joints)
         times: when signals are wanted [s]. # (k,)
@@ -206,7 +206,7 @@ class JointsTogether:
         longest_step: float | None = None,
         recorded: Mapping[str, tuple[float, np.ndarray]] | None = None,
     ) -> "RunTogether":
-        """The rollout that `roll_out` makes, to be made beside others (`together_lanes`); arguments as there."""
+        """The rollout that `roll_out` makes, to be made beside others (`lanes`); arguments as there."""
         own = np.ascontiguousarray(records[self._places])
         check_driven(own, recorded is not None)
         found = [law_of(own[i : i + 1]) for i in range(len(own))]
