@@ -1,6 +1,6 @@
 """The study of thesis sections 4.5 and 4.6: searches compared on the mechanical model.
 
-Results go to docs/evidence and docs/pictures.
+Results go to docs/evidence and docs/pictures/identification.
 
 Run as `python scripts/genetic_study.py [--runs 10] [--seed 1] [--out DIR]`.
 """
@@ -24,7 +24,7 @@ def main() -> None:
     found = run_study(chosen.seed, chosen.runs, lambda what: print(what, flush=True))
     seconds = time.perf_counter() - begun
     docs = Path(__file__).parents[1] / "docs"
-    folder, pictures = docs / "evidence", docs / "pictures"
+    folder, pictures = docs / "evidence", docs / "pictures" / "identification"
     if chosen.out is not None:
         folder, pictures = chosen.out, chosen.out / "pictures"
     today = datetime.date.today().isoformat()
