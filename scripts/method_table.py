@@ -58,7 +58,7 @@ def main() -> None:
     parser.add_argument(
         "--factor", type=float, default=2.0, help="half width of the box about the rig's values"
     )
-    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "evidence" / "method_table.json")
+    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "evidence" / "data" / "method_table.json")
     arguments = parser.parse_args()
     labels = {entry["id"]: entry for entry in json.loads((BENCH / "practice_labels.json").read_text())}
     machine = labels[arguments.pair]["machine"]
