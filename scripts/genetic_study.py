@@ -1,6 +1,6 @@
 """The study of thesis sections 4.5 and 4.6: searches compared on the mechanical model.
 
-Results go to docs/evidence and docs/pictures.
+Tables go to docs/evidence, numbers to its folder data, pictures to docs/pictures/identification.
 
 Run as `python scripts/genetic_study.py [--runs 10] [--seed 1] [--out DIR]`.
 """
@@ -24,11 +24,13 @@ def main() -> None:
     found = run_study(chosen.seed, chosen.runs, lambda what: print(what, flush=True))
     seconds = time.perf_counter() - begun
     docs = Path(__file__).parents[1] / "docs"
-    folder, pictures = docs / "evidence", docs / "pictures"
+    folder, pictures = docs / "evidence", docs / "pictures" / "identification"
+    data = folder / "data"
     if chosen.out is not None:
-        folder, pictures = chosen.out, chosen.out / "pictures"
+        folder = data = chosen.out
+        pictures = chosen.out / "pictures"
     today = datetime.date.today().isoformat()
-    written = write_study(found, folder, pictures, chosen.seed, today, seconds)
+    written = write_study(found, folder, data, pictures, chosen.seed, today, seconds)
     print(as_markdown(found), *written, sep="\n")
 
 

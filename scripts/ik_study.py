@@ -139,7 +139,7 @@ def main() -> None:
     parser.add_argument("--drake-targets", type=int, default=300)
     parser.add_argument("--most-iterations", type=int, default=10_000, help="of the Jacobian transpose")
     parser.add_argument("--seed", type=int, default=53)
-    parser.add_argument("--out", type=Path, default=Path("docs/evidence/kinematics.json"))
+    parser.add_argument("--out", type=Path, default=Path("docs/evidence/data/kinematics.json"))
     arguments = parser.parse_args()
     generator = np.random.default_rng(arguments.seed)
 

@@ -14,11 +14,11 @@ from pathlib import Path
 import numpy as np
 
 from hydrolek_drake.files import read_kept, write_whole
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.fit.rig_objective import RigObjective
-from hydrolek_drake.identification.genetic.multi_objective import pareto_set
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.identification.search.genetic.multi_objective import pareto_set
 from hydrolek_drake.identification.search.search import METHODS, SearchResult, search
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.rigs import load_rig
@@ -58,7 +58,7 @@ def main() -> None:
     parser.add_argument(
         "--factor", type=float, default=2.0, help="half width of the box about the rig's values"
     )
-    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "evidence" / "method_table.json")
+    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "evidence" / "data" / "method_table.json")
     arguments = parser.parse_args()
     labels = {entry["id"]: entry for entry in json.loads((BENCH / "practice_labels.json").read_text())}
     machine = labels[arguments.pair]["machine"]

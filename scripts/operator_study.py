@@ -263,11 +263,11 @@ def main() -> None:
     parser.add_argument("--tolerance", type=float, default=own, help="of the operator at the tool, mm")
     parser.add_argument("--plant", choices=("full", "sdp"), default="full")
     parser.add_argument(
-        "--out", type=Path, default=None, help="docs/evidence/operator_study_PLANT.json if not given"
+        "--out", type=Path, default=None, help="docs/evidence/data/operator_study_PLANT.json if not given"
     )
     arguments = parser.parse_args()
     logging.getLogger("drake").setLevel(logging.WARNING)
-    out = arguments.out or Path(f"docs/evidence/operator_study_{arguments.plant}.json")
+    out = arguments.out or Path(f"docs/evidence/data/operator_study_{arguments.plant}.json")
     settings = joint_settings(load_rig("hydrolek"))
     draw_setup(
         np.random.default_rng(arguments.seed)

@@ -81,7 +81,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--places", type=int, default=len(PLACES), help="how many of them")
-    parser.add_argument("--out", type=Path, default=Path("docs/evidence/place_study.json"))
+    parser.add_argument("--out", type=Path, default=Path("docs/evidence/data/place_study.json"))
     parser.add_argument("--add", action="store_true", help="measure only what --out does not hold yet")
     arguments = parser.parse_args()
     logging.getLogger("drake").setLevel(logging.WARNING)

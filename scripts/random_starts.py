@@ -1,6 +1,7 @@
 """Least squares on the healthy bench pairs from random starts in the rig's ranges: does every one end at the noise?
 
-Each start stands alone: no second chance from another start. Writes docs/evidence/random_starts.json after every start.
+Each start stands alone: no second chance from another start. Writes
+docs/evidence/data/random_starts.json after every start.
 """
 
 import argparse
@@ -12,11 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from hydrolek_drake.files import write_whole
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.fit.report import AT_NOISE
-from hydrolek_drake.identification.least_squares import fit_from_afar
+from hydrolek_drake.identification.least_squares.least_squares import fit_from_afar
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.rigs import load_rig
 
@@ -28,7 +29,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--starts", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--out", type=Path, default=ROOT / "docs" / "evidence" / "random_starts.json")
+    parser.add_argument(
+        "--out", type=Path, default=ROOT / "docs" / "evidence" / "data" / "random_starts.json"
+    )
     arguments = parser.parse_args()
     rig = load_rig("joint_bench")
     parameters = ParameterSet(rig, free_parameters(rig))

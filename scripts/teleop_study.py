@@ -182,7 +182,7 @@ def main() -> None:
     parser.add_argument("--distance", type=float, action="append", help=f"m; {DISTANCES} if not given")
     parser.add_argument("--plant", choices=("full", "simple"), default="full")
     parser.add_argument("--controller", default="feedforward", help="of the full plant")
-    parser.add_argument("--out", type=Path, default=Path("docs/evidence/teleop.json"))
+    parser.add_argument("--out", type=Path, default=Path("docs/evidence/data/teleop.json"))
     parser.add_argument("--add", action="store_true", help="measure only what --out does not hold yet")
     arguments = parser.parse_args()
     logging.getLogger("drake").setLevel(logging.WARNING)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Tables of the thesis's results beside ours, from docs/evidence/control.json.
+"""Tables of the thesis's results beside ours, from docs/evidence/data/control.json.
 
 They stand in docs/evidence/thesis_machine.md, and those of Table 6.10, the linear joint 4 and the grasp in
 docs/evidence/control.md.
 
 `hydrolek control bench [--plant full] --out DIR` writes the same comparisons as a page; its `bench.json` is what
-docs/evidence/control.json keeps under "sdp" and "full".
+docs/evidence/data/control.json keeps under "sdp" and "full".
 """
 
 import json
@@ -20,7 +20,7 @@ from hydrolek_drake.control.catalogue import CONTROLLERS
 from hydrolek_drake.control.comparison.bench_tables import MEASURES, Measure, beside, text
 from hydrolek_drake.control.comparison.thesis_tables import GRASP_TABLES, MACHINE_TABLES, printed
 
-RESULTS = Path(__file__).parents[1] / "docs" / "evidence" / "control.json"
+RESULTS = Path(__file__).parents[1] / "docs" / "evidence" / "data" / "control.json"
 JOINTS = ("right_j1", "right_j2", "right_j3", "right_j4")
 SHOWN = {
     "step": ("rise_s", "overshoot_percent", "switching"),

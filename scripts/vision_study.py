@@ -155,7 +155,7 @@ def main() -> None:
         "--clutter", type=int, nargs=2, metavar=("FIRST", "LAST"), help="seeds of rendered tables"
     )
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--out", type=Path, default=Path("docs/evidence/vision.json"))
+    parser.add_argument("--out", type=Path, default=Path("docs/evidence/data/vision.json"))
     arguments = parser.parse_args()
     if (arguments.folder is None) == (arguments.clutter is None):
         parser.error("give a folder of labelled frames, or --clutter FIRST LAST")

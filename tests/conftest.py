@@ -10,8 +10,8 @@ import pytest
 from hydrolek_drake.linear_algebra import in_one_thread
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig, load_rig
-from hydrolek_drake.rollout import lane_compiling
-from hydrolek_drake.rollout.together import JointsTogether
+from hydrolek_drake.rollout.lanes import compiling as lane_compiling
+from hydrolek_drake.rollout.together.together import JointsTogether
 
 in_one_thread()  # tests run side by side
 lane_compiling.WORTH = lane_compiling.WORTH_TOGETHER = 10**9  # nothing is compiled beside them for later runs

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.rollout.lanes import OFF, SWITCH
+from hydrolek_drake.rollout.lanes.lanes import OFF, SWITCH
 
 _MAIN = "from hydrolek_drake.cli.app import main; main()"
 TRAINING, HELD_OUT = "train.csv", "holdout.csv"

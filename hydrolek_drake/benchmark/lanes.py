@@ -9,16 +9,16 @@ from typing import Any
 
 import numpy as np
 
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.identification.sensitivity.varied import varied_parameters
 from hydrolek_drake.physics.records import flat, position_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rollout import roll_out
-from hydrolek_drake.rollout.lane_view import LANES
-from hydrolek_drake.rollout.lanes import one_by_one, roll_out_lanes
+from hydrolek_drake.rollout.lanes.lanes import one_by_one, roll_out_lanes
+from hydrolek_drake.rollout.lanes.view import LANES
 from hydrolek_drake.rollout.run import Run
 
 COUNTS = (1, 8, 20, 64)

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.benchmark.lanes import COLUMNS, COUNTS, SPREAD, LanesSpeed, median_seconds, varied
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.identification.problem_together import problem_of
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.identification.sensitivity.varied import varied_parameters
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.lanes import one_by_one
-from hydrolek_drake.rollout.together import JointsTogether
-from hydrolek_drake.rollout.together_lanes import roll_out_together
+from hydrolek_drake.rollout.lanes.lanes import one_by_one
+from hydrolek_drake.rollout.together.lanes import roll_out_together
+from hydrolek_drake.rollout.together.together import JointsTogether
 
 
 def measure_lanes_together(

@@ -18,7 +18,7 @@ from hydrolek_drake.benchmark.lanes_together import measure_jacobian_together, m
 from hydrolek_drake.benchmark.plain_bench import simulate_plainly
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
-from hydrolek_drake.rollout.together import JointsTogether
+from hydrolek_drake.rollout.together.together import JointsTogether
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import make_station
 from hydrolek_drake.station.step_sizes import StepSizes

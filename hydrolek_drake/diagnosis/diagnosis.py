@@ -25,8 +25,8 @@ from hydrolek_drake.diagnosis.structures.as_rig import enlarged_rig, room_for_la
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.splitting import prepared
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import Free, free_of_joints
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig

@@ -22,7 +22,7 @@ from hydrolek_drake.diagnosis.structures.splitting import halves, mixed
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
 
 INTERRUPTED = "interrupted: this is what was known by then; run it again for the whole answer"
 

@@ -7,11 +7,11 @@ from typing import TypeVar
 
 import numpy as np
 
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.sharing import shared_map
-from hydrolek_drake.rollout.lane_view import LANES
-from hydrolek_drake.rollout.lanes import roll_out_lanes, sharing
+from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes, sharing
+from hydrolek_drake.rollout.lanes.view import LANES
 from hydrolek_drake.rollout.run import Run
 
 DIFFERENCE = 1e-6

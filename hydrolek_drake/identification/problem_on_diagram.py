@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.experiments.recorded_together import recorded_of, recordings_of
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.recorded_together import recorded_of, recordings_of
 from hydrolek_drake.replay.by_diagram import moved_by_diagram
 from hydrolek_drake.replay.driving import Driven
 

@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.experiments.recorded_together import OneRecording, recordings_of
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.recorded_together import OneRecording, recordings_of
-from hydrolek_drake.rollout.lane_view import LANES
-from hydrolek_drake.rollout.together_lanes import roll_out_together
+from hydrolek_drake.rollout.lanes.view import LANES
+from hydrolek_drake.rollout.together.lanes import roll_out_together
 
 
 def problem_of(

@@ -9,9 +9,9 @@ import numpy as np
 
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
-from hydrolek_drake.rollout.lane_kinds import kind_of
-from hydrolek_drake.rollout.lane_view import LANES
-from hydrolek_drake.rollout.lanes import roll_out_lanes
+from hydrolek_drake.rollout.lanes.kinds import kind_of
+from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes
+from hydrolek_drake.rollout.lanes.view import LANES
 from hydrolek_drake.rollout.rollout import missing_number, with_own
 from hydrolek_drake.rollout.run import Run
 

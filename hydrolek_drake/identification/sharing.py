@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, wait
 from typing import TypeVar
 
-from hydrolek_drake.rollout.lanes import sharing
+from hydrolek_drake.rollout.lanes.lanes import sharing
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")

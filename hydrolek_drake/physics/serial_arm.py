@@ -94,7 +94,7 @@ def motion_equation(
     """Mass matrix, and the moments that hold the speeds as they are, against gravity too.
 
     What it does depends on the links alone, so that it can be compiled for numbers of many arms at once
-    (`rollout.lane_numbers`).
+    (`rollout.lanes.numbers`).
 
     Args:
         links: what turns, rows of `link`. # (n, 36)

@@ -9,7 +9,7 @@ from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.recorded_inputs import Inputs
 from hydrolek_drake.rollout.rest import rest_state_at_reading
 from hydrolek_drake.rollout.rollout import Signals, roll_out
-from hydrolek_drake.rollout.together import JointsTogether, moving_with
+from hydrolek_drake.rollout.together.together import JointsTogether, moving_with
 
 
 @dataclass(frozen=True)

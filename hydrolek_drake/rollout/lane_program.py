@@ -1,4 +1,4 @@
-"""The program that `lane_compiling` begins: compiles one loop over lanes, beside the work."""
+"""The program that `lanes.compiling` begins: compiles one loop over lanes, beside the work."""
 
 import contextlib
 import os
@@ -9,11 +9,11 @@ import numpy as np
 from hydrolek_drake.physics.law import LAW
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.physics.records import JOINT
-from hydrolek_drake.rollout.lane_compiling import compiled
-from hydrolek_drake.rollout.lane_kinds import kind_of
-from hydrolek_drake.rollout.lanes import one_table
+from hydrolek_drake.rollout.lanes.compiling import compiled
+from hydrolek_drake.rollout.lanes.kinds import kind_of
+from hydrolek_drake.rollout.lanes.lanes import one_table
 from hydrolek_drake.rollout.run import Run
-from hydrolek_drake.rollout.together_lanes import compile_for
+from hydrolek_drake.rollout.together.lanes import compile_for
 
 
 def main() -> None:

@@ -16,12 +16,12 @@ from hydrolek_drake.physics import command
 from hydrolek_drake.physics.records import as_usual
 from hydrolek_drake.physics.serial_arm import scratch
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.joint_rows import PLAY, STATE, put_state, room, state_at
 from hydrolek_drake.rollout.kernel import SIGNALS, pulled
 from hydrolek_drake.rollout.rest import rest_state
 from hydrolek_drake.rollout.rollout import PreparedJoint
-from hydrolek_drake.rollout.together import JointsTogether, RunTogether, moving_with, put_begun
-from hydrolek_drake.rollout.together_kernel import integrate_together
+from hydrolek_drake.rollout.together.joint_rows import PLAY, STATE, put_state, room, state_at
+from hydrolek_drake.rollout.together.kernel import integrate_together
+from hydrolek_drake.rollout.together.together import JointsTogether, RunTogether, moving_with, put_begun
 
 
 class _Commands:

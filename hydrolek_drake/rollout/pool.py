@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.rollout.lane_view import LANES, Kind
-from hydrolek_drake.rollout.lanes import FEW, compiled_kind_of, one_table, together_with
+from hydrolek_drake.rollout.lanes.lanes import FEW, compiled_kind_of, one_table, together_with
+from hydrolek_drake.rollout.lanes.view import LANES, Kind
 from hydrolek_drake.rollout.rollout import Outcome, with_own
 from hydrolek_drake.rollout.run import Run
 

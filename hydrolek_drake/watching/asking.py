@@ -9,9 +9,9 @@ from hydrolek_drake.diagnosis.report.words import unit_at
 from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.lockstep import descend, with_slopes
-from hydrolek_drake.identification.place import Place, fit_of
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.least_squares.lockstep import descend, with_slopes
+from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.replay.display import display_unit

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.least_squares.least_squares import Fit
 from hydrolek_drake.replay.display import display_factor
 from hydrolek_drake.watching.settings import POINTS
 

@@ -11,8 +11,8 @@ from threadpoolctl import threadpool_limits
 from hydrolek_drake.checking.clock import refuse_other_clock
 from hydrolek_drake.diagnosis.structures.splitting import reasons_against
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.search.cluster_jobs import ClusterJobs
 from hydrolek_drake.recordings import Recording, read_recording
 from hydrolek_drake.rigs import Rig

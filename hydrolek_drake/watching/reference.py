@@ -12,11 +12,11 @@ from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.lockstep import descend
-from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
+from hydrolek_drake.identification.least_squares.lockstep import descend
+from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.identification.parameter_set import free_of_joints
-from hydrolek_drake.identification.place import Place, fit_of
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.watching.knowledge import Knowledge, KnownProblem, KnownTogether, with_drift
 

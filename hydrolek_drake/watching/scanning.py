@@ -13,8 +13,8 @@ import numpy as np
 from hydrolek_drake.diagnosis.fitting.projection import Across
 from hydrolek_drake.diagnosis.settings import FITS
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, redundant
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.place import Place, fit_of
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.identification.rolling import Request, residuals_at
 from hydrolek_drake.watching.knowledge import Knowledge
 from hydrolek_drake.watching.likelihood import Branch

@@ -9,7 +9,7 @@ from pathlib import Path
 from threadpoolctl import threadpool_limits
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.search.cluster_jobs import ClusterJobs
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.watching.alarms import (

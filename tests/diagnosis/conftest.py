@@ -13,10 +13,10 @@ from hydrolek_drake.diagnosis.inquiry import Answer, Inquiry
 from hydrolek_drake.diagnosis.settings import Rung
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.parameter_set import free_parameters
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig, load_rig

@@ -9,8 +9,8 @@ import pytest
 from hydrolek_drake.challenge.cases import read_case, record
 from hydrolek_drake.diagnosis.diagnosis import _nominal, diagnose
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
-from hydrolek_drake.identification.natural_scales import natural_scales
-from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.recordings import Recording, read_recording
 from hydrolek_drake.rigs import load_rig
 

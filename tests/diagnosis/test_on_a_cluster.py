@@ -9,7 +9,7 @@ import pytest
 
 from hydrolek_drake.cli.app import run
 from hydrolek_drake.identification.search.cluster_pool import ClusterPool
-from hydrolek_drake.rollout.lanes import roll_out_lanes
+from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes
 from hydrolek_drake.rollout.run import Run
 
 

@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 ROOT = Path(__file__).parents[2]
-FIGURES = yaml.safe_load((ROOT / "docs" / "evidence" / "figures.yaml").read_text(encoding="utf-8"))
+FIGURES = yaml.safe_load((ROOT / "docs" / "evidence" / "data" / "figures.yaml").read_text(encoding="utf-8"))
 PAGES = [*sorted((ROOT / "docs").rglob("*.md")), ROOT / "README.md"]
 
 

@@ -62,7 +62,7 @@ def test_every_picture_is_shown():
         for mark, target in LINK.findall(_text(page))
         if mark
     }
-    assert not {p.name for p in (DOCS / "pictures").iterdir()} - {p.name for p in shown}
+    assert not set((DOCS / "pictures").rglob("*.png")) - shown
 
 
 def test_every_page_is_in_the_site():

@@ -16,7 +16,7 @@ from hydrolek_drake.fmu.model import Model, resources
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.rollout.rollout import Signals
-from hydrolek_drake.rollout.together import JointsTogether
+from hydrolek_drake.rollout.together.together import JointsTogether
 
 pytest.importorskip("fmpy", reason="needs the extra fmu")
 pytest.importorskip("pythonfmu", reason="needs the extra fmu")

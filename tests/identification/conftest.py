@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig, load_rig
 

@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrolek_drake.identification.continuation import Continuation, spread_evenly
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.fit import fit_rig
+from hydrolek_drake.identification.least_squares.continuation import Continuation, spread_evenly
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording, read_recording
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out

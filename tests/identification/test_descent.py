@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hydrolek_drake.identification.least_squares import ROUGH, fit_from
+from hydrolek_drake.identification.least_squares.least_squares import ROUGH, fit_from
 
 VALUES, PARAMETERS = 200, 3
 OFF = 0.3

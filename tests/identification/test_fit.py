@@ -8,13 +8,13 @@ import yaml
 
 from hydrolek_drake.cli.app import run
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.fit import fit_rig
 from hydrolek_drake.identification.fit.report import sentences, write_fit
 from hydrolek_drake.identification.fit.rig_objective import RigObjective
-from hydrolek_drake.identification.least_squares import multi_start
+from hydrolek_drake.identification.least_squares.least_squares import multi_start
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.rigs import load_rig
 

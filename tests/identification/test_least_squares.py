@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.intervals.curvature import intervals_of
-from hydrolek_drake.identification.least_squares import fit_from, fit_from_afar, multi_start
+from hydrolek_drake.identification.experiments.recorded import experiments_of
+from hydrolek_drake.identification.least_squares.least_squares import fit_from, fit_from_afar, multi_start
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import read_recording
 
 BENCH = Path(__file__).parents[1] / "data" / "bench"

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.fitting.line_search import Along, searched_along
-from hydrolek_drake.identification.least_squares import fit_from
-from hydrolek_drake.identification.lockstep import descend
+from hydrolek_drake.identification.least_squares.least_squares import fit_from
+from hydrolek_drake.identification.least_squares.lockstep import descend
+from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
-from hydrolek_drake.identification.place import Place
 from hydrolek_drake.identification.problem import Problem
 
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from hydrolek_drake.identification.genetic.multi_objective import pareto_set
 from hydrolek_drake.identification.mechanical.mechanical_model import (
     MechanicalModel,
     mechanical_parameters,
@@ -12,6 +11,7 @@ from hydrolek_drake.identification.mechanical.mechanical_model import (
 from hydrolek_drake.identification.mechanical.study import Study, cut, recommended, study_data
 from hydrolek_drake.identification.objective.output_error import OutputError
 from hydrolek_drake.identification.search import search
+from hydrolek_drake.identification.search.genetic.multi_objective import pareto_set
 
 
 def test_tables_4_2_to_4_7_are_in_the_study_with_the_thesis_s_sums():

@@ -7,8 +7,13 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.identification.neighbours import drawn_flow, effects_of_others, motion, rows_at
-from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.identification.experiments.neighbours import (
+    drawn_flow,
+    effects_of_others,
+    motion,
+    rows_at,
+)
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.kinematics.arms import load_of_joint
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.recordings import Recording

@@ -5,11 +5,11 @@ import pickle
 import numpy as np
 import pytest
 
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.fit.fitting import fit_rig
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether, problem_of
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.rigs import load_rig
 
 pytestmark = pytest.mark.xdist_group("joints together")

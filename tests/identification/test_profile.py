@@ -8,7 +8,7 @@ import pytest
 from scipy.stats import norm
 
 from hydrolek_drake.cli.app import run
-from hydrolek_drake.identification.profile import profile
+from hydrolek_drake.identification.least_squares.profile import profile
 
 BENCH = Path(__file__).parents[1] / "data" / "bench" / "practice_01"
 

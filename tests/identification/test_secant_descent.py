@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from hydrolek_drake.identification.least_squares import fit_from
+from hydrolek_drake.identification.least_squares.least_squares import fit_from
+from hydrolek_drake.identification.least_squares.secant_descent import SecantDescent, corrected
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.secant_descent import SecantDescent, corrected
 
 PATHS = ["supply.pressure", "valve.max_area_a", "load.gravity_cos", "fluid.bulk_modulus"]
 ALL = np.ones(4, dtype=bool)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import OptimizeResult, least_squares
 
-from hydrolek_drake.identification.least_squares import EDGE, fit_from
+from hydrolek_drake.identification.least_squares.least_squares import EDGE, fit_from
 
 VALUES, PARAMETERS = 60, 4
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from hydrolek_drake.identification.recorded import experiments_of
-from hydrolek_drake.identification.thinning import STEPS, Blocks, block_size
+from hydrolek_drake.identification.experiments.recorded import experiments_of
+from hydrolek_drake.identification.experiments.thinning import STEPS, Blocks, block_size
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rollout.rollout import roll_out

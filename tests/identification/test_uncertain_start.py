@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import load_rig
 

@@ -9,12 +9,12 @@ import pytest
 
 from hydrolek_drake.cli.app import run
 from hydrolek_drake.identification.choices import METHODS
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.fit import fit_rig
 from hydrolek_drake.identification.fit.rig_objective import RigObjective
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_on_diagram import ProblemOnDiagram
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import read_recording, write_recording
 from hydrolek_drake.replay.confirmation import confirm
 from hydrolek_drake.rigs import load_rig

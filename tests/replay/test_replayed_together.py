@@ -5,8 +5,8 @@ from dataclasses import replace as changed
 import numpy as np
 import pytest
 
-from hydrolek_drake.identification.recorded import experiments_of
-from hydrolek_drake.identification.recorded_together import OneRecording
+from hydrolek_drake.identification.experiments.recorded import experiments_of
+from hydrolek_drake.identification.experiments.recorded_together import OneRecording
 from hydrolek_drake.replay import compare, replay
 from hydrolek_drake.replay.by_diagram import moved_by_diagram
 from hydrolek_drake.replay.driving import Driven, Moved, moved

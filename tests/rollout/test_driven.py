@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.parameter_set import free_parameters
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.physics.driven import is_driven
 from hydrolek_drake.physics.records import JOINT, as_usual
 from hydrolek_drake.recordings import Recording
@@ -13,7 +13,7 @@ from hydrolek_drake.replay.by_diagram import moved_by_diagram
 from hydrolek_drake.replay.replay import replay
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
-from hydrolek_drake.rollout.lanes import roll_out_lanes
+from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes
 
 SUPPLY = ("supply.pressure",)
 SPOOL = ("joint.spool",)

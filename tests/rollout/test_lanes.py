@@ -13,11 +13,11 @@ from hydrolek_drake.physics.law import LAW, OTHERS, PLACES, SPEEDS, TERM_NAMES, 
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.physics.records import flat, position_of
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.rollout import lane_compiling
 from hydrolek_drake.rollout.kernel import SIGNALS
-from hydrolek_drake.rollout.lane_kinds import kind_of
-from hydrolek_drake.rollout.lane_view import LANES
-from hydrolek_drake.rollout.lanes import roll_out_lanes
+from hydrolek_drake.rollout.lanes import compiling as lane_compiling
+from hydrolek_drake.rollout.lanes.kinds import kind_of
+from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes
+from hydrolek_drake.rollout.lanes.view import LANES
 from hydrolek_drake.rollout.rest import rest_state_at_reading
 from hydrolek_drake.rollout.rollout import roll_out, with_own
 from hydrolek_drake.rollout.run import Run

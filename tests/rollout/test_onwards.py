@@ -8,7 +8,7 @@ from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.rollout.kernel import SIGNALS
 from hydrolek_drake.rollout.onwards import onwards
-from hydrolek_drake.rollout.together import JointsTogether
+from hydrolek_drake.rollout.together.together import JointsTogether
 
 pytestmark = pytest.mark.xdist_group("joints together")
 

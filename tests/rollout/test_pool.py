@@ -11,11 +11,11 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.sharing import shared_map
 from hydrolek_drake.physics.records import flat, position_of
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.rollout import lanes
 from hydrolek_drake.rollout import pool as pool_module
 from hydrolek_drake.rollout.kernel import SIGNALS
-from hydrolek_drake.rollout.lane_view import LANES
-from hydrolek_drake.rollout.lanes import roll_out_lanes
+from hydrolek_drake.rollout.lanes import lanes
+from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes
+from hydrolek_drake.rollout.lanes.view import LANES
 from hydrolek_drake.rollout.pool import RolloutPool
 from hydrolek_drake.rollout.run import Run
 

@@ -5,18 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem_together import problem_of
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.physics.law import LAW
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.physics.records import flat, position_of
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.rollout import lane_compiling, together_lanes
-from hydrolek_drake.rollout.lane_view import LANES
-from hydrolek_drake.rollout.lanes import one_by_one
-from hydrolek_drake.rollout.together import JointsTogether
-from hydrolek_drake.rollout.together_lanes import roll_out_together
+from hydrolek_drake.rollout.lanes import compiling as lane_compiling
+from hydrolek_drake.rollout.lanes.lanes import one_by_one
+from hydrolek_drake.rollout.lanes.view import LANES
+from hydrolek_drake.rollout.together import lanes as together_lanes
+from hydrolek_drake.rollout.together.lanes import roll_out_together
+from hydrolek_drake.rollout.together.together import JointsTogether
 
 pytestmark = [pytest.mark.xdist_group("joints together"), pytest.mark.thorough]
 

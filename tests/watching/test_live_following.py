@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.physics import sensor
 from hydrolek_drake.recordings import Recording, read_recording
 from hydrolek_drake.rigs import load_rig

@@ -16,7 +16,7 @@ from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.splitting import short_blocks
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
 
 
 @dataclass(frozen=True)

@@ -24,10 +24,10 @@ from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import Fit
-from hydrolek_drake.identification.lockstep import descend, with_slopes
-from hydrolek_drake.identification.place import Place
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.least_squares.least_squares import Fit
+from hydrolek_drake.identification.least_squares.lockstep import descend, with_slopes
+from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
 

@@ -16,10 +16,10 @@ from hydrolek_drake.diagnosis.fitting.projection import Across
 from hydrolek_drake.diagnosis.fitting.race import hypothesis_of
 from hydrolek_drake.diagnosis.settings import EXPERIMENTS, GAINS
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.channel import Channel
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.lockstep import with_slopes
-from hydrolek_drake.identification.place import Place
+from hydrolek_drake.identification.experiments.channel import Channel
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.least_squares.lockstep import with_slopes
+from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hydrolek_drake.identification.normal_equations import normal_step
-from hydrolek_drake.identification.place import Place
+from hydrolek_drake.identification.least_squares.normal_equations import normal_step
+from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
 

@@ -7,7 +7,7 @@ change of the residuals is its part across the columns of J.
 import numpy as np
 
 from hydrolek_drake.diagnosis.settings import FITS
-from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.least_squares.least_squares import Fit
 
 
 class Across:

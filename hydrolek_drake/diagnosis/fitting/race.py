@@ -13,10 +13,10 @@ from hydrolek_drake.diagnosis.fitting.line_search import Along, searched_along
 from hydrolek_drake.diagnosis.settings import FITS, NOISE, Rung
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.lockstep import descend, with_slopes
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.least_squares.lockstep import descend, with_slopes
+from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.identification.parameter_set import Free
-from hydrolek_drake.identification.place import Place, fit_of
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
 

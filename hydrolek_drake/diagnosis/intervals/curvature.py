@@ -6,7 +6,7 @@ import numpy as np
 from scipy.stats import norm
 
 from hydrolek_drake.diagnosis.settings import EVIDENCE
-from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.least_squares.least_squares import Fit
 from hydrolek_drake.identification.parameter_set import ParameterSet
 
 NORMAL = float(norm.ppf(0.5 + 0.5 * EVIDENCE.confidence))

@@ -24,14 +24,14 @@ from hydrolek_drake.diagnosis.intervals.step_error import without_step_error
 from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS
 from hydrolek_drake.diagnosis.structures.weighing import felt_together
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench, moments_of
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.least_squares.least_squares import Fit
+from hydrolek_drake.identification.least_squares.profile import Profile, profile
+from hydrolek_drake.identification.least_squares.secant_descent import SecantDescent
 from hydrolek_drake.identification.parameter_set import Free
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
-from hydrolek_drake.identification.profile import Profile, profile
 from hydrolek_drake.identification.rolling import Request, residuals_at
-from hydrolek_drake.identification.secant_descent import SecantDescent
 
 
 class LastNumbers:

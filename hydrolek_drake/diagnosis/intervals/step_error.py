@@ -16,7 +16,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.lost_commands.windows import arrivals
 from hydrolek_drake.diagnosis.settings import FITS
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.problem import Problem
 
 

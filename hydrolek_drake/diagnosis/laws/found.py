@@ -17,8 +17,8 @@ from hydrolek_drake.diagnosis.lost_commands.search import lost_in
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows, Windows, arrivals, recording_of
 from hydrolek_drake.diagnosis.settings import DROPOUTS, LOCATING, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.least_squares.least_squares import Fit
 from hydrolek_drake.physics.law import PLACED
 from hydrolek_drake.rollout.rollout import Signals
 

@@ -11,8 +11,8 @@ from hydrolek_drake.diagnosis.intervals.curvature import NORMAL, Interval, covar
 from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.laws.terms import CONSTANT, Span, Term, law_record, law_records
 from hydrolek_drake.diagnosis.settings import LOCATING
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.least_squares.least_squares import Fit
 from hydrolek_drake.physics.law import PLACED
 from hydrolek_drake.replay.display import shown
 from hydrolek_drake.rollout.rollout import Signals

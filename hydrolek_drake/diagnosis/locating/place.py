@@ -11,8 +11,8 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.laws.law import FoundLaw
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.least_squares.least_squares import Fit
 from hydrolek_drake.replay.conditions import conditions_of, growth, shares
 from hydrolek_drake.replay.noise import samples_in, smoothed
 from hydrolek_drake.replay.spans import SMOOTHING_S, worst_spans

@@ -21,7 +21,7 @@ from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.settings import LOCATING
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rollout.one_point import law_along, stroke_and_lever
 from hydrolek_drake.rollout.rollout import Signals

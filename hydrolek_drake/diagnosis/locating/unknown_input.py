@@ -29,11 +29,11 @@ from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.lost_commands.windows import arrivals
 from hydrolek_drake.diagnosis.settings import FITS, LOCATING
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.lockstep import descend, with_slopes
-from hydrolek_drake.identification.place import Place
-from hydrolek_drake.rollout.lane_view import LANES
-from hydrolek_drake.rollout.lanes import roll_out_lanes
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.least_squares.lockstep import descend, with_slopes
+from hydrolek_drake.identification.least_squares.place import Place
+from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes
+from hydrolek_drake.rollout.lanes.view import LANES
 from hydrolek_drake.rollout.rollout import Signals
 from hydrolek_drake.rollout.run import Run
 

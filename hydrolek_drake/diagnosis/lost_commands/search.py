@@ -25,9 +25,9 @@ from hydrolek_drake.diagnosis.lost_commands.windows import (
 from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.lockstep import descend
-from hydrolek_drake.identification.place import Place
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.least_squares.lockstep import descend
+from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
 

@@ -20,7 +20,7 @@ from hydrolek_drake.diagnosis.lost_commands.windows import (
 )
 from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.rollout.run import Run
 
 

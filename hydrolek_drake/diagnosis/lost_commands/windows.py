@@ -17,7 +17,7 @@ from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.laws.terms import Span
 from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS
 from hydrolek_drake.diagnosis.structures.addition import Addition
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.rollout.run import Run

@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.report.packing import packed
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
 
 DIGITS = 5
 """Of lengths [m] and turns."""

@@ -22,7 +22,7 @@ from hydrolek_drake.diagnosis.report.words import (
     unit_at,
     where_sentence,
 )
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.replay.display import display_factor, display_unit
 
 MOST_LISTED = 12

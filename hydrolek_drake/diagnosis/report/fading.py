@@ -9,9 +9,9 @@ from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.laws.law import records_of
 from hydrolek_drake.diagnosis.report.panels import law_values, shown_experiments
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.rollout.lane_view import LANES
-from hydrolek_drake.rollout.lanes import roll_out_lanes
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes
+from hydrolek_drake.rollout.lanes.view import LANES
 from hydrolek_drake.rollout.rollout import Signals
 from hydrolek_drake.rollout.run import Run
 

@@ -17,8 +17,8 @@ from hydrolek_drake.diagnosis.report.panels import (
     partly_fitted,
     shown_experiments,
 )
-from hydrolek_drake.identification.channel import Channel
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.channel import Channel
+from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.replay.display import display_factor, display_unit
 from hydrolek_drake.replay.spans import BEYOND_NOISE
 from hydrolek_drake.rollout.rollout import Signals

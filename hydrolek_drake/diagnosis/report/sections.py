@@ -14,7 +14,7 @@ from hydrolek_drake.diagnosis.report.equations import equation_of
 from hydrolek_drake.diagnosis.report.look_at import stage_sentences
 from hydrolek_drake.diagnosis.report.words import behind, off_zero_sentences, quantity, with_interval
 from hydrolek_drake.diagnosis.settings import EVIDENCE
-from hydrolek_drake.identification.thinning import STEPS
+from hydrolek_drake.identification.experiments.thinning import STEPS
 from hydrolek_drake.replay.display import ratio, three_digits
 from hydrolek_drake.rigs.rig import declaration
 

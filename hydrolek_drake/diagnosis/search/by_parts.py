@@ -8,7 +8,7 @@ from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Workbench
-from hydrolek_drake.identification.continuation import Continuation
+from hydrolek_drake.identification.least_squares.continuation import Continuation
 
 
 def can_be_cut(bench: Workbench) -> bool:
@@ -23,7 +23,7 @@ def can_be_cut(bench: Workbench) -> bool:
 def by_parts(
     bench: Workbench, effects: tuple[Addition, ...], values: Mapping[str, float], cores: int
 ) -> dict[str, float]:
-    """Numbers of a structure by a fit that is cut at the recorded supply pressure; see `identification.continuation`.
+    """Numbers of a structure by a fit that is cut at the recorded supply pressure; see `least_squares.continuation`.
 
     Args:
         bench: data and problems.

@@ -18,8 +18,8 @@ from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS, GAINS, NOISE, Rung
 from hydrolek_drake.diagnosis.structures.addition import Sized, names_of
 from hydrolek_drake.diagnosis.structures.candidates import redundant
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.lockstep import descend
-from hydrolek_drake.identification.place import Place
+from hydrolek_drake.identification.least_squares.lockstep import descend
+from hydrolek_drake.identification.least_squares.place import Place
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from hydrolek_drake.diagnosis.fitting.race import hypothesis_of, problem_with
 from hydrolek_drake.diagnosis.settings import GAINS, Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition, Sized
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
-from hydrolek_drake.identification.place import Place
+from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.rolling import Request, residuals_at
 

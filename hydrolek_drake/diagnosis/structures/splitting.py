@@ -6,8 +6,8 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.settings import DATA
 from hydrolek_drake.errors import InputError, UninformativeError
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
 

@@ -3,7 +3,7 @@
 Joints of one arm shake each other on their oil, faster than smoothed angles tell. Near the noise that matters: a
 healthy machine would look as if something were missing. A rollout of all joints with a fitted model's values tells it.
 Its motion and flows then stand as known inputs of each joint's own rollout, which gives the same movement at these
-values (`identification.neighbours`), and nearly so at values close by: the fit goes on with them and asks again.
+values (`experiments.neighbours`), and nearly so at values close by: the fit goes on with them and asks again.
 
 **Discrepancy of each signal.** Where no structure comes near the noise of any signal, what is left is the model's own
 error and not the sensor's, and a signal with little noise would decide alone. Its variance is then estimated for each
@@ -20,13 +20,13 @@ from hydrolek_drake.diagnosis.lost_commands.windows import arrivals
 from hydrolek_drake.diagnosis.settings import DATA, NOISE
 from hydrolek_drake.diagnosis.structures.as_rig import rig_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.channel import faithful
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.neighbours import probes_of
-from hydrolek_drake.identification.recorded_together import OneRecording, recordings_of
+from hydrolek_drake.identification.experiments.channel import faithful
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.experiments.neighbours import probes_of
+from hydrolek_drake.identification.experiments.recorded_together import OneRecording, recordings_of
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.together import Together
+from hydrolek_drake.rollout.together.together import Together
 
 
 def weighted_by(

@@ -15,12 +15,12 @@ from hydrolek_drake.diagnosis.lost_commands.windows import LostProblem, LostWind
 from hydrolek_drake.diagnosis.progress import Progress
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.experiments.recorded_together import OneRecording
+from hydrolek_drake.identification.least_squares.least_squares import Fit
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
-from hydrolek_drake.identification.recorded_together import OneRecording
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.pool import RolloutPool
 

@@ -5,14 +5,14 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 
 import numpy as np
 
-from hydrolek_drake.identification.continuation import Continuation
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.least_squares import GOOD_ENOUGH, Fit, fit_from
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.least_squares.continuation import Continuation
+from hydrolek_drake.identification.least_squares.least_squares import GOOD_ENOUGH, Fit, fit_from
+from hydrolek_drake.identification.least_squares.place import Place, fit_of
+from hydrolek_drake.identification.least_squares.secant_descent import SecantDescent
 from hydrolek_drake.identification.parameter_set import ParameterSet
-from hydrolek_drake.identification.place import Place, fit_of
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether, problem_of
-from hydrolek_drake.identification.secant_descent import SecantDescent
 
 ROUNDS = 10
 """So often two starts are tried: the rig's own values and the middle of its ranges, then random ones."""

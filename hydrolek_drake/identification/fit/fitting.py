@@ -11,17 +11,17 @@ import numpy as np
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.choices import METHODS, PLANTS
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.fit.by_least_squares import by_least_squares
 from hydrolek_drake.identification.fit.rig_objective import RigObjective
-from hydrolek_drake.identification.genetic.settings import GeneticSettings
 from hydrolek_drake.identification.identifiability import Identifiability, identifiability
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet, free_of_joints, free_parameters
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_on_diagram import ProblemOnDiagram
 from hydrolek_drake.identification.problem_together import problem_of
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.identification.search.cluster import ClusterWorkers
 from hydrolek_drake.identification.search.evaluation import Mapping
+from hydrolek_drake.identification.search.genetic.settings import GeneticSettings
 from hydrolek_drake.identification.search.journal import Journal
 from hydrolek_drake.identification.search.search import SearchResult, search
 from hydrolek_drake.identification.search.workers import ProcessWorkers, ThreadWorkers

@@ -11,11 +11,11 @@ import numpy as np
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.files import write_results
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.fit.fitting import SIGNALS, RigFit
+from hydrolek_drake.identification.least_squares.profile import CONFIDENCE, Profile, profile
 from hydrolek_drake.identification.parameter_set import Free
 from hydrolek_drake.identification.problem_together import problem_of
-from hydrolek_drake.identification.profile import CONFIDENCE, Profile, profile
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import Rig
 

@@ -8,8 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.identification.genetic.multi_objective import pareto_set
-from hydrolek_drake.identification.genetic.settings import SIMPLE, GeneticSettings
 from hydrolek_drake.identification.mechanical.mechanical_model import (
     MechanicalModel,
     mechanical_data,
@@ -17,6 +15,8 @@ from hydrolek_drake.identification.mechanical.mechanical_model import (
     simulated_experiment,
 )
 from hydrolek_drake.identification.objective.output_error import OutputError
+from hydrolek_drake.identification.search.genetic.multi_objective import pareto_set
+from hydrolek_drake.identification.search.genetic.settings import SIMPLE, GeneticSettings
 from hydrolek_drake.identification.search.search import METHODS, SearchResult, search
 from hydrolek_drake.yaml_files import package_yaml
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.files import write_results
-from hydrolek_drake.identification.genetic.settings import SIMPLE
 from hydrolek_drake.identification.mechanical.mechanical_model import mechanical_parameters
 from hydrolek_drake.identification.mechanical.study import Run, study_data
+from hydrolek_drake.identification.search.genetic.settings import SIMPLE
 
 CURVES = {
     "learning_fitness": ("(4.13) p = inf", "(4.13) p = 1", "(4.13) p = 2", "(4.14) p = inf"),
@@ -139,15 +139,23 @@ def learning_picture(runs: Sequence[Run], name: str) -> bytes:
 
 
 def write_study(
-    found: dict[str, list[Run]], folder: Path, pictures: Path, seed: int, date: str, seconds: float
+    found: dict[str, list[Run]],
+    folder: Path,
+    data: Path,
+    pictures: Path,
+    seed: int,
+    date: str,
+    seconds: float,
 ) -> list[Path]:
-    """Write JSON and tables to one folder, pictures to another; each under a temporary name first."""
-    contents: dict[str, bytes] = {
-        "genetic_study.json": (json.dumps(as_json(found, seed, date, seconds), indent=1) + "\n").encode(),
+    """Write tables to one folder, JSON and pictures to others; each under a temporary name first."""
+    numbers = {
+        "genetic_study.json": (json.dumps(as_json(found, seed, date, seconds), indent=1) + "\n").encode()
+    }
+    tables = {
         "genetic_study_tables.md": (
             f"# Results of scripts/genetic_study.py, {date}, seed {seed}, {seconds / 60.0:.0f} min\n\n"
             + as_markdown(found)
         ).encode(),
     }
     drawn = {f"{name}.png": learning_picture(found["sweep"], name) for name in CURVES}
-    return write_results(folder, contents) + write_results(pictures, drawn)
+    return write_results(data, numbers) + write_results(folder, tables) + write_results(pictures, drawn)

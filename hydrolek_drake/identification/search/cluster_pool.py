@@ -6,7 +6,7 @@ from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from typing import Any
 
 from hydrolek_drake.identification.search.cluster import RETRIES, connected
-from hydrolek_drake.rollout.lanes import roll_out_lanes, together_with
+from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes, together_with
 from hydrolek_drake.rollout.rollout import Outcome
 from hydrolek_drake.rollout.run import Run
 

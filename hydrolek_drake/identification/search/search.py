@@ -9,8 +9,8 @@ import numpy as np
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.choices import METHODS
-from hydrolek_drake.identification.genetic.settings import MULTI_TEXT, SIMPLE, GeneticSettings
 from hydrolek_drake.identification.search.evaluation import BudgetSpent, Evaluator, Mapping
+from hydrolek_drake.identification.search.genetic.settings import MULTI_TEXT, SIMPLE, GeneticSettings
 from hydrolek_drake.identification.search.journal import Journal
 
 
@@ -97,11 +97,11 @@ def search(
     interrupted = False
     try:
         if method == "ga":
-            from hydrolek_drake.identification.genetic.simple import run_simple
+            from hydrolek_drake.identification.search.genetic.simple import run_simple
 
             run_simple(evaluator, settings or SIMPLE, rng, starts)
         elif method == "nsga2":
-            from hydrolek_drake.identification.genetic.multi_objective import run_multi_objective
+            from hydrolek_drake.identification.search.genetic.multi_objective import run_multi_objective
 
             run_multi_objective(evaluator, settings or MULTI_TEXT, rng, starts)
         elif method == "de":
@@ -156,7 +156,7 @@ def _result(method: str, evaluator: Evaluator, seconds: float, interrupted: bool
     )
     if method != "nsga2":
         return result
-    from hydrolek_drake.identification.genetic.multi_objective import pareto_set
+    from hydrolek_drake.identification.search.genetic.multi_objective import pareto_set
 
     front = pareto_set(np.array([evaluator.point(unit) for unit in units]), scores)
     final = front.average

@@ -5,12 +5,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.fit.rig_objective import RigObjective
-from hydrolek_drake.identification.least_squares import Fit, multi_start
+from hydrolek_drake.identification.least_squares.least_squares import Fit, multi_start
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.identification.search.search import search
 from hydrolek_drake.identification.two_step.gain_rig import gain_path, gain_rig
 from hydrolek_drake.identification.two_step.settings import (

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.recordings import Recording, write_signals
 from hydrolek_drake.replay.readings import position_key
 from hydrolek_drake.rigs import Rig

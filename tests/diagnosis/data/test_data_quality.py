@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.structures.splitting import reasons_against
-from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.recordings import Recording, read_recording
 
 TIME = np.arange(0.0, 20.0, 0.01)

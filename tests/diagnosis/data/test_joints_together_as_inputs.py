@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.structures.weighing import felt_together
-from hydrolek_drake.identification.experiment import Experiment
-from hydrolek_drake.identification.recorded import experiments_of
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 
 pytestmark = pytest.mark.xdist_group("joints together")
 

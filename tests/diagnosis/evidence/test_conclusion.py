@@ -15,7 +15,7 @@ from hydrolek_drake.diagnosis.evidence.judged import (
 from hydrolek_drake.diagnosis.evidence.judging import pays, predicts
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
-from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.least_squares.least_squares import Fit
 
 COUNTED = 4000
 
@@ -30,7 +30,7 @@ def _judged(effects, over_noise: float, ahead: float | None = None) -> Judged:
 
 @pytest.fixture(scope="module")
 def effect(bench, recorded):
-    from hydrolek_drake.identification.natural_scales import natural_scales
+    from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 
     scales = natural_scales(bench, "joint", recorded(bench, bench))
     return {c.id: c for c in candidates_of(bench, "joint", scales)}

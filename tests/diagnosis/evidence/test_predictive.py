@@ -5,7 +5,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.evidence.judging import predictive
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD
-from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.least_squares.least_squares import Fit
 
 VALUES, PARAMETERS = 60, 4
 

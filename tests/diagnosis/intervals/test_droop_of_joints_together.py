@@ -11,11 +11,11 @@ from hydrolek_drake.diagnosis.intervals.last_numbers import with_last_numbers
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.weighing import felt_together
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
-from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.recorded import experiments_of
+from hydrolek_drake.identification.experiments.recorded_together import OneRecording, recordings_of
 from hydrolek_drake.identification.parameter_set import free_parameters
 from hydrolek_drake.identification.problem_together import ProblemTogether
-from hydrolek_drake.identification.recorded import experiments_of
-from hydrolek_drake.identification.recorded_together import OneRecording, recordings_of
 from hydrolek_drake.rigs import Rig, load_rig
 
 pytestmark = pytest.mark.xdist_group("joints together")

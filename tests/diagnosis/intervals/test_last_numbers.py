@@ -17,7 +17,7 @@ from hydrolek_drake.diagnosis.intervals.last_numbers import LastNumbers, with_la
 from hydrolek_drake.diagnosis.settings import EVIDENCE
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
-from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
 ALLOWED = float(chi2.ppf(0.95, 1))

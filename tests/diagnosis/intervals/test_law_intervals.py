@@ -17,7 +17,7 @@ from hydrolek_drake.diagnosis.laws.terms import Term, span_of
 from hydrolek_drake.diagnosis.report.words import known_to
 from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
-from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
 HOSE = 8e-13

@@ -7,7 +7,7 @@ import pytest
 from hydrolek_drake.diagnosis.intervals.last_numbers import intervals_of_moments
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
-from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
 PAYLOAD = "joints.joint.effects.load.payload"

@@ -6,7 +6,7 @@ import pytest
 from hydrolek_drake.diagnosis.laws.additions import LawTerm, WithTerms
 from hydrolek_drake.diagnosis.laws.inputs import inputs_of
 from hydrolek_drake.diagnosis.laws.terms import TERMS, law_record, span_of
-from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
 

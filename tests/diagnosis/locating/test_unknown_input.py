@@ -13,7 +13,7 @@ from hydrolek_drake.diagnosis.locating.terms_for import Slightly, terms_seen
 from hydrolek_drake.diagnosis.locating.unknown_input import _squared, unknown_inputs
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
-from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
 SHAKING_NM, SHAKING_HZ = 60.0, 1.3

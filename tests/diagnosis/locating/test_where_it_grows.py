@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.locating.place import left_at, share_of
-from hydrolek_drake.identification.least_squares import Fit
+from hydrolek_drake.identification.least_squares.least_squares import Fit
 
 COUNTED = 1000
 

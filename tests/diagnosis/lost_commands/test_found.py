@@ -7,7 +7,7 @@ from hydrolek_drake.diagnosis.laws.found import names_of
 from hydrolek_drake.diagnosis.lost_commands.windows import joined, recording_of
 from hydrolek_drake.diagnosis.report.words import law_sentence, where_sentence
 from hydrolek_drake.diagnosis.structures.as_rig import enlarged_rig
-from hydrolek_drake.identification.experiment import Experiment
+from hydrolek_drake.identification.experiments.experiment import Experiment
 
 LOST_S, AHEAD_S = ((3.27, 3.41), (8.14, 8.26)), ((8.08, 8.22),)
 BRIEF_S, BRIEF_AHEAD_S = ((3.297, 3.317), (8.143, 8.163)), ((6.896, 6.916),)

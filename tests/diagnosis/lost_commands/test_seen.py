@@ -12,7 +12,7 @@ from hydrolek_drake.diagnosis.lost_commands.seen import lost_seen
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
 from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
-from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
 LOST_S = [(2.6, 2.9), (6.1, 6.35)]

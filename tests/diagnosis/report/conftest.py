@@ -18,10 +18,10 @@ from hydrolek_drake.diagnosis.locating.place import Location
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
-from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.recorded import experiments_of
+from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.parameter_set import free_parameters
-from hydrolek_drake.identification.place import Place
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import load_rig
 

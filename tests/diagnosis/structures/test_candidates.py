@@ -9,9 +9,9 @@ import pytest
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.effects.scales import SLOWED, Scales, hydraulic_scales
-from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.parameter_set import ParameterSet
-from hydrolek_drake.identification.recorded import experiments_of
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout.one_point import stroke_and_lever

@@ -9,7 +9,7 @@ from hydrolek_drake.diagnosis.intervals.curvature import Interval
 from hydrolek_drake.diagnosis.report.words import effect_sentence, quantity
 from hydrolek_drake.diagnosis.settings import FITS
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
-from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 
 AIR = "effects.fluid.entrained_air.air_fraction"
 

@@ -8,7 +8,7 @@ import pytest
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.effects import EFFECTS
-from hydrolek_drake.identification.natural_scales import natural_scales
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
 FADED = 1e-3

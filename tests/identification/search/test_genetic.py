@@ -4,19 +4,19 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.identification.genetic.coding import BinaryCoding, IntegerCoding
-from hydrolek_drake.identification.genetic.crossover import PointwiseCrossover, UniformCrossover
-from hydrolek_drake.identification.genetic.multi_objective import ParetoSet, pareto_set
-from hydrolek_drake.identification.genetic.mutation import ElementMutation
-from hydrolek_drake.identification.genetic.selection import RouletteSelection, fitness
-from hydrolek_drake.identification.genetic.settings import (
+from hydrolek_drake.identification.search.evaluation import FAILED
+from hydrolek_drake.identification.search.genetic.coding import BinaryCoding, IntegerCoding
+from hydrolek_drake.identification.search.genetic.crossover import PointwiseCrossover, UniformCrossover
+from hydrolek_drake.identification.search.genetic.multi_objective import ParetoSet, pareto_set
+from hydrolek_drake.identification.search.genetic.mutation import ElementMutation
+from hydrolek_drake.identification.search.genetic.selection import RouletteSelection, fitness
+from hydrolek_drake.identification.search.genetic.settings import (
     MULTI_TABLE,
     MULTI_TEXT,
     SIMPLE,
     SIMPLE_INTEGER,
     GeneticSettings,
 )
-from hydrolek_drake.identification.search.evaluation import FAILED
 
 
 @pytest.mark.parametrize("gray", [True, False])

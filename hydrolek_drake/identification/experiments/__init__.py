@@ -1,0 +1,1 @@
+"""Experiments: recordings prepared so that rollouts can be held against them."""

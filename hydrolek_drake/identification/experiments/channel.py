@@ -1,0 +1,72 @@
+"""A measured signal, and how far a perfect model would be off from it."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hydrolek_drake.identification.experiments.thinning import Blocks
+from hydrolek_drake.replay.noise import noise_level
+
+FAITHFUL = 3e-4
+"""A model follows a machine to this share of a signal's range at best, however fine the sensor: a noise below it
+would only give weight to what no model holds (a tenth of the best published fits of real machines)."""
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A measured signal that the model must follow.
+
+    Attributes:
+        key: `<joint>.<quantity>`.
+        unit: SI unit.
+        model: attribute of `Signals` that it is compared with.
+        measured: NaN where the recording has no value. # (n,)
+        noise: standard deviation of its noise.
+        model_error: standard deviation of what the model's integration adds, sample by sample; None for
+            nothing. # (n,)
+        discrepancy: what every model leaves of it, as a multiple of what it leaves of the signal that it follows best;
+            1 where models reach the noise.
+        blur: what averaging over blocks of samples adds, sample by sample; None for a recording that is kept as
+            it is. # (n,)
+    """
+
+    key: str
+    unit: str
+    model: str
+    measured: np.ndarray
+    noise: float
+    model_error: np.ndarray | None = None
+    blur: np.ndarray | None = None
+    discrepancy: float = 1.0
+
+    @property
+    def deviation(self) -> np.ndarray | float:
+        """Standard deviation that the residual of a perfect model would have."""
+        variance: np.ndarray | float = self.noise**2
+        for error in (self.model_error, self.blur):
+            if error is not None:
+                variance = variance + error**2
+        return self.discrepancy * (self.noise if isinstance(variance, float) else np.sqrt(variance))
+
+    @property
+    def model_share(self) -> np.ndarray:
+        """Share of the variance that is the model's error, sample by sample. # (n,)."""
+        if self.model_error is None:
+            return np.zeros(self.measured.size)
+        return (self.discrepancy * self.model_error / self.deviation) ** 2
+
+    def until(self, count: int) -> "Channel":
+        """Its first so many samples."""
+        error, blur = (None if v is None else v[:count] for v in (self.model_error, self.blur))
+        return replace(self, measured=self.measured[:count], model_error=error, blur=blur)
+
+    def averaged(self, blocks: Blocks, floor: float) -> "Channel":
+        """The same signal averaged over blocks; its noise is estimated anew and is `floor` at least."""
+        means = blocks.mean(self.measured)
+        noise = min(self.noise, max(noise_level(means), floor))
+        return replace(self, measured=means, noise=noise, blur=blocks.blur(means))
+
+
+def faithful(measured: np.ndarray) -> float:
+    """Smallest deviation that counts for a signal, see `FAITHFUL`."""
+    return FAITHFUL * float(np.nanmax(measured) - np.nanmin(measured))

@@ -1,0 +1,179 @@
+"""Profile likelihood: how badly a model must follow if one parameter is held at another value.
+
+For each value of the parameter all others are fitted anew; where the sum of squared residuals has grown by the
+quantile of a chi-squared distribution with one degree of freedom, the confidence interval ends (Raue et al., Structural
+and practical identifiability analysis of partially observed dynamical models by exploiting the profile likelihood,
+Bioinformatics 25, 2009, equation 8). Unlike the standard error it sees curvature and ends of ranges, and a side on
+which it never reaches the threshold is open: the recording does not bound the parameter there.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from hydrolek_drake.identification.least_squares.least_squares import LeastSquares, fit_from
+
+CONFIDENCE = 0.95
+
+FIRST = 0.5
+"""First step in standard errors."""
+
+MOST_POINTS = 15
+"""On either side."""
+
+WANTED_GROWTH = 0.25
+"""Of the threshold from one point to the next; steps are lengthened and shortened towards it."""
+
+LONGER, SHORTER = 2.0, 0.5
+"""A step changes by no more than these factors."""
+
+
+@dataclass(frozen=True)
+class Profile:
+    """The curve of one parameter.
+
+    Attributes:
+        index: the parameter's place in the cube's vector.
+        places: of the parameter in its range, 0 to 1, rising. # (k,)
+        growth: of the squared residuals over the least, over the squared misfit where that exceeds the noise. # (k,)
+        threshold: where the interval ends.
+        low: end of the interval, 0 to 1; None where the curve stays below the threshold up to the end of the range.
+        high: the other end.
+        improved: by how much the least on the curve lies below the fit that it began with: above zero, the fit had
+            missed the optimum.
+        lowest: place of all parameters where the least was. # (n,)
+        evaluations: rollouts of all experiments that it took.
+        interrupted: whether Ctrl-C ended it early.
+    """
+
+    index: int
+    places: np.ndarray
+    growth: np.ndarray
+    threshold: float
+    low: float | None
+    high: float | None
+    improved: float
+    lowest: np.ndarray
+    evaluations: int
+    interrupted: bool = False
+
+
+def profile(
+    problem: LeastSquares,
+    unit: np.ndarray,
+    index: int,
+    deviation: float,
+    *,
+    confidence: float = CONFIDENCE,
+    first: float = FIRST,
+    others: Callable[[np.ndarray], tuple[np.ndarray, float]] | None = None,
+    progress: Callable[[float, float], None] = lambda place, growth: None,
+) -> Profile:
+    """Profile of one parameter about a fit.
+
+    Args:
+        problem: residuals in units of their noise.
+        unit: where the fit ended. # (n,)
+        index: which parameter.
+        deviation: its standard error there, as a part of its range.
+        confidence: of the interval, such as 0.95.
+        first: step on either side, in standard errors.
+        others: fits all other parameters from a place whose `index` is held: where they end, and what is left
+            there; None for a fit to the end.
+        progress: told each place and the growth there.
+    """
+    before = problem.evaluations
+    at_fit, off_prior = problem.residuals(unit), problem.prior_residuals(unit)
+    chi_squared = float(at_fit @ at_fit)
+    least = chi_squared + float(off_prior @ off_prior)
+    scale = max(chi_squared / max(problem.counted, 1), 1.0)
+    quantile = float(chi2.ppf(confidence, 1))
+    found: dict[float, float] = {float(unit[index]): 0.0}
+    lowest_growth, lowest_place = 0.0, unit
+    interrupted = False
+    step = first * deviation * np.sqrt(scale) if np.isfinite(deviation) else 1.0
+    others = others or _to_the_end(problem, index)
+    try:
+        for side in (-1.0, 1.0):
+            for there, value in _walk(unit, index, side * step, others, scale, least, quantile):
+                place = float(there[index])
+                found[place] = value
+                progress(place, value)
+                if value < lowest_growth:
+                    lowest_growth, lowest_place = value, there
+    except KeyboardInterrupt:
+        interrupted = True
+    places = np.array(sorted(found))
+    growth = np.array([found[place] for place in places])
+    improved = max(-float(growth.min()), 0.0)
+    growth = growth + improved
+    lowest = int(np.argmin(growth))
+    return Profile(
+        index,
+        places,
+        growth,
+        quantile,
+        _crossing(places[lowest::-1], growth[lowest::-1], quantile),
+        _crossing(places[lowest:], growth[lowest:], quantile),
+        improved,
+        lowest_place,
+        problem.evaluations - before,
+        interrupted,
+    )
+
+
+def _to_the_end(problem: LeastSquares, index: int) -> Callable[[np.ndarray], tuple[np.ndarray, float]]:
+    """Fits all parameters but one from where they are."""
+
+    def fitted(start: np.ndarray) -> tuple[np.ndarray, float]:
+        moving = np.arange(start.size) != index
+        if moving.any():
+            fit = fit_from(problem, start, moving=moving)
+            return fit.unit, fit.objective
+        residuals, off = problem.residuals(start), problem.prior_residuals(start)
+        return start, float(residuals @ residuals + off @ off)
+
+    return fitted
+
+
+def _walk(
+    unit: np.ndarray,
+    index: int,
+    step: float,
+    others: Callable[[np.ndarray], tuple[np.ndarray, float]],
+    scale: float,
+    least: float,
+    quantile: float,
+) -> Iterator[tuple[np.ndarray, float]]:
+    """Places and growth outwards by steps that begin with this one, until beyond the threshold or the range's end."""
+    end = 0.0 if step < 0.0 else 1.0
+    reached = 0.0
+    start = unit.copy()
+    for _ in range(MOST_POINTS):
+        if start[index] == end:
+            return
+        start[index] = min(max(start[index] + step, 0.0), 1.0)
+        there, value = others(start)
+        start = there.copy()
+        before, reached = reached, (value - least) / scale
+        yield there, reached
+        if reached > quantile:
+            return
+        gained = max(reached - before, 0.0)
+        step *= min(max(WANTED_GROWTH * quantile / gained if gained > 0.0 else LONGER, SHORTER), LONGER)
+
+
+def _crossing(places: np.ndarray, growth: np.ndarray, quantile: float) -> float | None:
+    """Where a curve that begins at its least first passes the threshold.
+
+    Between two points the root of the growth is taken to be straight: it is, for a linear model.
+    """
+    above = np.flatnonzero(growth > quantile)
+    if not above.size:
+        return None
+    k = int(above[0])
+    inner, outer = np.sqrt(max(growth[k - 1], 0.0)), np.sqrt(growth[k])
+    share = (np.sqrt(quantile) - inner) / (outer - inner)
+    return float(places[k - 1] + share * (places[k] - places[k - 1]))

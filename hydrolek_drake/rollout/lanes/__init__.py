@@ -1,0 +1,1 @@
+"""Many machines stepped in lockstep, one in each lane of vector instructions."""
