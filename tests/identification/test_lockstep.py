@@ -1,6 +1,7 @@
 """Many fits in lockstep: each ends where it would alone, and where scipy's ends."""
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -64,3 +65,13 @@ def test_a_search_along_one_parameter_takes_the_others_with_it(problem) -> None:
         [found] = searched_along([away], [Along(0, np.append(values, bottom.unit[0]))], pool, 2)
     assert same is bottom
     assert found.objective < 0.2 * away.objective
+
+
+def test_how_one_observers_fit_ended_does_not_stop_the_next_ones(problem) -> None:
+    """A fit that ends in a local minimum has tried ever shorter steps; another observer knows no such minimum."""
+    with ThreadPoolExecutor(2) as pool:
+        [observed] = descend([_begun(problem.pulled(0.1), 0.1)], 0, pool, 2)
+        stuck = replace(observed, damping=1e12, ended=True)
+        [begun] = descend([stuck.at(problem)], 0, pool, 2)
+        [ended] = descend([stuck.at(problem)], 5, pool, 2)
+    assert ended.objective < 0.5 * begun.objective

@@ -1,10 +1,9 @@
 """A structure enlarged by one addition: the races of those that may be right, and what these lead to without others."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
-from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.local_search import has_other_minima, searched_near
 from hydrolek_drake.diagnosis.fitting.race import (
     Entrant,
@@ -18,12 +17,20 @@ from hydrolek_drake.diagnosis.fitting.race import (
 )
 from hydrolek_drake.diagnosis.laws.additions import LawTerm, of_additions
 from hydrolek_drake.diagnosis.lost_commands.search import with_windows
+from hydrolek_drake.diagnosis.search.by_continuation import (
+    continued,
+    continued_nominal,
+    continued_to_the_end,
+    over_noise_of,
+    steps_for,
+    traced,
+)
 from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.cost import gain_needed
-from hydrolek_drake.diagnosis.search.openings import Opening, observed
+from hydrolek_drake.diagnosis.search.openings import Opening
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import GAINS, NOISE, Rung, Settings
-from hydrolek_drake.diagnosis.structures.addition import Addition, names_of
+from hydrolek_drake.diagnosis.settings import GAINS, NOISE, Settings
+from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, redundant, widenings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
@@ -52,23 +59,25 @@ def enlarged(
     parent = opening.parent
     enough = NOISE.ahead if can_be_cut(bench) else NOISE.at
     runners = _led_on(bench, opening, candidates, settings, cores)
-    if runners and _over_noise(runners[0]) > enough:
+    if runners and over_noise_of(runners[0]) > enough:
         runners = [*_farther(bench, runners[0], settings, cores), *runners]
         if enough > NOISE.at:
             runners = [*_by_parts(bench, runners, enough, settings, cores), *runners]
-    if runners and _over_noise(runners[0]) > enough and not runners[0].place.ended:
-        runners = [*run(bench, runners[:1], settings.ended, cores, _traced("first to the end")), *runners[1:]]
+    if runners and over_noise_of(runners[0]) > enough and not runners[0].place.ended:
+        runners = [*run(bench, runners[:1], settings.ended, cores, traced("first to the end")), *runners[1:]]
     better = None
-    reached = min((_over_noise(r) for r in runners), default=math.inf)
+    reached = min((over_noise_of(r) for r in runners), default=math.inf)
     if reached > enough and parent.fit.over_noise > NOISE.at:
         if not parent.effects and not found.nominal_continued:
             better = continued_nominal(bench, parent, found, settings, cores)
             if better is not None:
                 found.keep(better)
-        runners += _continued(bench, opening, settings, cores)
-    ended = run(bench, runners, settings.ended, cores, _traced("end")) if runners else []
+        runners += continued(bench, opening, settings, cores)
+    ended = run(bench, runners, settings.ended, cores, traced("end")) if runners else []
     fits = hypotheses_of(bench, ended, settings.ended[-1])
     for each in fits:
+        found.keep(each)
+    for each in continued_to_the_end(bench, fits, found.best, settings, cores):
         found.keep(each)
     sudden = any(c.sudden for c in found.best.effects)
     if found.best.fit.over_noise > NOISE.at and sudden and has_other_minima(found.best, fits):
@@ -102,23 +111,8 @@ def _led_on(
     ]
     if not entrants:
         return []
-    heats = _steps(settings.free, parent.fit.over_noise < NOISE.far)
-    return run(bench, entered(bench, entrants, heats[0], cores), heats, cores, _traced("free"))
-
-
-def _continued(bench: Workbench, opening: Opening, settings: Settings, cores: int) -> list[Runner]:
-    """A race by continuation, from the rig's own numbers and from where the structure was fitted, the best first."""
-    parent = opening.parent
-    own, fitted = Start(parent.effects, opening.sizes), Start(parent.effects, parent.values)
-    pulled = opening.pulled or observed(bench, parent, opening.own, settings, cores)[0]
-    entrants = [
-        begun.with_addition(p.candidate, start)
-        for p in pulled[: settings.entrants]
-        for start in p.starts[: None if p.candidate.sudden else 1]
-        for begun in (own, fitted)
-    ]
-    heats = _steps(settings.continued, parent.fit.over_noise < NOISE.far)
-    return run(bench, entered(bench, entrants, heats[0], cores), heats, cores, _traced("observed"))
+    heats = steps_for(settings.free, parent.fit.over_noise < NOISE.far)
+    return run(bench, entered(bench, entrants, heats[0], cores), heats, cores, traced("free"))
 
 
 def _farther(bench: Workbench, runner: Runner, settings: Settings, cores: int) -> list[Runner]:
@@ -128,9 +122,7 @@ def _farther(bench: Workbench, runner: Runner, settings: Settings, cores: int) -
     if all(a.free == b.free for a, b in zip(wide, runner.effects, strict=True)):
         return []
     rungs = settings.free[-1:]
-    return run(
-        bench, entered(bench, [Entrant(wide, values)], rungs[0], cores), rungs, cores, _traced("wider")
-    )
+    return run(bench, entered(bench, [Entrant(wide, values)], rungs[0], cores), rungs, cores, traced("wider"))
 
 
 def _by_parts(
@@ -139,51 +131,17 @@ def _by_parts(
     """Structures fitted part by part, one after the other until one leaves no more than is enough; the best first."""
     first: dict[frozenset[str], Runner] = {}
     for runner in runners:
-        if _over_noise(runner) <= NOISE.far * _over_noise(runners[0]):
+        if over_noise_of(runner) <= NOISE.far * over_noise_of(runners[0]):
             first.setdefault(runner.key, runner)
     ended: list[Runner] = []
     for runner in list(first.values())[: settings.parted]:
         values = runner.place.problem.parameters.values(runner.place.unit)
         parted = Entrant(runner.effects, by_parts(bench, runner.effects, values, cores))
         begun = entered(bench, [parted], settings.again, cores)
-        ended += run(bench, begun, (settings.again,), cores, _traced("by parts"))
-        if _over_noise(ended[-1]) <= enough:
+        ended += run(bench, begun, (settings.again,), cores, traced("by parts"))
+        if over_noise_of(ended[-1]) <= enough:
             break
-    return sorted(ended, key=_over_noise)
-
-
-def _over_noise(runner: Runner) -> float:
-    return math.sqrt(runner.place.objective / max(runner.place.problem.counted, 1))
-
-
-def continued_nominal(
-    bench: Workbench, direct: Hypothesis, found: Tried, settings: Settings, cores: int
-) -> Hypothesis | None:
-    """The nominal model by continuation, from the rig's own numbers and from the middle of their ranges.
-
-    Args:
-        bench: data and problems.
-        direct: as free rollouts led it.
-        found: remembers that it was done.
-        settings: of the search.
-        cores: that roll out at the same time.
-
-    Returns:
-        The fit if it is better by more than one addition must bring; else None.
-    """
-    found.nominal_continued = True
-    centre = Entrant((), {free.path: free.from_unit(0.5) for free in bench.nominal})
-    heats = settings.nominal
-    led = run(bench, entered(bench, [Entrant((), {}), centre], heats[0], cores), heats, cores)
-    ended = run(bench, [*led, *entered(bench, [centre], settings.again, cores)], (settings.again,), cores)
-    [fitted] = hypotheses_of(bench, ended, settings.again)
-    trace(f"    nominal {direct.fit.over_noise:.4f}, continued {fitted.fit.over_noise:.4f}")
-    return fitted if direct.fit.objective - fitted.fit.objective > gain_needed(direct.fit) else None
-
-
-def _steps(rungs: Sequence[Rung], fine: bool) -> tuple[Rung, ...]:
-    """Rungs with the rig's own step where the error of a longer one would be more than what is to be explained."""
-    return tuple(replace(rung, coarse=1.0) for rung in rungs) if fine else tuple(rungs)
+    return sorted(ended, key=over_noise_of)
 
 
 def _lessened(
@@ -213,10 +171,10 @@ def _lessened(
     near = not found.nominal_continued and found.baseline.fit.over_noise < NOISE.far
     if len(best.effects) > 1 or near:  # others were fitted so before, or are beyond doubt
         own = [Entrant(each.effects, of_additions(each.values)) for each in entrants]
-        rungs = (*_steps(settings.continued, best.fit.over_noise < NOISE.far), settings.again)
+        rungs = (*steps_for(settings.continued, best.fit.over_noise < NOISE.far), settings.again)
         runners = entered(bench, own, rungs[0], cores)
         for step in rungs:
-            runners = run(bench, runners, (step,), cores, _traced("without"))
+            runners = run(bench, runners, (step,), cores, traced("without"))
             if best.fit.over_noise <= NOISE.above:
                 runners = [r for r in runners if not (r.place.ended and above_noise(r))]
         fitted += hypotheses_of(bench, runners, rungs[-1])
@@ -268,16 +226,3 @@ def _widened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> 
     if any(a.free != b.free for a, b in zip(wide, best.effects, strict=True)):
         for each in race(bench, [Entrant(wide, best.values)], (settings.again,), cores):
             found.keep(each)
-
-
-def _traced(name: str) -> Callable[[Sequence[Runner], Rung], None]:
-    def seen(runners: Sequence[Runner], rung: Rung) -> None:
-        trace(
-            f"    {name} T={rung.observer_s} x{rung.coarse} {len(runners)}: "
-            + ", ".join(
-                f"{names_of(r.effects)} {math.sqrt(r.place.objective / r.place.problem.counted):.4f}"
-                for r in runners[:5]
-            )
-        )
-
-    return seen

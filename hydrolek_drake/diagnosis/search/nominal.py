@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
+from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal
 from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
-from hydrolek_drake.diagnosis.search.enlarging import continued_nominal
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import FITS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by

@@ -118,6 +118,19 @@ class Settings:
     )
     """The end of both races."""
 
+    long: tuple[Rung, ...] = (
+        Rung(_FAST, FITS.coarse, math.inf, 60, 4, share=1e-4, elsewhere=True),
+        Rung(_MIDDLE, FITS.coarse, math.inf, 60, 4, share=1e-4, elsewhere=True),
+        Rung(_SLOW, FITS.coarse, math.inf, 60, 4, share=1e-4, elsewhere=True),
+        Rung(math.inf, 1.0, math.inf, 60, 4, share=1e-4, elsewhere=True),
+    )
+    """Continuation of the best structures of a race, where these leave more than noise, with as many steps as they
+    take: a Stribeck friction whose joint sticks and slips ended at 9.7 times the noise after the steps of a race, at
+    4.0 with at most 20 for each observer and at 1.0 with 60."""
+
+    to_the_end: int = 2
+    """So many structures of a race are continued so."""
+
     nominal: tuple[Rung, ...] = (
         Rung(_FAST, FITS.coarse, math.inf, 8, 4),
         Rung(_MIDDLE, FITS.coarse, math.inf, 8, 4),

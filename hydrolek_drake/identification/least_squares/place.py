@@ -46,13 +46,17 @@ class Place:
         return float(self.residuals @ self.residuals + off @ off)
 
     def at(self, problem: Problem) -> "Place":
-        """The same place of another problem of the same parameters, led by the same slopes if it has as many values."""
+        """The same place of another problem of the same parameters, led by the same slopes if it has as many values.
+
+        A damping belongs to its slopes: that with which one observer's fit ended may be so large that no step of the
+        next one promises anything.
+        """
         if (
             self.slopes is None
             or _values_of(problem) != len(self.slopes)
             or problem.pull_time != self.problem.pull_time
         ):
-            return Place(problem, self.moving, self.unit, damping=self.damping)
+            return Place(problem, self.moving, self.unit)
         return Place(problem, self.moving, self.unit, slopes=self.slopes, damping=self.damping)
 
 

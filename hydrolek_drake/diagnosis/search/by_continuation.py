@@ -1,0 +1,118 @@
+"""Structures by continuation: from observers that forget within a tenth of a second to free rollouts."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from hydrolek_drake.diagnosis import trace
+from hydrolek_drake.diagnosis.fitting.race import Entrant, Runner, Start, entered, hypotheses_of, run
+from hydrolek_drake.diagnosis.laws.additions import of_additions
+from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
+from hydrolek_drake.diagnosis.search.openings import Opening, observed, surely_above
+from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.settings import NOISE, Rung, Settings
+from hydrolek_drake.diagnosis.structures.addition import names_of
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+
+
+def continued(bench: Workbench, opening: Opening, settings: Settings, cores: int) -> list[Runner]:
+    """A race by continuation, from the rig's own numbers and from where the structure was fitted, the best first."""
+    parent = opening.parent
+    own, fitted = Start(parent.effects, opening.sizes), Start(parent.effects, parent.values)
+    pulled = opening.pulled or observed(bench, parent, opening.own, settings, cores)[0]
+    entrants = [
+        begun.with_addition(p.candidate, start)
+        for p in pulled[: settings.entrants]
+        for start in p.starts[: None if p.candidate.sudden else 1]
+        for begun in (own, fitted)
+    ]
+    heats = steps_for(settings.continued, parent.fit.over_noise < NOISE.far)
+    return run(bench, entered(bench, entrants, heats[0], cores), heats, cores, traced("observed"))
+
+
+def continued_nominal(
+    bench: Workbench, direct: Hypothesis, found: Tried, settings: Settings, cores: int
+) -> Hypothesis | None:
+    """The nominal model by continuation, from the rig's own numbers and from the middle of their ranges.
+
+    Args:
+        bench: data and problems.
+        direct: as free rollouts led it.
+        found: remembers that it was done.
+        settings: of the search.
+        cores: that roll out at the same time.
+
+    Returns:
+        The fit if it is better by more than one addition must bring; else None.
+    """
+    found.nominal_continued = True
+    centre = Entrant((), {free.path: free.from_unit(0.5) for free in bench.nominal})
+    heats = settings.nominal
+    led = run(bench, entered(bench, [Entrant((), {}), centre], heats[0], cores), heats, cores)
+    ended = run(bench, [*led, *entered(bench, [centre], settings.again, cores)], (settings.again,), cores)
+    [fitted] = hypotheses_of(bench, ended, settings.again)
+    trace(f"    nominal {direct.fit.over_noise:.4f}, continued {fitted.fit.over_noise:.4f}")
+    return fitted if direct.fit.objective - fitted.fit.objective > gain_needed(direct.fit) else None
+
+
+def continued_to_the_end(
+    bench: Workbench, fits: Sequence[Hypothesis], best: Hypothesis, settings: Settings, cores: int
+) -> list[Hypothesis]:
+    """The best structures of a race, each observer's fit gone on with until no step promises anything.
+
+    A race lets its fits take some steps of an observer only, since there are many of them. Where a joint sticks and
+    slips, that is too few: the fit leaves the flat part of the valley too soon and ends in a local minimum of the next
+    observer. A free rollout leaves no less than an observer, which is led by what was measured: a structure whose
+    observer leaves nearly as much as the best fit so far goes no further.
+
+    Args:
+        bench: data and problems.
+        fits: where the race ended.
+        best: the best structure so far.
+        settings: of the search.
+        cores: that roll out at the same time.
+
+    Returns:
+        Fits that are nearer to the noise than the best one; none where this is at it.
+    """
+    left = best.fit.over_noise
+    if left <= surely_above(bench, best):
+        return []
+    chosen = {each.ids: each for each in sorted(fits, key=cost, reverse=True)}
+    entrants = [
+        Entrant(each.effects, values)
+        for each in list(chosen.values())[-settings.to_the_end :]
+        for values in (of_additions(each.values), each.values)
+    ]
+    rungs = steps_for(settings.long, left < NOISE.far)
+    runners = entered(bench, entrants, rungs[0], cores) if entrants else []
+    for rung in rungs:
+        if runners:
+            ended = run(bench, runners, (rung,), cores, traced("to the end"))
+            runners = [each for each in ended if over_noise_of(each) < settings.nearer * left]
+    return hypotheses_of(bench, runners, rungs[-1])
+
+
+def over_noise_of(runner: Runner) -> float:
+    """Root mean square of what a fit leaves, over the noise."""
+    return math.sqrt(runner.place.objective / max(runner.place.problem.counted, 1))
+
+
+def steps_for(rungs: Sequence[Rung], fine: bool) -> tuple[Rung, ...]:
+    """Rungs with the rig's own step where the error of a longer one would be more than what is to be explained."""
+    return tuple(replace(rung, coarse=1.0) for rung in rungs) if fine else tuple(rungs)
+
+
+def traced(name: str) -> Callable[[Sequence[Runner], Rung], None]:
+    """Tells those who watch a search how the fits of a rung ended."""
+
+    def seen(runners: Sequence[Runner], rung: Rung) -> None:
+        trace(
+            f"    {name} T={rung.observer_s} x{rung.coarse} {len(runners)}: "
+            + ", ".join(
+                f"{names_of(r.effects)} {math.sqrt(r.place.objective / r.place.problem.counted):.4f}"
+                for r in runners[:5]
+            )
+        )
+
+    return seen
