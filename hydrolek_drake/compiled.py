@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-_COMPILED_PARTS = ("physics", "effects", "rollout", "systems", "kinematics", "vision")
+_COMPILED_PARTS = ("physics", "effects", "rollout", "systems", "kinematics", "vision", "challenge")
 _CHOSEN, _OURS = (
     "NUMBA_CACHE_DIR",
     "HYDROLEK_CACHE_DIR",

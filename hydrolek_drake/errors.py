@@ -1,4 +1,7 @@
-"""The one exception that means: the input is wrong, and here is what would be right."""
+"""The one exception that means: the input is wrong, and here is what would be right; and the hint of what was meant."""
+
+import difflib
+from collections.abc import Iterable
 
 LONGEST = 1_500
 """Characters of a message: the longest lists of choices have about a thousand."""
@@ -27,3 +30,16 @@ class InputError(ValueError):
 
 class UninformativeError(InputError):
     """A recording as it should be that shows nothing of what is asked: a command or a signal without content."""
+
+
+def meant(given: str, known: Iterable[str], most: int = 3, alike: float = 0.6) -> str:
+    """What was perhaps meant, for a message: "did you mean valve or supply? ", or nothing.
+
+    Args:
+        given: a name that is not there.
+        known: those that are.
+        most: names that are told.
+        alike: how much they must be, from 0 to 1.
+    """
+    near = difflib.get_close_matches(given, known, n=most, cutoff=alike)
+    return f"did you mean {' or '.join(near)}? " if near else ""

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from hydrolek_drake.errors import InputError
+from hydrolek_drake.errors import InputError, meant
 
 _FORMULAS = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")  # the wide ones too
 _NUMBER = itertools.count()
@@ -129,6 +129,29 @@ def is_file(path: Path) -> bool:
         return path.is_file()
     except (OSError, ValueError):
         return False
+
+
+def named_file(name_or_path: str | Path, built_in: Mapping[str, Path], what: str) -> Path:
+    """A file that comes with the project, by its name, or one by its path.
+
+    Args:
+        name_or_path: of either.
+        built_in: name -> file.
+        what: it is, for errors: "rig".
+
+    Raises:
+        InputError: neither; names the nearest ones.
+    """
+    text = str(name_or_path)
+    if text in built_in:
+        return built_in[text]
+    path = Path(text)
+    if is_file(path):
+        return path
+    if path.suffix in (".yaml", ".yml"):
+        raise InputError(f"{what} file {path} does not exist")
+    choices = f"{meant(text, built_in)}built in are {', '.join(built_in)}; or give a file"
+    raise InputError(f"no {what} '{text}'; {choices}")
 
 
 @contextmanager

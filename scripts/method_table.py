@@ -26,19 +26,8 @@ from hydrolek_drake.rigs import load_rig
 ROOT = Path(__file__).parents[1]
 BENCH = ROOT / "tests" / "data" / "bench"
 BUDGETS = (2000, 8000)
-LABELS = {
-    "A_max_m2": ("valve.max_area_a", "valve.max_area_b"),
-    "x_o_m": ("valve.overlap_a", "valve.overlap_b"),
-    "w_m": ("valve.full_opening_a", "valve.full_opening_b"),
-    "P_S_Pa": ("supply.pressure",),
-    "B_Pa": ("fluid.bulk_modulus",),
-    "c_cyl_N_s_per_m": ("cylinder.viscous_friction",),
-    "J_kg_m2": ("load.inertia",),
-    "mgl_Nm": ("load.gravity_cos",),
-    "I_max_A": ("amplifier.max_current_a", "amplifier.max_current_b"),
-    "T_d_s": ("command.delay",),
-}
-"""Label of a practice recording -> parameters that it sets (sides a and b alike)."""
+LABELS = json.loads((BENCH / "rig_paths.json").read_text())
+"""Label of a practice recording -> parameter that it sets; side b follows side a (`same_as`)."""
 
 SEARCHED = ("A_max_m2", "x_o_m", "P_S_Pa", "T_d_s")
 """Labels whose parameters are searched: on the wide box the path that follows (`same_as`) goes with them."""
@@ -63,13 +52,13 @@ def main() -> None:
     labels = {entry["id"]: entry for entry in json.loads((BENCH / "practice_labels.json").read_text())}
     machine = labels[arguments.pair]["machine"]
     nominal = load_rig("joint_bench")
-    rest = {path: machine[key] for key, paths in LABELS.items() if key not in SEARCHED for path in paths}
+    rest = {path: machine[key] for key, path in LABELS.items() if key not in SEARCHED}
     rig = nominal.with_values(rest)
     free = [
         Free(
-            rig.full_path(LABELS[key][0]),
-            nominal.value(LABELS[key][0]) / arguments.factor,
-            nominal.value(LABELS[key][0]) * arguments.factor,
+            rig.full_path(LABELS[key]),
+            nominal.value(LABELS[key]) / arguments.factor,
+            nominal.value(LABELS[key]) * arguments.factor,
             log=True,
         )
         for key in SEARCHED

@@ -3,11 +3,12 @@
 import math
 from typing import NamedTuple
 
+from hydrolek_drake.challenge.concealed import Concealed
 from hydrolek_drake.rigs import Rig
 
 
 class Machine(NamedTuple):
-    """Numbers of one machine, its listed effects, and those in no list; zero is off."""
+    """Numbers of one machine, and what it conceals."""
 
     i_max: float
     k_f: float
@@ -46,52 +47,9 @@ class Machine(NamedTuple):
     j_play: float
     k_play: float
     c_play: float
-    delay_s: float = 0.0
-    fade: float = 0.0
-    fade_s: float = 1.0
-    shift_m: float = 0.0
-    stiction_n: float = 0.0
-    null_leak: float = 0.0
-    droop: float = 0.0
-    air: float = 0.0
-    warm: float = 0.0
-    warm_s: float = 1.0
-    cross_leak: float = 0.0
-    coulomb_n: float = 0.0
-    stribeck_n: float = 0.0
-    stribeck_v: float = 1.0
-    cushion: float = 0.0
-    cushion_m: float = 1.0
-    gap_rad: float = 0.0
-    base_k: float = 0.0
-    base_j: float = 1.0
-    bow_rad: float = 0.0
-    play_rad: float = 0.0
-    drift_rad_per_min: float = 0.0
-    ripple_pa: float = 0.0  # in no list: supply pressure + ripple sin(2 pi f t)
-    ripple_hz: float = 1.0
-    tight_n: float = 0.0  # in no list: dry friction that grows with the stroke squared
-    rubbing_n: float = 0.0  # in no list: dry friction where the bore is scored, around one stroke
-    rubbing_at: float = 0.5
-    rubbing_wide: float = 0.1
-    hose: float = 0.0  # in no list: hose on side A, volume v_0 hose p / 1 MPa on top
-    shaking_nm: float = 0.0  # in no list: periodic moment at the joint
-    shaking_hz: float = 1.0
-    ramp_v_per_s: float = math.inf  # in no list: a card lets the voltage change no faster
-    coil_s: float = 0.0  # in no list: time constant of the coils' currents
-    lost_s: float = 0.0  # in no list: the command is lost for so long, once in every lost_every_s
-    lost_every_s: float = 1.0
-    flow_force: float = (
-        0.0  # in no list: oil closes the spool, with this share of opening times pressure drop
-    )
-    return_pa_s: float = 0.0  # in no list: return line, pressure for each m^3/s through it
-    snag_nm_per_rad: float = 0.0  # in no list: hoses that pull tight beyond an angle, a share of the travel
-    snag_at: float = 0.5
-    held: float = 0.0  # in no list: share of the way out of side A that a counterbalance valve may close
-    holding_pa: float = 1.0  # and the lifting pressure at which it is wholly open
-    worn_rad: float = 0.0  # in no list: potentiometer worn around one angle
-    worn_at: float = 0.5
-    worn_wide: float = 0.1
+    polarity: float = 1.0  # as the page has it: any voltage arrives, and drives the way that its sign says
+    limit: float = math.inf
+    concealed: Concealed = Concealed()
 
 
 SPREAD = {

@@ -1,6 +1,6 @@
 """One kind of concealed machine: its rig, its equations, how it is driven, and what it may conceal."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from hydrolek_drake.challenge import arm_machine, arm_numbers, bench_machine, bench_numbers
 from hydrolek_drake.challenge.driving import Driving, Played, arm_driving, bench_driving, unhindered
+from hydrolek_drake.challenge.running import STEP_S, Player
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.yaml_files import package_yaml
@@ -32,7 +33,7 @@ class Build:
         listed: effects that a machine may conceal -> size and draws, as in sizes.yaml.
         unlisted: physics in no list, likewise, and its stage.
         driving: commands and controller.
-        run: machine, driving, command or None, set points, noise and step -> what it did.
+        run: runs them.
     """
 
     rig: Rig
@@ -41,7 +42,7 @@ class Build:
     listed: Mapping[str, Any]
     unlisted: Mapping[str, Any]
     driving: Driving
-    run: Callable[..., Played]
+    run: Player
 
     @property
     def noise(self) -> float:
@@ -54,12 +55,12 @@ class Build:
         command: np.ndarray | None,
         set_points: np.ndarray | None = None,
         noise: np.ndarray | None = None,
-        step: float = bench_machine.STEP_S,
+        step: float = STEP_S,
     ) -> Played:
-        """Run a machine; see `bench_machine.play`."""
+        """Run a machine; see `running.Player`."""
         return self.run(machine, self.driving, command, set_points, noise, step)
 
-    def replay(self, machine: Any, volts: np.ndarray, step: float = bench_machine.STEP_S) -> Played:
+    def replay(self, machine: Any, volts: np.ndarray, step: float = STEP_S) -> Played:
         """Apply voltages to a machine that were applied to another one."""
         return self.run(machine, unhindered(self.driving), volts, None, None, step)
 

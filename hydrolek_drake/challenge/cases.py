@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.challenge.bench_machine import STEP_S
 from hydrolek_drake.challenge.build import BENCH, Build, build_of
 from hydrolek_drake.challenge.driving import SAMPLE_S, Played, random_series
 from hydrolek_drake.challenge.listed import LISTED, with_effects
+from hydrolek_drake.challenge.running import STEP_S
 from hydrolek_drake.recordings import write_signals
 from hydrolek_drake.rigs import Rig
 
@@ -62,12 +62,13 @@ def machine_of(build: Build, case: Case) -> Any:
 
 
 def with_concealed(machine: Any, concealed: Mapping[str, Mapping[str, float]]) -> Any:
-    """The machine with listed effects and with physics in no list, whose parameters are the machine's numbers."""
+    """The machine with listed effects and with physics in no list, whose parameters are fields of `Concealed`."""
     listed = {name: parameters for name, parameters in concealed.items() if name in LISTED}
     strange = {
         p: v for name, parameters in concealed.items() if name not in LISTED for p, v in parameters.items()
     }
-    return with_effects(machine, listed)._replace(**strange)
+    machine = with_effects(machine, listed)
+    return machine._replace(concealed=machine.concealed._replace(**strange))
 
 
 def driven(

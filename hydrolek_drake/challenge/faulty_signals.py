@@ -10,14 +10,14 @@ GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 
 
 @njit
-def lost(g: Any, t: float) -> bool:
+def lost(e: Any, t: float) -> bool:
     """Whether the command is lost at a time: once in every period, each time elsewhere in it."""
-    turn = math.floor(t / g.lost_every_s)
-    begin = (turn * GOLDEN) % 1.0 * (g.lost_every_s - g.lost_s)
-    return 0.0 <= t - turn * g.lost_every_s - begin < g.lost_s
+    turn = math.floor(t / e.lost_every_s)
+    begin = (turn * GOLDEN) % 1.0 * (e.lost_every_s - e.lost_s)
+    return 0.0 <= t - turn * e.lost_every_s - begin < e.lost_s
 
 
 @njit
-def worn(g: Any, share: float) -> float:
+def worn(e: Any, share: float) -> float:
     """What a potentiometer that is worn around one place adds to its reading; `share` of the travel."""
-    return g.worn_rad * math.exp(-(((share - g.worn_at) / g.worn_wide) ** 2))
+    return e.worn_rad * math.exp(-(((share - e.worn_at) / e.worn_wide) ** 2))

@@ -1,4 +1,4 @@
-"""Listed effects of a concealed machine: which field of its numbers each parameter is."""
+"""Listed effects of a concealed machine: which field of `Concealed` each parameter is."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -25,7 +25,7 @@ LISTED: dict[str, dict[str, str]] = {
     "sensor.hysteresis": {"half_width_rad": "play_rad"},
     "sensor.drift": {"rate_rad_per_min": "drift_rad_per_min"},
 }  # fmt: skip
-"""Effect -> its parameters -> field of the machine."""
+"""Effect -> its parameters -> field of `Concealed`."""
 
 
 def with_effects(machine: Any, effects: Mapping[str, Mapping[str, float]]) -> Any:
@@ -34,4 +34,4 @@ def with_effects(machine: Any, effects: Mapping[str, Mapping[str, float]]) -> An
     for effect, parameters in effects.items():
         for name, value in parameters.items():
             fields[LISTED[effect][name]] = value
-    return machine._replace(**fields)
+    return machine._replace(concealed=machine.concealed._replace(**fields))

@@ -3,14 +3,13 @@
 Only the module of the command that was asked for is loaded, so that `hydrolek --help` answers at once.
 """
 
-import difflib
 import importlib
 import os
 import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from hydrolek_drake.errors import InputError
+from hydrolek_drake.errors import InputError, meant
 
 if TYPE_CHECKING:
     import typer
@@ -161,8 +160,7 @@ def _dispatch(arguments: list[str]) -> int:
         return 0
     if name not in COMMANDS:
         kind = "option" if name.startswith("-") else "command"
-        near = difflib.get_close_matches(name, COMMANDS, n=2)
-        hint = f"did you mean {' or '.join(near)}? " if near else ""
+        hint = meant(name, COMMANDS, most=2)
         raise InputError(
             f"no {kind} '{name}'; {hint}the commands are {', '.join(COMMANDS)}; see hydrolek --help"
         )

@@ -1,12 +1,11 @@
 """Finds every effect file in the folders of `listed`."""
 
-import difflib
 import importlib
 import pkgutil
 
 from hydrolek_drake.effects import listed
 from hydrolek_drake.effects.effect import Effect
-from hydrolek_drake.errors import InputError
+from hydrolek_drake.errors import InputError, meant
 
 
 def _found() -> dict[str, Effect]:
@@ -37,10 +36,6 @@ def effect_named(effect_id: str) -> Effect:
         InputError: no such effect; names the nearest ones.
     """
     if effect_id not in EFFECTS:
-        near = difflib.get_close_matches(effect_id, EFFECTS, n=3, cutoff=0.4)
-        raise InputError(
-            f"no effect '{effect_id}'; "
-            + (f"did you mean {' or '.join(near)}? " if near else "")
-            + "'hydrolek effects' lists all"
-        )
+        hint = meant(effect_id, EFFECTS, alike=0.4)
+        raise InputError(f"no effect '{effect_id}'; {hint}'hydrolek effects' lists all")
     return EFFECTS[effect_id]

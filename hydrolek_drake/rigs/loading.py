@@ -1,7 +1,6 @@
 """Reading rig files: built in by name, or a user's own path; one rig may be based on another."""
 
 import copy
-import difflib
 import re
 from collections.abc import Mapping
 from importlib import resources
@@ -9,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.files import is_file
+from hydrolek_drake.files import is_file, named_file
 from hydrolek_drake.rigs.parts import with_parts
 from hydrolek_drake.rigs.reading import rig_from_tree
 from hydrolek_drake.rigs.rig import Rig
@@ -47,24 +46,9 @@ def load_rig(name_or_path: str | Path, settings: Mapping[str, str] | None = None
     Raises:
         InputError: one line saying which file, key and value is wrong and what would be right.
     """
-    path = _find(name_or_path)
+    path = named_file(name_or_path, built_in_rigs(), "rig")
     rig = rig_from_tree(_resolve(path, ()), path)
     return rig.with_settings(settings) if settings else rig
-
-
-def _find(name_or_path: str | Path) -> Path:
-    rigs = built_in_rigs()
-    text = str(name_or_path)
-    if text in rigs:
-        return rigs[text]
-    path = Path(text)
-    if is_file(path):
-        return path
-    if path.suffix in (".yaml", ".yml"):
-        raise InputError(f"rig file {path} does not exist")
-    near = difflib.get_close_matches(text, rigs, n=3)
-    hint = f"did you mean {' or '.join(near)}? " if near else ""
-    raise InputError(f"no rig '{text}'; {hint}built in are {', '.join(rigs)}; or give a file")
 
 
 def _read(path: Path) -> dict[str, Any]:
@@ -90,7 +74,7 @@ def _resolve(path: Path, seen: tuple[Path, ...]) -> dict[str, Any]:
     if base is not None:
         beside = path.parent / f"{base}"
         try:
-            other = beside if is_file(beside) else _find(str(base))
+            other = beside if is_file(beside) else named_file(str(base), built_in_rigs(), "rig")
         except InputError as error:
             raise InputError(f"{path}: based_on: {error}") from None
         tree = _merged(_resolve(other, (*seen, path.resolve())), tree)

@@ -29,7 +29,7 @@ import numpy as np
 
 import hydrolek_drake
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.files import is_file
+from hydrolek_drake.files import is_file, named_file
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rigs.entries import parse_quantity
 from hydrolek_drake.rigs.keys import refuse_unknown
@@ -119,7 +119,7 @@ def load_scenario(name_or_path: str | Path, settings: Mapping[str, str] | None =
     Raises:
         InputError: one line saying which file, key and value is wrong and what would be right.
     """
-    path = _find(name_or_path)
+    path = named_file(name_or_path, scenario_files(), "scenario")
     tree = _read(path)
     rig_settings = {}
     for key, text in (settings or {}).items():
@@ -166,19 +166,6 @@ def load_scenario(name_or_path: str | Path, settings: Mapping[str, str] | None =
         noise=noise,
         tree=tree,
     )
-
-
-def _find(name_or_path: str | Path) -> Path:
-    files = scenario_files()
-    text = str(name_or_path)
-    if text in files:
-        return files[text]
-    path = Path(text)
-    if is_file(path):
-        return path
-    near = difflib.get_close_matches(text, files, n=2)
-    hint = f"did you mean {' or '.join(near)}? " if near else ""
-    raise InputError(f"no scenario '{text}'; {hint}choose {', '.join(files)}, or give a file")
 
 
 def _read(path: Path) -> dict[str, Any]:

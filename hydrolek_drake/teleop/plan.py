@@ -15,7 +15,7 @@ from hydrolek_drake.vision.camera import CameraModel, camera_pose, direction_to_
 from hydrolek_drake.vision.configuration import kinect_entries
 from hydrolek_drake.vision.targets import PipeTargets
 from hydrolek_drake.workcell.collision import CollisionWorld
-from hydrolek_drake.workcell.grasp import ToolPath, cut_path, grasp_path, with_arm, with_jaw
+from hydrolek_drake.workcell.grasp import ToolPath, cut_path, grasp_paths, with_arm, with_jaw
 from hydrolek_drake.workcell.pipe import Pipe, make_pipe, workcell_entries
 from hydrolek_drake.workcell.planner import plan_path
 from hydrolek_drake.workcell.scene import home_posture
@@ -180,7 +180,7 @@ def tool_paths(
     on_step("grasp")
     distance = pipe.radius + sizes["approach"] + values["farther"]
     clear, touching, held = worlds.clear, worlds.touching, worlds.held
-    grasp = grasp_path(grasp_point, pipe.axis, sight, distance, start, grasping, clear, touching)
+    grasp = next(grasp_paths(grasp_point, pipe.axis, sight, distance, start, grasping, clear, touching))
     on_pipe = with_arm(start, grasping, grasp.angles[-1])
     closed = with_jaw(on_pipe, grasping, math.radians(values["closed_deg"]))
     on_step("cut")

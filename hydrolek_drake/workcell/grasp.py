@@ -107,7 +107,7 @@ def straight_path(
     return np.array(angles)
 
 
-def grasp_path(
+def grasp_paths(
     point: ArrayLike,
     axis: ArrayLike,
     sight: ArrayLike,
@@ -116,7 +116,7 @@ def grasp_path(
     side: str,
     clear: CollisionWorld,
     holding: CollisionWorld,
-) -> ToolPath:
+) -> Iterator[ToolPath]:
     """From in front of the pipe onto it, with the jaws open, past the bent tips of the fixed fingers.
 
     Args:
@@ -129,26 +129,11 @@ def grasp_path(
         clear: Collisions where nothing may touch.
         holding: Collisions on the way, of a pipe that this gripper may touch or that is as much thinner.
 
+    Yields:
+        All ways, best first; at least one.
+
     Raises:
         InputError: No direction works; says why.
-    """
-    return next(grasp_paths(point, axis, sight, distance, posture, side, clear, holding))
-
-
-def grasp_paths(
-    point: ArrayLike,
-    axis: ArrayLike,
-    sight: ArrayLike,
-    distance: float,
-    posture: Array,
-    side: str,
-    clear: CollisionWorld,
-    holding: CollisionWorld,
-) -> Iterator[ToolPath]:
-    """All ways as `grasp_path`, best first, with the same arguments.
-
-    Raises:
-        InputError: There is not one; says why.
     """
     found = False
     opened = _with_jaw(posture, side, workcell_entries()["grasp"]["open_deg"])

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.challenge.bench_machine import play
-from hydrolek_drake.challenge.bench_numbers import Machine, nominal_machine
+from hydrolek_drake.challenge.bench_numbers import nominal_machine
+from hydrolek_drake.challenge.concealed import Concealed
 from hydrolek_drake.challenge.driving import bench_driving, random_series
 from hydrolek_drake.challenge.listed import LISTED, with_effects
 from hydrolek_drake.recordings import read_recording
@@ -22,7 +23,7 @@ FIELDS = {
 }  # fmt: skip
 SAMPLES = 1000
 NOISE_DEG = 0.05
-OF_THE_BENCH = {effect for effect, own in LISTED.items() if set(own.values()) <= set(Machine._fields)}
+OF_THE_BENCH = LISTED.keys() - {"load.payload"}  # it has no tool
 LISTED_PAIRS = [name for name, label in LABELS.items() if set(label["effects"]) <= OF_THE_BENCH]
 
 
@@ -56,7 +57,8 @@ def test_what_takes_its_time_or_closes_the_spool_is_that_of_the_diagnosing_rollo
     driving = bench_driving()
     command = random_series(driving, closed=False, seconds=10.0, rng=np.random.default_rng(3))
     times = 0.01 * np.arange(command.size)
-    concealed = play(nominal_machine(rig)._replace(**own), driving, command).reading
+    machine = nominal_machine(rig)._replace(concealed=Concealed(**own))
+    concealed = play(machine, driving, command).reading
     plain, slow = (
         roll_out(
             rig.with_values(values).records(),
@@ -70,3 +72,11 @@ def test_what_takes_its_time_or_closes_the_spool_is_that_of_the_diagnosing_rollo
     )
     assert np.degrees(np.abs(slow - plain)).max() > 0.5
     assert np.degrees(np.abs(slow - concealed)).max() < 0.02
+
+
+def test_what_the_bench_cannot_conceal_is_refused() -> None:
+    with pytest.raises(ValueError, match="no tool"):
+        machine = with_effects(
+            nominal_machine(load_rig("joint_bench", {})), {"load.payload": {"mass_kg": 1.0, "time_s": 0.0}}
+        )
+        play(machine, bench_driving(), np.zeros(10))

@@ -10,6 +10,7 @@ import pytest
 from hydrolek_drake.challenge.build import ARM_JOINTS, BENCH, build_of, rig_names
 from hydrolek_drake.challenge.calibration import calibration_png
 from hydrolek_drake.challenge.cases import TRAIN_S, digest, labels_of, read_case, record
+from hydrolek_drake.challenge.concealed import Concealed
 from hydrolek_drake.challenge.confusion import confusion_markdown, confusions
 from hydrolek_drake.challenge.drawing import FRICTIONS, _in_turn, _shown, drafted, draw_cases
 from hydrolek_drake.challenge.listed import with_effects
@@ -253,9 +254,11 @@ def test_what_an_effect_shows_is_counted_beside_the_others() -> None:
 
 def test_friction_where_the_bore_is_scored_acts_there_alone() -> None:
     build = build_of(load_rig(BENCH, {}))
-    scored = {"rubbing_n": 1500.0, "rubbing_at": 0.6, "rubbing_wide": 0.1}
-    reached = build.nominal._replace(**scored)
-    elsewhere = build.nominal._replace(**scored | {"rubbing_at": 3.0})  # farther than the rod comes
+    scored = Concealed(rubbing_n=1500.0, rubbing_at=0.6, rubbing_wide=0.1)
+    reached = build.nominal._replace(concealed=scored)
+    elsewhere = build.nominal._replace(
+        concealed=scored._replace(rubbing_at=3.0)
+    )  # farther than the rod comes
     volts = np.r_[np.zeros(50), np.full(350, 3.0), np.full(400, -3.0)]
     plain = build.play(build.nominal, volts).reading
     assert np.array_equal(build.play(elsewhere, volts).reading, plain)

@@ -9,7 +9,7 @@ import pytest
 from hydrolek_drake.challenge.build import Build, build_of
 from hydrolek_drake.challenge.driving import SAMPLE_S, Played, random_series
 from hydrolek_drake.challenge.faulty_signals import lost
-from hydrolek_drake.challenge.load_holding import let_out
+from hydrolek_drake.challenge.machine_parts import let_out
 from hydrolek_drake.rigs import load_rig
 
 RIGS = ("joint_bench", "hydrolek_left_j3")
@@ -37,7 +37,8 @@ def _volts(build: Build, seconds: float = 8.0) -> np.ndarray:
 
 
 def _driven(build: Build, volts: np.ndarray, **strange: float) -> Played:
-    return build.replay(build.nominal._replace(**strange), volts, STEP_S)
+    concealed = build.nominal.concealed._replace(**strange)
+    return build.replay(build.nominal._replace(concealed=concealed), volts, STEP_S)
 
 
 def _rms_deg(values: np.ndarray) -> float:
@@ -71,7 +72,7 @@ def test_a_ramp_is_the_command_ramped_by_hand(rig: str) -> None:
 
 
 def test_a_command_is_lost_for_its_share_of_the_time_and_never_at_regular_times() -> None:
-    machine = _build("joint_bench").nominal._replace(lost_s=0.2, lost_every_s=5.0)
+    machine = _build("joint_bench").nominal.concealed._replace(lost_s=0.2, lost_every_s=5.0)
     times = np.arange(0.0, 500.0, 0.01)
     gone = np.array([lost(machine, t) for t in times])
     assert gone.mean() == pytest.approx(0.2 / 5.0, rel=0.03)
@@ -108,7 +109,7 @@ def test_a_return_line_is_a_tank_under_the_pressure_of_its_flow(rig: str) -> Non
     late = slice(-40, -10)
     plain, slowed = _driven(build, volts), _driven(build, volts, **line)
     higher = line["return_pa_s"] * _leaving(build, slowed.reading[late])
-    same = _driven(build, volts, p_t=build.nominal.p_t + higher)
+    same = build.replay(build.nominal._replace(p_t=build.nominal.p_t + higher), volts, STEP_S)
     assert higher > 2e5
     speeds = [float(np.ptp(done.reading[late])) for done in (plain, slowed, same)]
     assert speeds[1] < 0.995 * speeds[0]
@@ -132,12 +133,13 @@ def test_a_counterbalance_valve_slows_the_way_in_and_not_the_way_out(rig: str) -
     """Oil leaves side A where the rod goes in; held wholly, it opens by what both chambers' pressures lift."""
     build = _build(rig)
     valve = {"held": 1.0, "holding_pa": 5e7}
-    assert let_out(build.nominal._replace(**valve), 5e6, 5e6) == pytest.approx((5e6 + 3.0 * 5e6) / 5e7)
-    assert let_out(build.nominal._replace(**valve), 5e7, 0.0) == let_out(build.nominal, 5e6, 5e6) == 1.0
+    concealed = build.nominal.concealed._replace(**valve)
+    assert let_out(concealed, 5e6, 5e6) == pytest.approx((5e6 + 3.0 * 5e6) / 5e7)
+    assert let_out(concealed, 5e7, 0.0) == let_out(build.nominal.concealed, 5e6, 5e6) == 1.0
     out, back = (np.r_[np.zeros(50), np.full(100, sign * MODERATE_V[rig])] for sign in (1.0, -1.0))
     assert np.array_equal(_driven(build, out, **valve).reading, _driven(build, out).reading)
     plain, held = _driven(build, back), _driven(build, back, **valve)
-    open_share = let_out(build.nominal._replace(**valve), held.pressure_a[-1], held.pressure_b[-1])
+    open_share = let_out(concealed, held.pressure_a[-1], held.pressure_b[-1])
     slower = []
     for done in (
         plain,

@@ -14,18 +14,7 @@ from hydrolek_drake.rollout import roll_out
 DATA = Path(__file__).parents[1] / "data" / "bench"
 LABELS = {label["id"]: label for label in json.loads((DATA / "practice_labels.json").read_text())}
 UNLISTED = "practice_14"  # its supply pressure ripples, which no effect of the list does
-RIG_PATHS = {
-    "A_max_m2": "valve.max_area_a",
-    "x_o_m": "valve.overlap_a",
-    "w_m": "valve.full_opening_a",
-    "P_S_Pa": "supply.pressure",
-    "B_Pa": "fluid.bulk_modulus",
-    "c_cyl_N_s_per_m": "cylinder.viscous_friction",
-    "J_kg_m2": "load.inertia",
-    "mgl_Nm": "load.gravity_cos",
-    "I_max_A": "amplifier.max_current_a",
-    "T_d_s": "command.delay",
-}
+RIG_PATHS = json.loads((DATA / "rig_paths.json").read_text())
 # bench.md: angle noise 0.05 deg rms, pressure noise 0.02 MPa
 LARGEST_ANGLE_ERROR_DEG, LARGEST_PRESSURE_ERROR = 0.055, 0.03e6
 SIZES = {

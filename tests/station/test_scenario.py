@@ -17,16 +17,6 @@ command: {kind: constant, joints: {joint: 2 V}}
 """
 
 
-@pytest.fixture
-def scenario_file(tmp_path):
-    def write(text):
-        path = tmp_path / "mine.yaml"
-        path.write_text(text)
-        return path
-
-    return write
-
-
 @pytest.mark.parametrize("name", sorted(scenario_files()))
 def test_every_scenario_runs(name):
     scenario = load_scenario(name, {"scenario.duration": "0.2 s"})

@@ -23,16 +23,6 @@ command: {kind: controlled, controller: feedforward, joints: {right_j2: [[0 s, 2
 """
 
 
-@pytest.fixture
-def scenario_file(tmp_path):
-    def write(text):
-        path = tmp_path / "mine.yaml"
-        path.write_text(text)
-        return path
-
-    return write
-
-
 def test_a_joint_goes_where_the_steps_of_the_file_say(scenario_file):
     done = run_scenario(load_scenario(scenario_file(ARM)))
     signals, units = named_signals(done)

@@ -6,7 +6,7 @@ import pytest
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.forward import tool_pose
 from hydrolek_drake.kinematics.frames import direction_in_frame, in_frame
-from hydrolek_drake.workcell.grasp import cut_path, directions_onto, grasp_path, with_arm
+from hydrolek_drake.workcell.grasp import cut_path, directions_onto, grasp_paths, with_arm
 from hydrolek_drake.workcell.scene import home_posture
 
 CAMERA = np.array([0.57, 0.0, 0.86])
@@ -33,8 +33,8 @@ def test_directions_come_square_and_frontal_first():
 
 
 def test_grasp_ends_on_the_axis_with_the_jaws_parallel_to_the_pipe(clear, holding, pipe):
-    found = grasp_path(
-        pipe.point, pipe.axis, pipe.point - CAMERA, 0.19, home_posture(), "right", clear, holding
+    found = next(
+        grasp_paths(pipe.point, pipe.axis, pipe.point - CAMERA, 0.19, home_posture(), "right", clear, holding)
     )
     for angles, wanted in zip(found.angles, found.points, strict=True):
         point, direction, jaws = _tool("right", angles)
@@ -66,6 +66,6 @@ def test_cut_crosses_the_pipe_with_the_blade_and_clears_it_on_both_sides(clear, 
 def test_a_point_out_of_reach_is_refused_with_the_reason(clear, holding, pipe):
     far = pipe.point + np.array([1.0, 0.0, 0.0])
     with pytest.raises(InputError, match=r"right arm cannot grasp there: .* long at most"):
-        grasp_path(far, pipe.axis, far - CAMERA, 0.19, home_posture(), "right", clear, holding)
+        next(grasp_paths(far, pipe.axis, far - CAMERA, 0.19, home_posture(), "right", clear, holding))
     with pytest.raises(InputError, match="left arm cannot cut there"):
         cut_path(far, pipe.axis, far - CAMERA, 0.08, 0.2, home_posture(), "left", clear)

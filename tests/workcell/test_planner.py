@@ -7,7 +7,7 @@ import pytest
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.workcell.collision import CollisionWorld
-from hydrolek_drake.workcell.grasp import grasp_path, with_arm, with_jaw
+from hydrolek_drake.workcell.grasp import grasp_paths, with_arm, with_jaw
 from hydrolek_drake.workcell.planner import path_is_free, plan_path
 from hydrolek_drake.workcell.scene import home_posture
 
@@ -23,7 +23,7 @@ def test_a_free_straight_way_is_taken(clear):
 def test_path_to_the_pipe_is_free_at_every_hundredth(clear, holding, pipe, seed):
     """Checked more finely than the planner does, with the bare shapes."""
     sight = pipe.point - [0.57, 0.0, 0.86]
-    grasp = grasp_path(pipe.point, pipe.axis, sight, 0.19, home_posture(), "right", clear, holding)
+    grasp = next(grasp_paths(pipe.point, pipe.axis, sight, 0.19, home_posture(), "right", clear, holding))
     goal = with_arm(with_jaw(home_posture(), "right", np.radians(40)), "right", grasp.angles[0])
     path = plan_path(clear, home_posture(), goal, np.random.default_rng(seed))
     np.testing.assert_array_equal(path[[0, -1]], [home_posture(), goal])

@@ -39,6 +39,11 @@ def connected(address: str) -> Any:
     return client
 
 
+def threads_of(client: Any) -> int:
+    """Threads that a cluster has, at least one; `client` as of `connected`."""
+    return max(sum(client.nthreads().values()), 1)
+
+
 class ClusterWorkers:
     """Maps an objective over points with a cluster's workers; use as a context manager."""
 
@@ -66,7 +71,7 @@ class ClusterWorkers:
 
     def __call__(self, points: Sequence[np.ndarray]) -> list[np.ndarray | None]:
         """Values in the order of the points; None for one that failed or was overdue."""
-        threads = max(sum(self._client.nthreads().values()), 1)
+        threads = threads_of(self._client)
         chunks = chunks_of(len(points), threads, getattr(self._objective, "batch", 1))
         values: list[np.ndarray | None] = [None] * len(points)
         for chunk in self._round(points, chunks, values, threads):

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from hydrolek_drake.identification.search.cluster import RETRIES, connected
+from hydrolek_drake.identification.search.cluster import RETRIES, connected, threads_of
 
 AHEAD = 2
 """So many jobs for each thread of the cluster are under way: none waits for the next, and few stand in memory."""
@@ -52,7 +52,7 @@ class ClusterJobs:
         left = iter(jobs)
         names: dict[Any, Any] = {}
         running = as_completed([])
-        room = AHEAD * max(sum(self._client.nthreads().values()), 1)
+        room = AHEAD * threads_of(self._client)
         try:
             while True:
                 while len(names) < room and (job := next(left, None)) is not None:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from typing import Any
 
-from hydrolek_drake.identification.search.cluster import RETRIES, connected
+from hydrolek_drake.identification.search.cluster import RETRIES, connected, threads_of
 from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes, together_with
 from hydrolek_drake.rollout.rollout import Outcome
 from hydrolek_drake.rollout.run import Run
@@ -24,7 +24,7 @@ class ClusterPool(ThreadPoolExecutor):
             InputError: no scheduler there, or one without workers.
         """
         self._client = connected(address)
-        self.cores = max(sum(self._client.nthreads().values()), 1)
+        self.cores = threads_of(self._client)
         self._tables = ClusterTables(self._client)
         super().__init__(self.cores)
 

@@ -1,37 +1,16 @@
 """What the console serves over HTTP: its page, scripts and pictures."""
 
-from importlib.resources import files
-from typing import Any
-
-import tornado.web
-
 from hydrolek_drake.teleop.console.desk import Desk
+from hydrolek_drake.teleop.console.guarded import Guarded
 
 
-class Handler(tornado.web.RequestHandler):
+class Handler(Guarded):
     """Answers only under names that the console is served as."""
 
     def initialize(self, console: Desk) -> None:
         """What the application hands to each request."""
         self.console = console
-
-    def set_default_headers(self) -> None:
-        """Nothing is kept, guessed, or told to others."""
-        self.set_header("Cache-Control", "no-store")
-        self.set_header("X-Content-Type-Options", "nosniff")
-        self.set_header("Referrer-Policy", "no-referrer")
-        self.clear_header("Server")
-
-    def prepare(self) -> None:
-        """Refuse what comes under a foreign name."""
-        reason = self.console.gate.refused_host(self.request.headers.get("Host", ""))
-        if reason:
-            self.set_status(403)
-            self.finish(reason + "\n")
-
-    def write_error(self, status_code: int, **kwargs: Any) -> None:
-        """One line."""
-        self.finish(f"{status_code} {self._reason}\n")
+        self.gate = console.gate
 
 
 class Nothing(Handler):
@@ -39,8 +18,7 @@ class Nothing(Handler):
 
     def get(self) -> None:
         """Answer."""
-        self.set_status(404)
-        self.finish("the console has no such page\n")
+        self.refuse(404, "the console has no such page")
 
 
 class Page(Handler):
@@ -48,7 +26,6 @@ class Page(Handler):
 
     def get(self) -> None:
         """Answer."""
-        self.set_header("Content-Type", "text/html; charset=utf-8")
         host = self.request.headers["Host"]  # one that was let in
         policy = [
             "default-src 'self' 'unsafe-inline'",
@@ -61,7 +38,7 @@ class Page(Handler):
         if self.console.view_port is not None:
             policy.append(f"frame-src http://{self.request.host_name}:{self.console.view_port}")
         self.set_header("Content-Security-Policy", "; ".join(policy))
-        self.finish(files(__package__).joinpath("page.html").read_text(encoding="utf-8"))
+        self.give_file(__package__, "page.html", "text/html; charset=utf-8")
 
 
 class Script(Handler):
@@ -69,8 +46,7 @@ class Script(Handler):
 
     def get(self, name: str) -> None:
         """Answer."""
-        self.set_header("Content-Type", "text/javascript; charset=utf-8")
-        self.finish(files(__package__).joinpath(f"{name}.js").read_text(encoding="utf-8"))
+        self.give_file(__package__, f"{name}.js", "text/javascript; charset=utf-8")
 
 
 class Icon(Handler):
@@ -78,8 +54,7 @@ class Icon(Handler):
 
     def get(self) -> None:
         """Answer."""
-        self.set_header("Content-Type", "image/svg+xml")
-        self.finish(files(__package__).joinpath("icon.svg").read_text(encoding="utf-8"))
+        self.give_file(__package__, "icon.svg", "image/svg+xml")
 
 
 class Picture(Handler):
@@ -87,12 +62,11 @@ class Picture(Handler):
 
     def get(self, name: str) -> None:
         """Answer."""
-        gate = self.console.gate
+        gate = self.gate
         if not gate.watching_is_free:
             scheme, _, token = self.request.headers.get("Authorization", "").partition(" ")
             if scheme != "Bearer" or not gate.trusts(token):
-                self.set_status(401)
-                self.finish("watching needs the token of the address that the console has printed\n")
+                self.refuse(401, "watching needs the token of the address that the console has printed")
                 return
         picture = self.console.session.picture(name)
         if not picture:

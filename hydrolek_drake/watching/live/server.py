@@ -9,7 +9,6 @@ import contextlib
 import json
 import threading
 from collections.abc import Callable
-from importlib.resources import files
 from typing import Any
 
 import tornado.httpserver
@@ -19,6 +18,7 @@ import tornado.websocket
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.console.gate import Gate
+from hydrolek_drake.teleop.console.guarded import Guarded
 
 _HOST = "127.0.0.1"
 _MOST = 16
@@ -113,50 +113,34 @@ class LivePage:
         self._loop.call_later(0.1, self._loop.stop)
 
 
-class _Handler(tornado.web.RequestHandler):
+class _Handler(Guarded):
     """Answers only under names of this machine."""
 
+    foreign = "the page is not served under this name"
+
     def initialize(self, page: LivePage) -> None:
-        self.page = page
-
-    def set_default_headers(self) -> None:
-        self.set_header("Cache-Control", "no-store")
-        self.set_header("X-Content-Type-Options", "nosniff")
-        self.set_header("Referrer-Policy", "no-referrer")
-        self.clear_header("Server")
-
-    def prepare(self) -> None:
-        reason = self.page.gate.refused_host(self.request.headers.get("Host", ""))
-        if reason:
-            self.set_status(403)
-            self.finish("the page is not served under this name\n")
-
-    def write_error(self, status_code: int, **kwargs: Any) -> None:
-        self.finish(f"{status_code} {self._reason}\n")
+        self.gate = page.gate
 
 
 class _Nothing(_Handler):
     def get(self) -> None:
-        self.set_status(404)
-        self.finish("there is no such page\n")
+        self.refuse(404, "there is no such page")
 
 
 class _Page(_Handler):
     def get(self) -> None:
         host = self.request.headers["Host"]  # one that was let in
-        self.set_header("Content-Type", "text/html; charset=utf-8")
         self.set_header(
             "Content-Security-Policy",
             f"default-src 'self' 'unsafe-inline'; connect-src 'self' ws://{host}; img-src 'self' data:; "
             "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
         )
-        self.finish(files(__package__).joinpath("page.html").read_text(encoding="utf-8"))
+        self.give_file(__package__, "page.html", "text/html; charset=utf-8")
 
 
 class _Script(_Handler):
     def get(self, name: str) -> None:
-        self.set_header("Content-Type", "text/javascript; charset=utf-8")
-        self.finish(files(__package__).joinpath(f"{name}.js").read_text(encoding="utf-8"))
+        self.give_file(__package__, f"{name}.js", "text/javascript; charset=utf-8")
 
 
 class _Socket(tornado.websocket.WebSocketHandler):
