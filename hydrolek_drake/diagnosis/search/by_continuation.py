@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from hydrolek_drake.diagnosis import trace
+from hydrolek_drake.diagnosis.fitting.local_search import has_other_minima, searched_near
 from hydrolek_drake.diagnosis.fitting.race import Entrant, Runner, Start, entered, hypotheses_of, run
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
@@ -53,6 +54,28 @@ def continued_nominal(
     [fitted] = hypotheses_of(bench, ended, settings.again)
     trace(f"    nominal {direct.fit.over_noise:.4f}, continued {fitted.fit.over_noise:.4f}")
     return fitted if direct.fit.objective - fitted.fit.objective > gain_needed(direct.fit) else None
+
+
+def out_of_local_minima(
+    bench: Workbench, fits: Sequence[Hypothesis], found: Tried, settings: Settings, cores: int
+) -> None:
+    """Where the best structure leaves more than noise, it and the next best one are led out of a local minimum.
+
+    By continuation; and where what has no slope, such as a play, has other minima, by fits from places near the best.
+
+    Args:
+        bench: data and problems.
+        fits: where fits of several structures ended, those in different minima of one apart.
+        found: receives what is better.
+        settings: of the search.
+        cores: that roll out at the same time.
+    """
+    for each in continued_to_the_end(bench, fits, found.best, settings, cores):
+        found.keep(each)
+    best = found.best
+    sudden = any(c.sudden for c in best.effects)
+    if best.fit.over_noise > NOISE.at and sudden and has_other_minima(best, fits):
+        found.keep(searched_near(bench, best, settings, cores))
 
 
 def continued_to_the_end(

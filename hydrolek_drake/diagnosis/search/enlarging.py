@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from hydrolek_drake.diagnosis.fitting.local_search import has_other_minima, searched_near
 from hydrolek_drake.diagnosis.fitting.race import (
     Entrant,
     Runner,
@@ -20,7 +19,7 @@ from hydrolek_drake.diagnosis.lost_commands.search import with_windows
 from hydrolek_drake.diagnosis.search.by_continuation import (
     continued,
     continued_nominal,
-    continued_to_the_end,
+    out_of_local_minima,
     over_noise_of,
     steps_for,
     traced,
@@ -77,11 +76,7 @@ def enlarged(
     fits = hypotheses_of(bench, ended, settings.ended[-1])
     for each in fits:
         found.keep(each)
-    for each in continued_to_the_end(bench, fits, found.best, settings, cores):
-        found.keep(each)
-    sudden = any(c.sudden for c in found.best.effects)
-    if found.best.fit.over_noise > NOISE.at and sudden and has_other_minima(found.best, fits):
-        found.keep(searched_near(bench, found.best, settings, cores))
+    out_of_local_minima(bench, fits, found, settings, cores)
     reached = found.best.fit.over_noise
     if opening.lost is not None and reached > NOISE.at and opening.lost.share >= settings.lost:
         for each in with_windows(bench, parent, opening.lost, settings, cores, reached):

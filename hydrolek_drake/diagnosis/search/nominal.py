@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.race import Entrant, race
-from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal
+from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal, out_of_local_minima
 from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import FITS, NOISE, Settings
@@ -34,8 +34,11 @@ def fit_nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) 
     found.weighed_at = best.fit.over_noise
     if found.seeds:
         rung = replace(settings.again, keep=len(found.seeds))
-        for each in race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (rung,), cores):
+        fits = race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (rung,), cores)
+        for each in fits:
             found.keep(each)
+        if found.best.effects:
+            out_of_local_minima(bench, [*fits, *found.seeds], found, settings, cores)
 
 
 def as_weighed(bench: Workbench, structure: Hypothesis, settings: Settings, cores: int) -> Hypothesis:
