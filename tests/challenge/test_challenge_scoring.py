@@ -186,7 +186,7 @@ def test_a_choice_of_rigs_is_one_or_a_group() -> None:
 @pytest.mark.parametrize("name", [BENCH, *ARM_JOINTS])
 def test_every_size_fits_its_machine(name: str) -> None:
     build = build_of(load_rig(name, {}))
-    fields = set(build.nominal._fields)
+    fields = set(build.nominal.concealed._fields)
     for effect, entry in build.listed.items():
         assert with_effects(
             build.nominal, {effect: entry["size"] | dict.fromkeys(entry.get("draw", {}), 1.0)}
@@ -293,7 +293,7 @@ def test_cases_of_one_kind_conceal_every_kind_of_physics_as_often() -> None:
     assert sorted(drawn) == sorted(2 * list(builds[0].unlisted))
     for build, *_, (name,) in drafts:  # each machine has a number for every parameter
         entry = build.unlisted[name]
-        assert set(build.nominal._fields) >= {*entry["size"], *entry.get("draw", {})}
+        assert set(build.nominal.concealed._fields) >= {*entry["size"], *entry.get("draw", {})}
 
 
 def test_a_kind_that_is_not_drawn_is_refused_in_one_line(tmp_path) -> None:
