@@ -1,0 +1,75 @@
+"""Structures by continuation: out of local minima that the steps of a race end in."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from hydrolek_drake.challenge.cases import read_case, record
+from hydrolek_drake.diagnosis.search.best_first import search_structures
+from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.settings import NOISE, Settings
+from hydrolek_drake.diagnosis.structures.candidates import candidates_of
+from hydrolek_drake.diagnosis.structures.splitting import prepared
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
+from hydrolek_drake.identification.experiments.natural_scales import natural_scales
+from hydrolek_drake.identification.parameter_set import free_of_joints
+from hydrolek_drake.recordings import read_recording
+from hydrolek_drake.rigs import load_rig
+
+STICKS_AND_SLIPS = {
+    "drive": "closed",
+    "effects": {
+        "cylinder.stribeck_friction": {
+            "coulomb_N": 66.00204824609787,
+            "stribeck_N": 132.00409649219574,
+            "stribeck_velocity_m_per_s": 0.13522343090706243,
+        }
+    },
+    "kind": "single",
+    "machine": {
+        "area_max_a": 1.0834968381541768e-06,
+        "area_max_b": 1.5177185908883158e-06,
+        "bulk": 938592251.8235867,
+        "c_cyl": 14.114028964808016,
+        "i_max_a": 1.0765217787485069,
+        "i_max_b": 1.1056057789281595,
+        "p_s": 14490477.267971816,
+        "t_d": 0.2206539216074952,
+        "w_a": 0.00019854493362397686,
+        "w_b": 0.00013286423063094152,
+        "x_o_a": 5.104314366623347e-05,
+        "x_o_b": 7.268378461596116e-05,
+    },
+    "name": "case_026",
+    "pressures": True,
+    "rig": "hydrolek_right_j4",
+    "seed": 455791370,
+    "shows": {"cylinder.stribeck_friction": 15.085905139694832},
+    "size": "large",
+    "stages": ["cylinder"],
+    "unlisted": {},
+}
+
+
+@pytest.mark.long("takes a minute")
+def test_friction_of_a_joint_that_sticks_and_slips_is_led_to_the_noise(tmp_path) -> None:
+    """Case 26 of the challenge's seed 570, where the steps of a race end at ten times the noise."""
+    case = read_case(STICKS_AND_SLIPS)
+    rig = load_rig(case.rig, {})
+    record(rig, case, tmp_path)
+    train, holdout = (read_recording(tmp_path / f"{side}.csv", rig.columns) for side in ("train", "holdout"))
+    training, _, _ = prepared(rig, [train], [holdout], None)
+    [joint] = rig.joints
+    candidates = [
+        c
+        for c in candidates_of(rig, joint, natural_scales(rig, joint, training))
+        if c.id == "cylinder.stribeck_friction"
+    ]
+    found = Tried()
+    with ThreadPoolExecutor(2) as pool:
+        bench = Workbench(rig, free_of_joints(rig, {joint}), training, pool, 2)
+        search_structures(bench, candidates, found, lambda text: None, Settings(), 2)
+    assert found.best.effects == tuple(candidates)
+    assert found.best.fit.over_noise < NOISE.explained
+    for name, value in case.effects["cylinder.stribeck_friction"].items():
+        assert found.best.values[f"{candidates[0].path}.{name}"] == pytest.approx(value, rel=0.05)
