@@ -134,8 +134,11 @@ class LastNumbers:
         )
 
     def ahead(self, fitted: Hypothesis, held_out: Sequence[Experiment]) -> np.ndarray:
-        """Residuals on the held-out data, in units of the noise. # (values,)."""
-        return self._problem(held_out).residuals(fitted.fit.unit)
+        """Residuals on the held-out data, in units of the noise, without what the step adds, as fitted. # (values,)."""
+        told = held_out
+        if not self._bench.together:
+            told = without_step_error(self.problem, fitted, self._step, held_out)
+        return self._problem(told).residuals(fitted.fit.unit)
 
 
 def with_last_numbers(

@@ -1,7 +1,7 @@
 """Recordings less what the step of the integration adds to a model: deferred correction.
 
 What a longer step does wrong is not noise. It is the same time and again, and where the sensors are quiet it bends
-numbers by more than their standard deviations: with air in the oil and pressures that are measured, by one to three at
+numbers by more than their standard deviations: with air in the oil and pressures that are measured, by one to two at
 half of a rig's own step. At one place it is known, from a rollout with a much shorter step, and it changes little with
 the parameters. Taken out of what was measured, it leaves a fit with the longer step that ends where one with the
 shorter step would, at the cost of one rollout (V. Pereyra, Iterated deferred corrections for nonlinear operator
@@ -35,9 +35,9 @@ def without_step_error(
         experiments: recordings as they are.
     """
     corrected = []
+    records = problem.parameters.records(fitted.fit.unit)
     arrived = arrivals(fitted.effects, fitted.values, experiments)
     for recorded, experiment in zip(experiments, arrived, strict=True):
-        records = problem.parameters.records(fitted.fit.unit)
         long, short = (experiment.simulate(records, h).signals for h in (step, step / FITS.shorter))
         channels = []
         for channel in recorded.channels:

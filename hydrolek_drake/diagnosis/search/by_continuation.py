@@ -132,10 +132,7 @@ def traced(name: str) -> Callable[[Sequence[Runner], Rung], None]:
     def seen(runners: Sequence[Runner], rung: Rung) -> None:
         trace(
             f"    {name} T={rung.observer_s} x{rung.coarse} {len(runners)}: "
-            + ", ".join(
-                f"{names_of(r.effects)} {math.sqrt(r.place.objective / r.place.problem.counted):.4f}"
-                for r in runners[:5]
-            )
+            + ", ".join(f"{names_of(r.effects)} {over_noise_of(r):.4f}" for r in runners[:5])
         )
 
     return seen

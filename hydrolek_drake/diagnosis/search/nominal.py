@@ -37,7 +37,9 @@ def fit_nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) 
         fits = race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (rung,), cores)
         for each in fits:
             found.keep(each)
-        if found.best.effects:
+        if (
+            found.best.effects
+        ):  # where a fit to other data ended is another local minimum of it, so both are told
             out_of_local_minima(bench, [*fits, *found.seeds], found, settings, cores)
 
 

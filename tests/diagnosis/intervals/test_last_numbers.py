@@ -39,6 +39,7 @@ class Drawn:
             SimpleNamespace(path=SIZE, from_unit=lambda u: 10.0 * u),
         ],
         values=lambda unit: {OWN: float(unit[0]), SIZE: 10.0 * float(unit[1])},
+        records=lambda unit: np.zeros(0),
     )
 
     def __init__(self, curve: Callable[[float], ArrayLike]) -> None:
