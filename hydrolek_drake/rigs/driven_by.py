@@ -75,7 +75,8 @@ def counts(path: str, driven_by: Sequence[str], joints: Sequence[str]) -> bool:
 
 def _is_replaced(path: str, parts: Collection[str]) -> bool:
     section, _, name = path.rpartition(".")
-    stage = section.split(".effects.")[-1].split(".")[0] if ".effects." in section else section.split(".")[-1]
+    added = next((kind for kind in (".effects.", ".law.") if kind in section), None)
+    stage = section.split(added)[-1].split(".")[0] if added else section.split(".")[-1]
     if name == "tank_pressure" and "chamber_pressures" not in parts:
         return False
     if stage == "cylinder" and name in CHAMBERS_ONLY:

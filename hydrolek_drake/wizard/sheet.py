@@ -16,7 +16,7 @@ _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _SPLIT = re.compile(rf"\s*(?P<numbers>{_NUMBER}(?:[,;\s]+{_NUMBER})*)\s*(?P<unit>[^\d\s,;.+-].*)?")
 SIGNED = ("base_mount", "link_mount", "centre", "mid_stroke_at", "overlap")
 MAY_BE_ZERO = (
-    "rod", "delay", "tank_pressure", "relief_hysteresis", "port_shares", "rated_flow", "angle_noise",
+    "rod", "delay", "tank_pressure", "pump_leakage", "relief_hysteresis", "port_shares", "rated_flow", "angle_noise",
     "position_noise", "pressure_noise", "bearing_damping", "guide_damping", "seal_damping",
 )  # fmt: skip
 """Questions whose answers may be below zero, and zero."""

@@ -64,6 +64,8 @@ class Sheet:
             return float(self.area_a * self["stroke"])
         if key == "overlap":
             return float(self["spool_travel"])
+        if key == "pump_leakage":
+            return self["displacement"] * self["pump_speed"]
         if key in ("relief_rise", "relief_hysteresis"):
             return float(self["supply_pressure"])
         if key == "bearing_damping":
@@ -236,6 +238,7 @@ def _pump(sheet: Sheet) -> list[str]:
     return [
         _asked(sheet, "displacement"),
         _asked(sheet, "pump_speed", "speed"),
+        _leak(sheet),
         _rise(sheet),
         _asked(sheet, "relief_hysteresis"),
         _asked(sheet, "relief_time"),
@@ -253,6 +256,17 @@ def _line_at_start(sheet: Sheet) -> list[str]:
         _entry("initial_pressure", rest / bar, "bar", "assumed: at rest", limits, log=False),
         _entry("initial_relief", 1.0, "1", "assumed: at rest; 0 with the valve closed", (0.0, 1.0)),
     ]
+
+
+def _leak(sheet: Sheet) -> str:
+    """What the pump loses for each pressure, from what it loses at the relief valve's setting."""
+    question = questions()["pump_leakage"]
+    at_setting = 1.0 / sheet["supply_pressure"]
+    most = question.what["assumed_upper_share"] * sheet._whole("pump_leakage")
+    source = SHEET if "pump_leakage" in sheet.answers else question.what["known"]
+    lost = sheet["pump_leakage"]
+    limits = (0.0, max(most, 2.0 * lost) * at_setting)
+    return _entry("pump_leakage", lost * at_setting, "m^3/(s Pa)", source, limits, log=False)
 
 
 def _rise(sheet: Sheet) -> str:

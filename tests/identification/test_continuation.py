@@ -9,7 +9,7 @@ import pytest
 from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.fit import fit_rig
 from hydrolek_drake.identification.least_squares.continuation import Continuation, spread_evenly
-from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
+from hydrolek_drake.identification.parameter_set import Free, ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.recordings import Recording, read_recording
 from hydrolek_drake.rigs import load_rig
@@ -18,7 +18,7 @@ from hydrolek_drake.rollout import roll_out
 SHARED = Path(__file__).parents[3] / "shared" / "recordings" / "hopsan_link"
 
 TRUE = {
-    "supply.displacement": "28 cm^3/rev",
+    "supply.displacement": "29 cm^3/rev",
     "supply.relief_time": "12 ms",
     "supply.relief_slope": "3e8 Pa s/m^3",
     "supply.relief_hysteresis": "4 bar",
@@ -31,12 +31,17 @@ TRUE = {
 
 @pytest.fixture(scope="module")
 def recording():
-    """A link whose pump's line rings, for 3 s, with noise."""
+    """A link whose pump's line rings."""
+    return recorded(TRUE, seconds=3.0)
+
+
+def recorded(numbers: dict[str, str], seconds: float) -> Recording:
+    """A link with other numbers under random steps, with noise."""
     rng = np.random.default_rng(5)
-    time = np.arange(0.0, 3.0, 0.01)
+    time = np.arange(0.0, seconds, 0.01)
     volts = np.repeat(rng.uniform(-3.0, 3.0, 10), 30)
     volts[:20] = 0.0
-    machine = load_rig("hopsan_link", TRUE)
+    machine = load_rig("hopsan_link", numbers)
     done = roll_out(machine.records(), time, volts, time, longest_step=2.5e-4).signals
     signals = {
         "joint.command": volts,
@@ -61,6 +66,26 @@ def test_behind_the_cut_nothing_depends_on_the_supply(recording) -> None:
     assert np.array_equal(problem.residuals(np.where(supply, 0.3, unit)), own)
     assert not np.array_equal(problem.residuals(np.where(supply, unit, 0.3)), own)
     assert part.with_recorded_supply() is part
+
+
+def test_what_the_pump_lacks_is_found_with_the_supply_and_not_behind_the_cut() -> None:
+    """A pump that gives a fifth: the effect stands in the joint's part of a rig and acts on the supply."""
+    lacking = "joints.joint.effects.supply.pump_loss.fraction"
+    recording = recorded({**TRUE, lacking: "0.8"}, seconds=3.0)
+    rig = load_rig("hopsan_link", {path: text for path, text in TRUE.items() if path == "load.mass"})
+    supply = [
+        "supply.relief_time",
+        "supply.relief_slope",
+        "supply.relief_hysteresis",
+        "supply.initial_pressure",
+    ]
+    free = [*free_parameters(rig, [*supply, "load.damping"]), Free(lacking, 0.0, 0.95)]
+    parameters = ParameterSet(rig, free)
+    experiments = tuple(experiments_of(rig, recording))
+    with ThreadPoolExecutor(1) as pool:
+        unit = Continuation(parameters, experiments, pool, 1).from_the_cut([parameters.unit()])
+    assert unit is not None
+    assert parameters.values(unit)[lacking] == pytest.approx(0.8 + 0.2 / 30.0, abs=0.01)  # of 30 cm^3, not 29
 
 
 @pytest.mark.long("ten seconds")

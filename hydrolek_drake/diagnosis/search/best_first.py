@@ -130,9 +130,18 @@ def _open(
             listed = all(isinstance(c, Candidate) for c in h.effects)
             if listed and (h.ids, EFFECTS) not in done:
                 items.append((h, EFFECTS))
-            elif laws and best.fit.over_noise > NOISE.ahead:
+            elif laws and best.fit.over_noise > NOISE.ahead and not _explained_by(best, h, settings):
                 items.append((h, LAWS))
     return [(h, kind) for h, kind in items if (h.ids, kind) not in done]
+
+
+def _explained_by(best: Hypothesis, structure: Hypothesis, settings: Settings) -> bool:
+    """Whether the best structure explains the data and contains one that lies behind for good.
+
+    A law beside that one would only imitate what the best one has in effects.
+    """
+    behind = structure.fit.over_noise > settings.again_within * best.fit.over_noise
+    return behind and best.fit.over_noise <= NOISE.explained and structure.ids < best.ids
 
 
 def _weigh(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
@@ -145,9 +154,14 @@ def _weigh(bench: Workbench, found: Tried, settings: Settings, cores: int) -> No
     ranked = sorted(found.hypotheses.values(), key=lambda h: h.fit.objective)
     within = settings.again_within**2 * best.fit.objective
     near = [h for h in ranked if h.fit.objective < within][: settings.most_again]
-    chosen = {h.ids: h for h in (found.baseline, *near)}
-    rung = replace(settings.again, keep=len(chosen))
-    again = race(bench, [Entrant(h.effects, h.values) for h in chosen.values()], (rung,), cores)
+    again = race(
+        bench,
+        [Entrant(h.effects, h.values) for h in near],
+        (replace(settings.again, keep=len(near)),),
+        cores,
+    )
+    if all(h.effects for h in near):  # the nominal model lies far behind, and is told beside the others only
+        again += race(bench, [Entrant((), found.baseline.values)], (settings.led,), cores)
     found.given_up.update(found.hypotheses)
     found.hypotheses.clear()
     for each in again:

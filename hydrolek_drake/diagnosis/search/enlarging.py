@@ -56,11 +56,11 @@ def enlarged(
         Whether the structure itself was fitted so much better meanwhile that it should be enlarged again.
     """
     parent = opening.parent
-    enough = NOISE.ahead if can_be_cut(bench) else NOISE.at
+    enough = NOISE.explained if can_be_cut(bench) else NOISE.at
     runners = _led_on(bench, opening, candidates, settings, cores)
     if runners and over_noise_of(runners[0]) > enough:
         runners = [*_farther(bench, runners[0], settings, cores), *runners]
-        if enough > NOISE.at:
+        if can_be_cut(bench) and parent.fit.over_noise > enough:
             runners = [*_by_parts(bench, runners, enough, settings, cores), *runners]
     if runners and over_noise_of(runners[0]) > enough and not runners[0].place.ended:
         runners = [*run(bench, runners[:1], settings.ended, cores, traced("first to the end")), *runners[1:]]

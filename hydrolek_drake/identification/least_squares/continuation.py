@@ -23,7 +23,7 @@ from hydrolek_drake.identification.least_squares.lockstep import descend
 from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.physics.driven import UPSTREAM
+from hydrolek_drake.rigs.driven_by import counts
 
 RUNGS: tuple[tuple[float | None, int], ...] = ((0.1, 8), (0.5, 8), (None, 10))
 """Time constants of the observer [s], and steps of a fit with it; the last one is free."""
@@ -40,9 +40,9 @@ SHORT_STEPS, LONG_STEPS = 10, 20
 SEED = 1
 """Of the sequence: the same starts each time."""
 
-STARTS, MOST_ROUNDS, FOLLOWED = 64, 4, 1.1
-"""Places from which the shortest horizon is fitted in a round; so many rounds at most, until one place leaves so many
-times the noise or less: over few samples chance moves it by 5 %."""
+TRIED, STARTS, MOST_ROUNDS, FOLLOWED = 1024, 24, 6, 1.2
+"""So many places are tried over the shortest horizon in a round, and from the best of them it is fitted; so many rounds
+at most, until one place leaves so many times the noise or less: over few samples chance moves it by 5 %."""
 
 FAR = 3.0
 """A chain that leaves so many times the noise behind the cut lacks something there: the supply is left as it is."""
@@ -114,11 +114,9 @@ class Continuation:
             return np.where(supply, starts[0], behind.unit)
         behind_unit = behind.unit
         own = [np.where(supply, start, behind_unit) for start in starts]
-        spread = np.tile(behind_unit, (MOST_ROUNDS * STARTS, 1))
-        spread[:, supply] = spread_evenly(MOST_ROUNDS * STARTS, int(supply.sum()))
-        rounds = [[*own, *spread[: STARTS - len(own)]]]
-        rounds += [list(spread[n * STARTS : (n + 1) * STARTS]) for n in range(1, MOST_ROUNDS)]
-        return self._over_growing_horizons(rounds, supply)
+        spread = np.tile(behind_unit, (MOST_ROUNDS * TRIED, 1))
+        spread[:, supply] = spread_evenly(MOST_ROUNDS * TRIED, int(supply.sum()))
+        return self._over_growing_horizons(own, np.split(spread, MOST_ROUNDS), supply)
 
     def parts(self) -> tuple[Experiment, ...] | None:
         """The experiments with the chain cut at the recorded supply pressure; None as above."""
@@ -130,9 +128,10 @@ class Continuation:
 
     @property
     def _supply(self) -> np.ndarray:
-        """Which parameters are the supply's. # (n,) truth values."""
-        upstream = UPSTREAM["supply_pressure"]
-        return np.array([path.startswith(upstream) for path in self.parameters.paths], dtype=bool)
+        """Which parameters only act on what lies before the recorded supply pressure. # (n,) truth values."""
+        joints = self.parameters.rig.joints
+        behind = [counts(path, ("supply.pressure",), joints) for path in self.parameters.paths]
+        return ~np.array(behind, dtype=bool)
 
     def _by_observers(
         self, experiments: tuple[Experiment, ...], starts: Sequence[np.ndarray], moving: np.ndarray
@@ -141,15 +140,18 @@ class Continuation:
         units = list(starts)
         for pull_time, steps in RUNGS:
             places = self._descended(experiments, units, moving, pull_time, steps)
+            if places[0].objective > FAR**2 * places[0].problem.counted:
+                break  # a longer memory leaves no less
             units = [place.unit for place in places]
         return places
 
     def _over_growing_horizons(
-        self, rounds: Sequence[Sequence[np.ndarray]], moving: np.ndarray
+        self, own: Sequence[np.ndarray], rounds: Sequence[np.ndarray], moving: np.ndarray
     ) -> np.ndarray:
         """Where the numbers that move end, from short horizons to all of the time. # (n,).
 
-        Further rounds of starts are tried over the shortest horizon as long as none of them follows that to the noise.
+        The shortest one is fitted from the starts themselves, and from others in rounds as long as none of them follows
+        it to the noise: of the places of a round those that leave least.
         """
         whole = max(float(e.time[-1] - e.time[0]) for e in self.experiments)
         samples = min(e.time.size for e in self.experiments)
@@ -159,12 +161,14 @@ class Continuation:
             parts = tuple(e.until(whole / 2**halvings) if halvings else e for e in self.experiments)
             steps, share = (SHORT_STEPS, 1e-3) if halvings else (LONG_STEPS, 1e-4)
             if halvings == most:
-                places: list[Place] = []
-                for units in rounds:
-                    places += self._descended(parts, units, moving, None, steps, share=share)
-                    places.sort(key=_objective)
+                places = self._descended(parts, own, moving, None, steps, share=share)
+                for spread in rounds:
                     if places[0].objective <= FOLLOWED**2 * places[0].problem.counted:
                         break
+                    tried = self._descended(parts, list(spread), moving, None, 0)
+                    units = [place.unit for place in tried[:STARTS]]
+                    places += self._descended(parts, units, moving, None, steps, share=share)
+                    places.sort(key=_objective)
             else:
                 units = [place.unit for place in places]
                 places = sorted(
