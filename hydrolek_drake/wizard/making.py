@@ -7,8 +7,9 @@ from hydrolek_drake.checking.steps import differs, driven_about
 from hydrolek_drake.rigs.reading import rig_from_tree
 from hydrolek_drake.rigs.rig import Rig
 from hydrolek_drake.units import si_factor
-from hydrolek_drake.wizard.sheet import fixed, read_answers
-from hydrolek_drake.wizard.writing import Sheet, rig_text
+from hydrolek_drake.wizard.questions import fixed, read_answers
+from hydrolek_drake.wizard.sheet import Sheet
+from hydrolek_drake.wizard.writing import rig_text
 from hydrolek_drake.yaml_files import parse_yaml
 
 MARGIN = 0.5

@@ -14,7 +14,7 @@ from hydrolek_drake.rigs.json_schema import rig_schema
 from hydrolek_drake.rigs.reading import rig_from_tree
 from hydrolek_drake.wizard import questions, read_answers, rig_text
 from hydrolek_drake.wizard.making import written_rig
-from hydrolek_drake.wizard.writing import Sheet
+from hydrolek_drake.wizard.sheet import Sheet
 from hydrolek_drake.yaml_files import parse_yaml, read_yaml
 
 LINK = {

@@ -1,0 +1,69 @@
+"""Lines of a rig file: value, unit, source and the range in which a fit searches."""
+
+from hydrolek_drake.wizard.questions import fixed, questions
+from hydrolek_drake.wizard.sheet import Sheet, si_factor_of
+
+SHEET = "data sheet"
+"""Source of what was said."""
+
+
+def _number(value: float) -> str:
+    """As YAML reads it as a number."""
+    text = f"{value:.5g}"
+    return text.replace("e", ".0e") if "e" in text and "." not in text else text
+
+
+def entry(
+    name: str,
+    value: float,
+    unit: str,
+    source: str,
+    limits: tuple[float, float] | None = None,
+    log: bool = True,
+) -> str:
+    """One line of a rig.
+
+    Args:
+        name: of the number.
+        value: in its unit.
+        unit: as it is written.
+        source: of the value.
+        limits: in which a fit searches; None for a number that is taken as it is.
+        log: whether it is searched by its logarithm, where it cannot be zero.
+    """
+    log = log and limits is not None and limits[0] > 0.0
+    fitted = f", range: [{_number(limits[0])}, {_number(limits[1])}]" if limits else ""
+    spelled = '"1"' if unit == "1" else unit
+    scale = ", scale: log" if log else ""
+    return f'{name}: {{value: {_number(value)}, unit: {spelled}, source: "{source}"{fitted}{scale}}}'
+
+
+def asked(sheet: Sheet, key: str, name: str = "") -> str:
+    """The entry of a question, in its own unit, with the range of what a data sheet or an assumption says."""
+    question = questions()[key]
+    factor = si_factor_of(question)
+    value, what = sheet[key] / factor, question.what
+    unit = "rad/s" if question.unit == "Hz" else question.unit
+    value = value * factor if question.unit == "Hz" else value
+    given = key in sheet.answers
+    source = SHEET if given else what["known"]
+    if "lower" in what:
+        return entry(
+            name or key,
+            value,
+            unit,
+            f"{source}; {what['known_range']}",
+            (value * what["lower"], value * what["upper"]),
+        )
+    if "assumed_upper_share" in what:
+        most = max(what["assumed_upper_share"] * sheet.whole(key) / factor, 2.0 * value)
+        return entry(name or key, value, unit, source, (0.0, most))
+    spread = what["factor"] if given else what["assumed_factor"]
+    limits = None if spread == 1 or value <= 0.0 else (value / spread, value * spread)
+    return entry(name or key, value, unit, source, limits)
+
+
+def kept(name: str, key: str = "") -> str:
+    """The entry of a number that no data sheet has, as `questions.yaml` has it."""
+    known = fixed(key or name)
+    return entry(name, known["value"], known["unit"], known["source"])
