@@ -139,10 +139,12 @@ def surely_above(bench: Workbench, structure: Hypothesis) -> float:
     """Above so many times the noise a structure is enlarged even if nothing is promised.
 
     Noise is known to but a share. A nominal model that leaves more may be bent so that what it lacks promises nothing;
-    one with an addition that explains the data, and beside which nothing promises anything, is right. A model that was
-    fitted by parts is no more bent than that, see `by_parts`.
+    one with an addition that leaves less than what would be called missing, and beside which nothing promises anything,
+    is right. A model that was fitted by parts is no more bent than one that explains the data, see `by_parts`.
     """
-    return NOISE.explained if structure.effects or can_be_cut(bench) else NOISE.at
+    if can_be_cut(bench):
+        return NOISE.explained
+    return NOISE.ahead if structure.effects else NOISE.at
 
 
 def _worth_while(parent: Hypothesis, addition: Sized, promised: float, enough: float) -> bool:
