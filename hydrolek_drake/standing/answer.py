@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from hydrolek_drake.standing.base import Placement
 from hydrolek_drake.standing.reach import Stage
-from hydrolek_drake.teleop.plan import TaskPlan
+from hydrolek_drake.teleop.steps import TaskPlan
 
 
 @dataclass(frozen=True)

@@ -16,14 +16,8 @@ from hydrolek_drake.standing.clearance import BaseClearance
 from hydrolek_drake.standing.grid import places_before
 from hydrolek_drake.standing.reach import ReachMap, Stage, why_not
 from hydrolek_drake.standing.site import FLOOR, Site
-from hydrolek_drake.teleop.plan import (
-    TaskPlan,
-    TaskWorlds,
-    ToolPaths,
-    camera_in_world,
-    plan_grasp_and_cut,
-    tool_paths,
-)
+from hydrolek_drake.teleop.plan import TaskWorlds, ToolPaths, camera_in_world, plan_grasp_and_cut, tool_paths
+from hydrolek_drake.teleop.steps import TaskPlan
 from hydrolek_drake.workcell.grasp import ToolPath, with_arm
 from hydrolek_drake.workcell.scene import home_posture
 

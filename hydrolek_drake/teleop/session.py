@@ -15,10 +15,11 @@ from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.machine_state import MachineState
 from hydrolek_drake.teleop.pictures import Pictures
 from hydrolek_drake.teleop.place_plan import plan_place_by_either
-from hydrolek_drake.teleop.plan import STEPS, TaskPlan, plan_task
+from hydrolek_drake.teleop.plan import STEPS, plan_task
 from hydrolek_drake.teleop.release import plan_letting_go
 from hydrolek_drake.teleop.sequencer import Mode, Order
 from hydrolek_drake.teleop.stages import STAGE_FOR, STEPS_OF, Stage
+from hydrolek_drake.teleop.steps import TaskPlan
 from hydrolek_drake.teleop.undertaking import Undertaking
 from hydrolek_drake.vision.edges import EdgeSettings, default_settings
 from hydrolek_drake.vision.frames import FrameSource
