@@ -22,8 +22,8 @@ from typing import ClassVar, Protocol
 import numpy as np
 from scipy.sparse import csc_matrix
 
+from hydrolek_drake.diagnosis.fitting.problems import hypothesis_of
 from hydrolek_drake.diagnosis.fitting.projection import Across
-from hydrolek_drake.diagnosis.fitting.race import hypothesis_of
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.lost_commands.windows import arrivals
