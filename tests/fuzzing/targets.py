@@ -12,7 +12,8 @@ _MODULES = {
     "mdf": "logger_targets",
     **dict.fromkeys(("rig", "scenario", "design"), "yaml_targets"),
     **dict.fromkeys(("site", "base", "place"), "standing_targets"),
-    **dict.fromkeys(("link", "answer", "console"), "protocol_targets"),
+    **dict.fromkeys(("link", "answer"), "link_targets"),
+    "console": "console_targets",
 }
 
 NAMES = tuple(_MODULES)
