@@ -21,8 +21,8 @@ from hydrolek_drake.teleop.clicks import Clicks, Task
 from hydrolek_drake.teleop.controllers.hydraulic_arms import HydraulicArms, joint_settings
 from hydrolek_drake.teleop.link.messages import decode, encode
 from hydrolek_drake.teleop.place_plan import plan_place_by_either
-from hydrolek_drake.teleop.plan import OPENING
 from hydrolek_drake.teleop.sequencer import Mode, TaskSequencer
+from hydrolek_drake.teleop.steps import OPENING
 from hydrolek_drake.vision.camera import camera_pose
 from hydrolek_drake.vision.edges import default_settings
 from hydrolek_drake.vision.selection import Fill

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from hydrolek_drake.kinematics.chain import SIDES
 from hydrolek_drake.kinematics.forward import joint_positions
 from hydrolek_drake.kinematics.frames import fixed_pose
+from hydrolek_drake.standing.answer import Answer, MapPoint, Standing
 from hydrolek_drake.standing.base import Placement
 from hydrolek_drake.standing.clearance import base_boxes
 from hydrolek_drake.standing.reach import Stage
-from hydrolek_drake.standing.search import Answer, MapPoint, Standing
 from hydrolek_drake.standing.site import Site
 from hydrolek_drake.vision.configuration import kinect_entries
 from hydrolek_drake.workcell.pipe import Pipe

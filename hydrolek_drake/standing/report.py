@@ -4,9 +4,9 @@ import math
 from collections import Counter
 from typing import Any
 
+from hydrolek_drake.standing.answer import Answer
 from hydrolek_drake.standing.base import Placement
 from hydrolek_drake.standing.reach import Stage
-from hydrolek_drake.standing.search import Answer
 from hydrolek_drake.standing.site import Site
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,20 +10,14 @@ from numpy.typing import NDArray
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.chain import SIDES, arm_chain
+from hydrolek_drake.standing.answer import Answer, MapPoint, Margins, Standing
 from hydrolek_drake.standing.base import Base, Placement
 from hydrolek_drake.standing.clearance import BaseClearance
+from hydrolek_drake.standing.grid import places_before
 from hydrolek_drake.standing.reach import ReachMap, Stage, why_not
 from hydrolek_drake.standing.site import FLOOR, Site
-from hydrolek_drake.teleop.plan import (
-    TaskPlan,
-    TaskWorlds,
-    ToolPaths,
-    camera_in_world,
-    plan_grasp_and_cut,
-    tool_paths,
-)
-from hydrolek_drake.vision.camera import thesis_camera
-from hydrolek_drake.vision.configuration import kinect_entries
+from hydrolek_drake.teleop.plan import TaskWorlds, ToolPaths, camera_in_world, plan_grasp_and_cut, tool_paths
+from hydrolek_drake.teleop.steps import TaskPlan
 from hydrolek_drake.workcell.grasp import ToolPath, with_arm
 from hydrolek_drake.workcell.scene import home_posture
 
@@ -34,76 +28,6 @@ _LOOK = 4.0  # of the wanted clearance: nothing farther is looked for
 _MOST_BUILT = 12  # worlds of collisions kept
 _TOLD = 8  # times that the progress of a map is told
 _SAMPLES = 25  # of each step of a plan, for its margin
-
-
-@dataclass(frozen=True)
-class MapPoint:
-    """One place of the coarse map.
-
-    Attributes:
-        placement: Where.
-        grasping: Arm that grasps.
-        stage: How far kinematics and base come.
-        margin: Smallest joint margin in rad at the points that were solved for; 0 where not reached.
-    """
-
-    placement: Placement
-    grasping: str
-    stage: Stage
-    margin: float
-
-
-@dataclass(frozen=True)
-class Margins:
-    """How far a placement is from what would end it.
-
-    Attributes:
-        joint: Smallest angle in rad between a joint and its stop, while the tools work.
-        joint_name: Whose.
-        clearance: Smallest distance in m between an arm and anything else while the tools work.
-        base: Of base and boom from everything, in m.
-        score: Smaller of both shares: `joint` and `clearance` of what is wanted of them; 1 has all that is wanted.
-    """
-
-    joint: float
-    joint_name: str
-    clearance: float
-    base: float
-    score: float
-
-
-@dataclass(frozen=True)
-class Standing:
-    """A placement from which the task is planned.
-
-    Attributes:
-        placement: Where.
-        grasping: Arm that grasps.
-        margins: While the tools work.
-        plan: The whole task, in the arms' world frame there.
-        plan_margin: Smallest angle in rad between a joint and its stop all along the plan.
-    """
-
-    placement: Placement
-    grasping: str
-    margins: Margins
-    plan: TaskPlan
-    plan_margin: float
-
-
-@dataclass(frozen=True)
-class Answer:
-    """What a search found.
-
-    Attributes:
-        standings: Best first; empty where there is none.
-        points: The coarse map.
-        reason: Why there is none; empty if there is one.
-    """
-
-    standings: tuple[Standing, ...]
-    points: tuple[MapPoint, ...]
-    reason: str = ""
 
 
 @dataclass(frozen=True)
@@ -177,7 +101,7 @@ class StandingSearch:
     def coarse_map(self) -> tuple[MapPoint, ...]:
         """All places of the grid within the ranges, each with what kinematics and the base's shape say of it."""
         points: list[MapPoint] = []
-        grid = list(self._grid())
+        grid = list(places_before(self._site, self._base))
         for index, placement in enumerate(grid):
             if index % max(1, len(grid) // _TOLD) == 0 and index:
                 self._tell(f"kinematics: {index} of {len(grid)} places")
@@ -235,26 +159,6 @@ class StandingSearch:
             placement.point_seen(each) for each in (self._site.grasp_point(), self._site.cut_point())
         )
         return grasp, cut, grasp - camera_in_world()
-
-    def _grid(self) -> Iterator[Placement]:
-        """Places before which grasp and cut lie as far forward and sideways as an arm may reach."""
-        step = self._base.search["distance_step"]
-        middle = 0.5 * (self._site.grasp_point() + self._site.cut_point())
-        camera, sizes = camera_in_world(), kinect_entries("camera")
-        farthest = kinect_entries("edges")["farthest"]
-        aside = 0.5 * thesis_camera().width / thesis_camera().focal_x
-        forward = np.arange(math.ceil(sizes["nearest"] / step), math.floor(farthest / step) + 1) * step
-        for boom in _steps(*self._base.boom, self._base.search["boom_step"]):
-            for heading in _headings(*self._base.heading, self._base.search["heading_step"]):
-                c, s = math.cos(heading), math.sin(heading)
-                for ahead in forward:
-                    most = math.floor(aside * ahead / step)
-                    for sideways in np.arange(-most, most + 1) * step:
-                        u = camera[0] + ahead + Placement(0.0, 0.0, 0.0, boom).plate_shift()[0]
-                        x, y = middle[0] - c * u + s * sideways, middle[1] - s * u - c * sideways
-                        placement = Placement(float(x), float(y), heading, boom)
-                        if self._base.allows(placement):
-                            yield placement
 
     def point(self, placement: Placement, side: str) -> MapPoint:
         """What kinematics and the base's shape say of one placement."""
@@ -381,19 +285,3 @@ def _way(placement: Placement) -> float:
 
 def _apart(one: Placement, other: Placement) -> float:
     return math.hypot(one.x - other.x, one.y - other.y, one.plate_shift()[1] - other.plate_shift()[1])
-
-
-def _steps(low: float, high: float, step: float) -> list[float]:
-    """From end to end, even, no farther apart than a step."""
-    if high <= low:
-        return [low]
-    return [float(each) for each in np.linspace(low, high, max(2, math.ceil((high - low) / step - 1e-9) + 1))]
-
-
-def _headings(low: float, high: float, step: float) -> list[float]:
-    """Multiples of the step within a range, which may hold none: then its middle."""
-    if high - low >= math.tau - 1e-9:
-        count = max(1, round(math.tau / step))
-        return [math.tau * (index - (count - 1) // 2) / count for index in range(count)]
-    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
-    return [index * step for index in range(first, last + 1)] or [0.5 * (low + high)]

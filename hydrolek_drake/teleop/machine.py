@@ -18,8 +18,8 @@ from hydrolek_drake.teleop.link.client import SetpointClient
 from hydrolek_drake.teleop.link.server import silence
 from hydrolek_drake.teleop.link.signals import Signals
 from hydrolek_drake.teleop.machine_state import MachineState
-from hydrolek_drake.teleop.plan import OPENING, TaskPlan
 from hydrolek_drake.teleop.sequencer import Mode, Order, TaskSequencer
+from hydrolek_drake.teleop.steps import OPENING, TaskPlan
 from hydrolek_drake.workcell.pipe import Pipe
 from hydrolek_drake.workcell.table import Table
 

@@ -1,15 +1,22 @@
 """What the console shows of the machine."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hydrolek_drake.teleop.link.signals import Signals
+from hydrolek_drake.teleop.hand import travel
+from hydrolek_drake.teleop.link.signals import Signals, shown
 from hydrolek_drake.teleop.sequencer import Mode
 from hydrolek_drake.workcell.pipe import Pipe
 
 Array = NDArray[np.float64]
+
+_HALF_TURN_DEG = 180.0  # shown of a joint that turns without end
+_SLIDERS_DEG = [
+    np.clip(np.degrees(ends), -_HALF_TURN_DEG, _HALF_TURN_DEG).round(2).tolist() for ends in travel()
+]
 
 
 @dataclass(frozen=True)
@@ -43,3 +50,18 @@ class MachineState:
     manual: str = ""
     signals: Signals | None = None
     pipe: Pipe | None = None
+
+    def shown(self) -> dict[str, Any]:
+        """As plain values, angles in degrees, with how far the joints may go."""
+        return {
+            "mode": self.mode.name.lower(),
+            "step": self.step,
+            "step_number": self.step_number,
+            "share": min(1.0, self.time_in_step / self.planned) if self.planned > 0 else 0.0,
+            "valves_open": self.valves_open,
+            "angles_deg": np.degrees(self.position).round(2).tolist(),
+            "desired_deg": np.degrees(self.desired).round(2).tolist(),
+            "manual": self.manual,
+            "limits_deg": _SLIDERS_DEG,
+            "signals": None if self.signals is None else shown(self.signals),
+        }

@@ -13,15 +13,8 @@ from pydrake.math import RotationMatrix
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.chain import SIDES
 from hydrolek_drake.teleop.configuration import teleop_entries
-from hydrolek_drake.teleop.plan import (
-    CLOSING,
-    OPENING,
-    TaskPlan,
-    pipe_in_world,
-    thinner,
-    timed_step,
-    without_doubles,
-)
+from hydrolek_drake.teleop.plan import pipe_in_world, thinner
+from hydrolek_drake.teleop.steps import CLOSING, OPENING, TaskPlan, timed_step, without_doubles
 from hydrolek_drake.vision.camera import CameraModel, direction_to_frame, to_frame
 from hydrolek_drake.vision.configuration import kinect_entries
 from hydrolek_drake.vision.targets import PipeTargets

@@ -1,4 +1,4 @@
-"""The task as a sequence of timed paths: approach, grasp, close, cut start, cut, retreat (thesis 5.2.5, 5.2.6)."""
+"""Grasp and cut as a sequence of timed paths: approach, grasp, close, cut start, cut, retreat (thesis 5.2.5, 5.2.6)."""
 
 import math
 from dataclasses import dataclass
@@ -11,6 +11,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.chain import SIDES
 from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.teleop.configuration import teleop_entries
+from hydrolek_drake.teleop.steps import CLOSING, TaskPlan, joints_of, timed_step, without_doubles
 from hydrolek_drake.vision.camera import CameraModel, camera_pose, direction_to_frame, to_frame
 from hydrolek_drake.vision.configuration import kinect_entries
 from hydrolek_drake.vision.targets import PipeTargets
@@ -20,65 +21,10 @@ from hydrolek_drake.workcell.pipe import Pipe, make_pipe, workcell_entries
 from hydrolek_drake.workcell.planner import plan_path
 from hydrolek_drake.workcell.scene import home_posture
 from hydrolek_drake.workcell.surroundings import Block, Surroundings
-from hydrolek_drake.workcell.trajectory import smooth_trajectory, time_parametrised
 
 Array = NDArray[np.float64]
 
-CLOSING = "close"
 STEPS = ("approach", "grasp", CLOSING, "cut start", "cut", "retreat")
-OPENING = "open"
-RELEASE_STEPS = ("cutter home", OPENING, "back off", "home")
-
-_ON_THE_WAY = math.radians(5.0)  # of a posture that belongs to the way onto the pipe
-
-
-@dataclass(frozen=True)
-class Step:
-    """One step of a task.
-
-    Attributes:
-        name: One of `STEPS`, of `RELEASE_STEPS`, or of `place_plan.PLACE_STEPS`.
-        trajectory: Joints `right_j1` ... `left_j7` over time from 0, in rad; a PiecewisePolynomial of 14 rows.
-        timed_out_after: Seconds after which the step counts as failed.
-        watched: Which joints must be within the tolerance at its end, shape (14,); a gripper that closes on a
-            pipe cannot reach its set point, and draws its arm towards the pipe.
-        gripping: Joints of the arm whose gripper is closed on the pipe, shape (14,). Closing it draws the arm until
-            all fingers press; from the next step on the set points of these joints are moved by as much.
-    """
-
-    name: str
-    trajectory: Any
-    timed_out_after: float
-    watched: NDArray[np.bool_]
-    gripping: NDArray[np.bool_]
-
-
-@dataclass(frozen=True)
-class TaskPlan:
-    """A planned task.
-
-    Attributes:
-        steps: In order.
-        pipe: The pipe that was planned with, world frame.
-        grasp: The grasping arm's way onto the pipe.
-        cut: The cutting arm's way across it; None where nothing is cut.
-        holds: Whether the pipe is in the gripper when all is done.
-    """
-
-    steps: tuple[Step, ...]
-    pipe: Pipe
-    grasp: ToolPath
-    cut: ToolPath | None
-    holds: bool = True
-
-    @property
-    def step_names(self) -> tuple[str, ...]:
-        """Names of the steps in order."""
-        return tuple(step.name for step in self.steps)
-
-    def duration(self) -> float:
-        """Planned time of all steps in s."""
-        return float(sum(step.trajectory.end_time() for step in self.steps))
 
 
 def plan_task(
@@ -227,7 +173,7 @@ def plan_grasp_and_cut(
     to_cut = plan_path(held, closed, cut_postures[0], generator)
     on_step("retreat")
     home = np.array(closed)
-    home[_of(cutting)] = home_posture()[_of(cutting)]
+    home[joints_of(cutting)] = home_posture()[joints_of(cutting)]
     retreat = plan_path(held, cut_postures[-1], home, generator)
     paths = {
         "approach": approach,
@@ -262,60 +208,6 @@ def other_side(side: str) -> str:
     return SIDES[1 - SIDES.index(side)]
 
 
-def plan_release(plan: TaskPlan, posture: ArrayLike, generator: np.random.Generator) -> TaskPlan:
-    """After a task, or an aborted one: cutter home, gripper open, straight back off the pipe, both arms home.
-
-    Args:
-        plan: The task that was carried out, wholly or in part.
-        posture: Both arms as they stand, in rad, shape (14,).
-        generator: For the path planner.
-
-    Raises:
-        InputError: The arms stand where no path leads home from.
-    """
-    start, home = np.asarray(posture, dtype=float), home_posture()
-    grasping, cutting = _of(plan.grasp.side), _of("left" if plan.grasp.side == "right" else "right")
-    clear, held = CollisionWorld(plan.pipe), CollisionWorld(plan.pipe, holding=(plan.grasp.side,))
-    away = np.array(start)
-    away[cutting] = home[cutting]
-    paths = {"cutter home": plan_path(held, start, away, generator)}
-    open_angle = math.radians(workcell_entries()["grasp"]["open_deg"])
-    opened = with_jaw(away, plan.grasp.side, open_angle)
-    paths[OPENING] = np.array([away, opened])
-    far = np.max(np.abs(plan.grasp.angles - opened[grasping][:6]), axis=1)
-    back = [opened]
-    if far.min() < _ON_THE_WAY:
-        back += [
-            with_arm(opened, plan.grasp.side, row) for row in plan.grasp.angles[: far.argmin() + 1][::-1]
-        ]
-    paths["back off"] = without_doubles(np.array(back))
-    paths["home"] = plan_path(clear, paths["back off"][-1], home, generator)
-    steps = tuple(timed_step(name, paths[name], None, line=name == "back off") for name in RELEASE_STEPS)
-    return TaskPlan(steps, plan.pipe, plan.grasp, plan.cut, holds=False)
-
-
-def timed_step(name: str, path: Array, gripping: str | None, *, line: bool, least: float = 0.0) -> Step:
-    """A path in time.
-
-    Args:
-        name: Of the step.
-        path: Postures in rad, shape (n, 14).
-        gripping: Side whose gripper closes on the pipe or is closed on it; None for none.
-        line: Whether it is a straight path of the tool, which becomes one spline; else it rests at each posture.
-        least: Seconds it takes at least.
-    """
-    trajectory = smooth_trajectory(path) if line else time_parametrised(path)
-    if trajectory.end_time() < least:
-        trajectory.ScaleTime(least / trajectory.end_time())
-    watched, grips = np.ones(14, bool), np.zeros(14, bool)
-    if gripping is not None:
-        *arm, jaw = range(14)[_of(gripping)]
-        grips[arm] = True
-        watched[jaw] = False
-        watched[arm] = name != CLOSING
-    return Step(name, trajectory, trajectory.end_time() + teleop_entries("task")["patience"], watched, grips)
-
-
 def pipe_in_world(targets: PipeTargets, camera: CameraModel) -> Pipe:
     """The fitted cylinder in the world frame, as long as it was seen, and longer where it leaves the picture."""
     cylinder, values = targets.cylinder, teleop_entries("task")
@@ -337,16 +229,3 @@ def thinner(pipe: Pipe) -> Pipe:
 def camera_in_world() -> Array:
     """Where the camera is, world frame, in m, shape (3,)."""
     return in_frame(camera_pose()[:3, 3], given_in="plate", wanted_in="world")
-
-
-def _of(side: str) -> slice:
-    return slice(0, 7) if side == "right" else slice(7, 14)
-
-
-def without_doubles(path: Array) -> Array:
-    """A path without postures that repeat the one before."""
-    kept = [path[0]]
-    for posture in path[1:]:
-        if np.max(np.abs(posture - kept[-1])) > 1e-6:
-            kept.append(posture)
-    return np.array(kept)

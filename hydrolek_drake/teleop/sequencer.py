@@ -12,7 +12,7 @@ from pydrake.systems.framework import BasicVector, Context, EventStatus, LeafSys
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.hand import travel
-from hydrolek_drake.teleop.plan import CLOSING, Step, TaskPlan
+from hydrolek_drake.teleop.steps import CLOSING, Step, TaskPlan
 
 Array = NDArray[np.float64]
 

@@ -10,25 +10,20 @@ import numpy as np
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.camera_thread import CameraThread
 from hydrolek_drake.teleop.clicks import Clicks, Task
-from hydrolek_drake.teleop.hand import travel, within_limits
-from hydrolek_drake.teleop.link.signals import shown
+from hydrolek_drake.teleop.hand import within_limits
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.machine_state import MachineState
 from hydrolek_drake.teleop.pictures import Pictures
 from hydrolek_drake.teleop.place_plan import plan_place_by_either
-from hydrolek_drake.teleop.plan import STEPS, TaskPlan, plan_task
+from hydrolek_drake.teleop.plan import STEPS, plan_task
 from hydrolek_drake.teleop.release import plan_letting_go
 from hydrolek_drake.teleop.sequencer import Mode, Order
 from hydrolek_drake.teleop.stages import STAGE_FOR, STEPS_OF, Stage
+from hydrolek_drake.teleop.steps import TaskPlan
 from hydrolek_drake.teleop.undertaking import Undertaking
 from hydrolek_drake.vision.edges import EdgeSettings, default_settings
 from hydrolek_drake.vision.frames import FrameSource
 from hydrolek_drake.vision.selection import Fill
-
-_HALF_TURN_DEG = 180.0  # shown of a joint that turns without end
-_SLIDERS_DEG = [
-    np.clip(np.degrees(ends), -_HALF_TURN_DEG, _HALF_TURN_DEG).round(2).tolist() for ends in travel()
-]
 
 
 class OperatorSession:
@@ -274,23 +269,14 @@ class OperatorSession:
                 "fill": self._fill.value,
                 "task": self._task.value,
                 "version": self._pictures.version,
-                "mode": machine.mode.name.lower(),
                 "steps": list(self._steps),
                 "can_release": self._undertaking.held is not None
                 and self._stage not in (Stage.PLANNING, Stage.MOVING)
                 and machine.mode in (Mode.DONE, Mode.ABORTED),
-                "step": machine.step,
-                "step_number": machine.step_number,
-                "share": min(1.0, machine.time_in_step / machine.planned) if machine.planned > 0 else 0.0,
-                "valves_open": machine.valves_open,
-                "angles_deg": np.degrees(machine.position).round(2).tolist(),
-                "desired_deg": np.degrees(machine.desired).round(2).tolist(),
                 "seconds": self._undertaking.seconds(),
                 "done": round(done, 4),
                 "left_s": None if left is None else round(left, 1),
-                "manual": machine.manual,
-                "limits_deg": _SLIDERS_DEG,
-                "signals": None if machine.signals is None else shown(machine.signals),
+                **machine.shown(),
             }
 
     def picture(self, name: str) -> bytes:

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from hydrolek_drake.teleop.configuration import teleop_entries
 from hydrolek_drake.teleop.machine_state import MachineState
-from hydrolek_drake.teleop.plan import TaskPlan
 from hydrolek_drake.teleop.sequencer import Mode
+from hydrolek_drake.teleop.steps import TaskPlan
 
 
 class TimeLeft:

@@ -8,9 +8,9 @@ from threading import RLock
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.machine_state import MachineState
-from hydrolek_drake.teleop.plan import TaskPlan
 from hydrolek_drake.teleop.sequencer import Mode
 from hydrolek_drake.teleop.stages import STEPS_OF
+from hydrolek_drake.teleop.steps import TaskPlan
 from hydrolek_drake.teleop.time_left import TimeLeft
 
 

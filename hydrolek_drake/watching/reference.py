@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.fitting.race import Entrant, race
+from hydrolek_drake.diagnosis.fitting.entrants import Entrant
+from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.search.nominal import as_weighed
 from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, candidates_of

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 from pydrake.common.value import AbstractValue, Value
 from pydrake.multibody.math import SpatialForce
@@ -13,6 +12,7 @@ from pydrake.systems.framework import BasicVector, Context, LeafSystem, State
 
 from hydrolek_drake.compiled import read_only
 from hydrolek_drake.kinematics.chain import SIDES
+from hydrolek_drake.workcell.contact_kernel import touch
 from hydrolek_drake.workcell.fingers import FIXED, MOVING, fingers
 from hydrolek_drake.workcell.held_by_both import Pose
 from hydrolek_drake.workcell.loose_pipe import GRAVITY, LoosePipe
@@ -151,7 +151,7 @@ class GripContact(LeafSystem):
                     turning = turning - carried.rotational()
                     arm = place.translation() - pose.translation()
                     sliding = sliding - carried.translational() - np.cross(carried.rotational(), arm)
-                _touch(
+                touch(
                     ends,
                     radii,
                     place.rotation().matrix(),
@@ -296,43 +296,6 @@ class GripContact(LeafSystem):
         self._plant.SetPositionsAndVelocities(self._own, self.plant_state.Eval(context))
         pipe = self.pipe_in(context).now(self._hands())
         output.SetFromVector([*pipe.point, *pipe.axis])
-
-
-@njit(cache=True)
-def _touch(
-    ends: Array,
-    radii: Array,
-    rotation: Array,
-    origin: Array,
-    turning: Array,
-    sliding: Array,
-    axis: Array,
-    radius: float,
-    half_length: float,
-    stiffness: float,
-    damping: float,
-    points: Array,
-    forces: Array,
-) -> None:
-    """Points and forces of one link's fingers; `origin` is the link's from the middle of the pipe."""
-    for i in range(len(radii)):
-        first = rotation @ ends[i, 0]
-        way = rotation @ ends[i, 1] - first
-        from_pipe = origin + first
-        square = from_pipe - np.dot(from_pipe, axis) * axis
-        across = way - np.dot(way, axis) * axis
-        length = np.dot(across, across)
-        share = min(max(-np.dot(square, across) / length, 0.0), 1.0) if length > 0.0 else 0.0
-        nearest = square + share * across
-        distance = np.sqrt(np.dot(nearest, nearest))
-        depth = radius + radii[i] - distance
-        arm = first + share * way
-        if depth <= 0.0 or distance == 0.0 or abs(np.dot(origin + arm, axis)) > half_length:
-            continue
-        normal = nearest / distance
-        outwards = np.dot(normal, sliding + np.cross(turning, arm))
-        forces[i] = stiffness * depth * max(0.0, 1.0 - damping * outwards) * normal
-        points[i] = rotation.T @ arm
 
 
 def _square_to(pipe: Pipe, vector: Array) -> Array:

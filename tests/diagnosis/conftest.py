@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.fitting.race import Entrant, race
+from hydrolek_drake.diagnosis.fitting.entrants import Entrant
+from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.inquiry import Answer, Inquiry
 from hydrolek_drake.diagnosis.settings import Rung
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of

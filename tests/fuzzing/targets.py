@@ -5,12 +5,15 @@ import importlib
 from fuzzing.target import Target
 
 _MODULES = {
-    **dict.fromkeys(
-        ("csv", "parquet", "tdms", "mat", "mat73", "mcap", "db3", "bag", "mdf"), "recording_targets"
-    ),
+    **dict.fromkeys(("csv", "parquet"), "table_targets"),
+    "tdms": "logger_targets",
+    **dict.fromkeys(("mat", "mat73"), "matlab_targets"),
+    **dict.fromkeys(("mcap", "db3", "bag"), "bag_targets"),
+    "mdf": "logger_targets",
     **dict.fromkeys(("rig", "scenario", "design"), "yaml_targets"),
     **dict.fromkeys(("site", "base", "place"), "standing_targets"),
-    **dict.fromkeys(("link", "answer", "console"), "protocol_targets"),
+    **dict.fromkeys(("link", "answer"), "link_targets"),
+    "console": "console_targets",
 }
 
 NAMES = tuple(_MODULES)

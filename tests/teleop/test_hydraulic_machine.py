@@ -12,7 +12,7 @@ from hydrolek_drake.teleop.hand import within_limits
 from hydrolek_drake.teleop.link.client import SetpointClient
 from hydrolek_drake.teleop.link.messages import encode, encode_rate
 from hydrolek_drake.teleop.machine import Machine
-from hydrolek_drake.teleop.plan import plan_release
+from hydrolek_drake.teleop.release import plan_release
 from hydrolek_drake.teleop.sequencer import Mode, Order
 from hydrolek_drake.workcell.pipe import make_pipe
 from hydrolek_drake.workcell.scene import home_posture

@@ -9,7 +9,7 @@ import typer
 from hydrolek_drake.errors import InputError
 
 if TYPE_CHECKING:
-    from hydrolek_drake.standing.search import Answer
+    from hydrolek_drake.standing.answer import Answer
 
 _Vector = tuple[float, float, float]
 

@@ -18,7 +18,9 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged, with_differences, with_probabilities
 from hydrolek_drake.diagnosis.evidence.nuisance import own_of_recordings, with_stands
-from hydrolek_drake.diagnosis.fitting.race import Entrant, problem_with, race
+from hydrolek_drake.diagnosis.fitting.entrants import Entrant
+from hydrolek_drake.diagnosis.fitting.problems import problem_with
+from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
 from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
 from hydrolek_drake.diagnosis.search.tried import Tried

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.fitting.race import problem_with
+from hydrolek_drake.diagnosis.fitting.problems import problem_with
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.lost_commands.search import windows_ahead
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows, recording_of

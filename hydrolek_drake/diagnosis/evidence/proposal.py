@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.judged import Conclusion
+from hydrolek_drake.diagnosis.fitting.problems import hypothesis_of
 from hydrolek_drake.diagnosis.fitting.projection import Across
-from hydrolek_drake.diagnosis.fitting.race import hypothesis_of
 from hydrolek_drake.diagnosis.settings import EXPERIMENTS, GAINS
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.channel import Channel

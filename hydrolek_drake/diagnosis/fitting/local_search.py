@@ -11,7 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from hydrolek_drake.diagnosis import trace
-from hydrolek_drake.diagnosis.fitting.race import Entrant, race
+from hydrolek_drake.diagnosis.fitting.entrants import Entrant
+from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.settings import NOISE, Settings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench

@@ -4,81 +4,15 @@ Jamieson and Talwalkar, Non-stochastic best arm identification and hyperparamete
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
-import numpy as np
-
-from hydrolek_drake.diagnosis.fitting.line_search import Along, searched_along
+from hydrolek_drake.diagnosis.fitting.elsewhere import tried_elsewhere
+from hydrolek_drake.diagnosis.fitting.entrants import Entrant, Runner, entered
+from hydrolek_drake.diagnosis.fitting.problems import hypothesis_of, problem_of
 from hydrolek_drake.diagnosis.settings import FITS, NOISE, Rung
-from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.experiments.experiment import Experiment
-from hydrolek_drake.identification.least_squares.lockstep import descend, with_slopes
-from hydrolek_drake.identification.least_squares.place import Place, fit_of
-from hydrolek_drake.identification.parameter_set import Free
-from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.identification.problem_together import ProblemTogether
-
-
-@dataclass(frozen=True, eq=False)
-class Start:
-    """Where a structure stands that is enlarged: its slopes lead the fits of all that begin there.
-
-    Attributes:
-        effects: of the structure.
-        values: full path -> value; what is not named is at the rig's own.
-    """
-
-    effects: tuple[Addition, ...]
-    values: dict[str, float]
-
-    def with_addition(self, addition: Addition, values: Mapping[str, float]) -> "Entrant":
-        """The structure with one addition.
-
-        Args:
-            addition: an effect or a term of a law.
-            values: full path -> value of its own parameters.
-        """
-        return Entrant((*self.effects, addition), {**self.values, **values}, self)
-
-
-@dataclass(frozen=True)
-class Entrant:
-    """A structure and where its fit begins.
-
-    Attributes:
-        effects: what is added to the nominal model.
-        values: full path -> start; what is not named starts at the rig's own value.
-        start: whose slopes lead it at first; None for its own.
-    """
-
-    effects: tuple[Addition, ...]
-    values: dict[str, float]
-    start: Start | None = None
-
-
-@dataclass(frozen=True)
-class Runner:
-    """A structure on its way."""
-
-    effects: tuple[Addition, ...]
-    place: Place
-
-    @property
-    def key(self) -> frozenset[str]:
-        """What tells its structure from others."""
-        return frozenset(c.size_path for c in self.effects)
-
-    @property
-    def searched(self) -> tuple[Free, ...]:
-        """What its place in the unit cube means: parameters in their order with their ranges, which may be wider."""
-        return tuple(free for c in self.effects for free in c.free)
-
-    @property
-    def label(self) -> str:
-        """What tells its structure from others in words."""
-        return " + ".join(c.label for c in self.effects) or "nominal model"
+from hydrolek_drake.identification.least_squares.lockstep import descend
 
 
 def race(
@@ -102,21 +36,6 @@ def race(
     """
     runners = run(bench, entered(bench, entrants, rungs[0], cores), rungs, cores, seen)
     return hypotheses_of(bench, runners, rungs[-1])
-
-
-def entered(bench: Workbench, entrants: Sequence[Entrant], rung: Rung, cores: int) -> list[Runner]:
-    """Structures at their starts, led by the slopes of the structures that they enlarge.
-
-    Args:
-        bench: data and problems.
-        entrants: structures and starts.
-        rung: the first one.
-        cores: that roll out at the same time.
-    """
-    runners = [_begun(bench, entrant) for entrant in entrants]
-    problems = {r.searched: problem_of(bench, r.effects, rung) for r in runners}
-    led = _led(bench, entrants, [r.place.at(problems[r.searched]) for r in runners], rung, cores)
-    return [replace(r, place=place) for r, place in zip(runners, led, strict=True)]
 
 
 def run(
@@ -169,77 +88,6 @@ def hypotheses_of(bench: Workbench, runners: Sequence[Runner], rung: Rung) -> li
     return [hypothesis_of(r.effects, r.place, rung.coarse * bench.fine) for r in runners]
 
 
-def tried_elsewhere(bench: Workbench, runners: Sequence[Runner], cores: int) -> list[Runner]:
-    """The same with what has no slope tried elsewhere, and fitted on where that helped."""
-    now = list(runners)
-    most = max((len(r.effects) for r in runners), default=0)
-    for number in range(most):
-        own = [_ways(r, number) for r in now]
-        for turn in range(max(map(len, own), default=0)):
-            ways = [each[turn] if turn < len(each) else None for each in own]
-            places = searched_along([r.place for r in now], ways, bench.pool, cores)
-            moved = [place is not r.place for place, r in zip(places, now, strict=True)]
-            places = [p if m else replace(p, ended=True) for p, m in zip(places, moved, strict=True)]
-            places = descend(places, 3, bench.pool, cores, stop=bench.alive)
-            now = [replace(r, place=place) for r, place in zip(now, places, strict=True)]
-    return now
-
-
-def _ways(runner: Runner, number: int) -> list[Along]:
-    """Lines along which one of a structure's additions is tried elsewhere."""
-    if number >= len(runner.effects):
-        return []
-    candidate = runner.effects[number]
-    paths = list(runner.place.problem.parameters.paths)
-    ways = []
-    if candidate.sudden:
-        index = paths.index(candidate.size_path)
-        free = runner.place.problem.parameters.free[index]
-        value = free.from_unit(float(runner.place.unit[index]))
-        places = np.clip(
-            [free.to_unit(value * stride) for stride in FITS.strides], FITS.negligible, 1.0 - FITS.negligible
-        )
-        ways.append(Along(index, places))
-    grid = (np.arange(FITS.places) + 0.5) / FITS.places
-    near = np.array([-1.0, -0.3, -0.1, -0.03, 0.03, 0.1, 0.3, 1.0]) / FITS.places
-    for free in candidate.searched:
-        index = paths.index(free.path)
-        ways.append(Along(index, np.clip(np.concatenate([grid, runner.place.unit[index] + near]), 0.0, 1.0)))
-    return ways
-
-
-def _led(
-    bench: Workbench, entrants: Sequence[Entrant], begun: Sequence[Place], rung: Rung, cores: int
-) -> list[Place]:
-    """The same places with the slopes where they start, which are nearly their own."""
-    starts = list(dict.fromkeys(e.start for e in entrants if e.start is not None))
-    places = []
-    for start in starts:
-        problem = problem_of(bench, start.effects, rung)
-        moving = bench.movable(start.effects, problem.parameters)
-        places.append(Place(problem, moving, _inside(problem.parameters.unit(start.values), moving)))
-    known_at = dict(zip(starts, with_slopes(places, bench.pool, cores), strict=True))
-    led = []
-    for entrant, place in zip(entrants, begun, strict=True):
-        if entrant.start is None:
-            led.append(place)
-            continue
-        known = known_at[entrant.start]
-        assert known.slopes is not None
-        slopes = np.full((len(known.slopes), place.unit.size), np.nan)
-        paths = list(place.problem.parameters.paths)
-        for column, path in enumerate(known.problem.parameters.paths):
-            if path in paths:
-                slopes[:, paths.index(path)] = known.slopes[:, column]
-        led.append(replace(place, slopes=slopes))
-    return led
-
-
-def _inside(unit: np.ndarray, moving: np.ndarray) -> np.ndarray:
-    """A place a little within the ranges, from where steps to both sides can be made."""
-    return np.where(moving, np.clip(unit, FITS.negligible, 1.0 - FITS.negligible), unit)
-
-
 def _told_apart(runner: Runner) -> float:
     """Squares by which structures are ranked that an observer follows, or that the beginning of the data is shown.
 
@@ -279,43 +127,3 @@ def _in_reach(runners: Sequence[Runner]) -> list[Runner]:
     if best.objective > NOISE.at**2 * best.problem.counted:
         return list(runners)
     return [r for r in runners if r.place.objective <= NOISE.far**2 * best.objective]
-
-
-def problem_of(bench: Workbench, effects: tuple[Addition, ...], rung: Rung) -> Problem:
-    """Residuals of a structure on a rung."""
-    data = bench.training if math.isinf(rung.seconds) else [e.until(rung.seconds) for e in bench.training]
-    return problem_with(bench, effects, rung.coarse * bench.fine, data, rung.observer_s)
-
-
-def problem_with(
-    bench: Workbench,
-    effects: tuple[Addition, ...],
-    step: float,
-    experiments: Sequence[Experiment],
-    observer_s: float = math.inf,
-) -> Problem:
-    """Residuals of a structure; joints that move together are all rolled out at once.
-
-    Args:
-        bench: data.
-        effects: of the structure.
-        step: of the integration [s].
-        experiments: what must be followed.
-        observer_s: time constant of the observer [s]; infinite for free rollouts.
-    """
-    kind = ProblemTogether if any(e.others is not None for e in experiments) else Problem
-    observer = None if math.isinf(observer_s) else observer_s
-    return bench.problem(effects, step, experiments, observer, kind=kind)
-
-
-def _begun(bench: Workbench, entrant: Entrant) -> Runner:
-    problem = problem_with(bench, entrant.effects, bench.fine, bench.training)
-    moving = bench.movable(entrant.effects, problem.parameters)
-    return Runner(
-        entrant.effects, Place(problem, moving, _inside(problem.parameters.unit(entrant.values), moving))
-    )
-
-
-def hypothesis_of(effects: tuple[Addition, ...], place: Place, step: float) -> Hypothesis:
-    """A fit as the rest of the diagnosis takes it."""
-    return Hypothesis(effects, place.problem.parameters.values(place.unit), fit_of(place), step)

@@ -39,7 +39,7 @@ class Slightly:
     def run(
         self, experiment: Experiment, records: np.ndarray, step: float, pull: float | None, moved: np.ndarray
     ) -> Run:
-        """See `unknown_input.Trial`."""
+        """See `knot_responses.Trial`."""
         rows = np.zeros((moved.size, len(PROBES)))
         rows[moved, PROBES.index(self.input.probe)] = LOCATING.amplitude * self.input.scale
         return experiment.run(records, step, (LOCATING.knots_s, rows), pull)

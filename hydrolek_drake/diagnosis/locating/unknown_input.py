@@ -1,10 +1,8 @@
 """An unknown input at each stage, estimated from the innovations of an observer.
 
-An input u(t) on straight lines between knots changes the innovations by A u, with a small u. An observer forgets within
-some of its time constants T, so that knots which lie far enough apart can be moved in one rollout: the columns of A of
-all knots take as many rollouts as there are knots within that time (a coloured Jacobian; Curtis, Powell, Reid, IMA
-Journal of Applied Mathematics 13 (1974) 117). What the structure's own parameters undo is projected away. With r the
-innovations, g = A' r, N = A' A and a prior of variance s^2 for each knot
+An input u(t) on straight lines between knots changes the innovations by A u, with a small u (`knot_responses`). What
+the structure's own parameters undo is projected away. With r the innovations, g = A' r, N = A' A and a prior of
+variance s^2 for each knot
 
     u = -(N + I / s^2)^-1 g
     2 log p(r) - 2 log p0(r) = g' (N + I / s^2)^-1 g - log det (I + s^2 N)
@@ -15,58 +13,21 @@ likely s is taken, and stages are compared by that likelihood.
 
 import math
 from collections.abc import Sequence
-from concurrent.futures import Executor
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
 
 import numpy as np
-from scipy.sparse import csc_matrix
 
+from hydrolek_drake.diagnosis.fitting.problems import hypothesis_of
 from hydrolek_drake.diagnosis.fitting.projection import Across
-from hydrolek_drake.diagnosis.fitting.race import hypothesis_of
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.laws.inputs import Input
+from hydrolek_drake.diagnosis.locating.knot_responses import Trial, response, rolled, squared
 from hydrolek_drake.diagnosis.lost_commands.windows import arrivals
 from hydrolek_drake.diagnosis.settings import FITS, LOCATING
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
-from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.lockstep import descend, with_slopes
 from hydrolek_drake.identification.least_squares.place import Place
-from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes
-from hydrolek_drake.rollout.lanes.view import LANES
 from hydrolek_drake.rollout.rollout import Signals
-from hydrolek_drake.rollout.run import Run
-
-
-class Trial(Protocol):
-    """How an input is moved at knots.
-
-    Attributes:
-        share: of the input's unit that is tried.
-        spacing_s: between knots [s].
-    """
-
-    share: ClassVar[float]
-    spacing_s: ClassVar[float]
-
-    @property
-    def input(self) -> Input:
-        """Where it enters, and as what."""
-        ...
-
-    def run(
-        self, experiment: Experiment, records: np.ndarray, step: float, pull: float | None, moved: np.ndarray
-    ) -> Run:
-        """The rollout of a recording in which it is moved.
-
-        Args:
-            experiment: the recording.
-            records: of the joints.
-            step: of the integration [s].
-            pull: time constant of the observer [s]; None for a free rollout.
-            moved: at which knots. # (k,) truth values
-        """
-        ...
 
 
 @dataclass(frozen=True)
@@ -219,13 +180,13 @@ def unknown_inputs(
     basis = Across(fit).basis[: place.residuals.size]
     rest = place.residuals - basis @ (basis.T @ place.residuals)
     records = problem.parameters.records(place.unit)
-    here = _rolled([e.run(records, step, pull_time=pulled) for e in arrived], bench.pool)
+    here = rolled([e.run(records, step, pull_time=pulled) for e in arrived], bench.pool)
     at_rest = [e.residuals(each) for e, each in zip(arrived, here, strict=True)]
     unknowns = []
     for trial in trials:
         parts, times = [], []
         for experiment, still in zip(arrived, at_rest, strict=True):
-            columns, knots = _response(bench.pool, experiment, records, step, observer_s, trial, still)
+            columns, knots = response(bench.pool, experiment, records, step, observer_s, trial, still)
             parts.append(columns)
             times.append(knots)
         rows = np.cumsum([0, *(part.shape[0] for part in parts)])
@@ -235,85 +196,10 @@ def unknown_inputs(
         at = 0
         for part, first in zip(parts, rows, strict=False):
             own = slice(at, at + part.shape[1])
-            information[own, own] = _squared(part)
+            information[own, own] = squared(part)
             pull[own] = part.T @ rest[first : first + part.shape[0]]
             inner[:, own] = (part.T @ basis[first : first + part.shape[0]]).T
             at += part.shape[1]
         information -= inner.T @ inner
         unknowns.append(Unknown(trial.input, np.concatenate(times), information, pull, float(rest @ rest)))
     return Seen(tuple(unknowns), tuple(here))
-
-
-ABREAST = 64
-"""So many knots' responses are multiplied at once."""
-
-
-def _squared(responses: csc_matrix) -> np.ndarray:
-    """The products of all responses with each other; those of knots that lie far apart have no value in common.
-
-    Responses that overlap are nearly full, so that dense products of some of them with those that begin before they end
-    are many times as fast as a product of sparse matrices. # (k, k)
-    """
-    count = responses.shape[1]
-    squared = np.zeros((count, count))
-    touched = [np.unique(responses[:, at : at + ABREAST].indices) for at in range(0, count, ABREAST)]
-    for number, rows in enumerate(touched):
-        at = number * ABREAST
-        end = at + ABREAST
-        for later in touched[number + 1 :]:
-            if not np.isin(later, rows, assume_unique=True, kind="sort").any():
-                break
-            end += ABREAST
-        near = responses[:, at : min(end, count)][rows].toarray()
-        product = near[:, :ABREAST].T @ near
-        squared[at : at + product.shape[0], at : at + product.shape[1]] = product
-        squared[at : at + product.shape[1], at : at + product.shape[0]] = product.T
-    return squared
-
-
-def _rolled(runs: Sequence, pool: Executor) -> list[Signals]:
-    """Signals of some rollouts, in lanes on several cores."""
-    chunks = [runs[at : at + LANES] for at in range(0, len(runs), LANES)]
-    return [outcome.signals for part in pool.map(roll_out_lanes, chunks) for outcome in part]
-
-
-def _response(
-    pool: Executor,
-    experiment: Experiment,
-    records: np.ndarray,
-    step: float,
-    observer_s: float,
-    trial: Trial,
-    still: np.ndarray,
-) -> tuple[csc_matrix, np.ndarray]:
-    """How the innovations of a recording answer to each knot, in units of the trial, and the knots' times."""
-    time, spacing = experiment.time, trial.spacing_s
-    count = int(np.ceil((time[-1] - time[0]) / spacing)) + 1
-    apart = (
-        count + 1 if math.isinf(observer_s) else int(np.ceil(LOCATING.forgotten * observer_s / spacing)) + 2
-    )
-    pull = None if math.isinf(observer_s) else observer_s
-    runs = [
-        trial.run(experiment, records, step, pull, np.arange(count) % apart == first)
-        for first in range(min(apart, count))
-    ]
-    answers = _rolled(runs, pool)
-    channels, samples = len(experiment.channels), time.size
-    knot_of_sample = (time - time[0]) / spacing
-    data, row_indices, pointers = [], [], [0]
-    changes = [
-        np.nan_to_num((experiment.residuals(signals) - still) / trial.share).reshape(channels, samples)
-        for signals in answers
-    ]
-    for knot in range(count):
-        begin, end = np.searchsorted(knot_of_sample, (knot - 1.0, knot - 1.0 + apart))
-        part = changes[knot % apart][:, begin:end]
-        rows_here = (np.arange(channels)[:, None] * samples + np.arange(begin, end)[None, :]).ravel()
-        data.append(part.ravel())
-        row_indices.append(rows_here)
-        pointers.append(pointers[-1] + rows_here.size)
-    matrix = csc_matrix(
-        (np.concatenate(data), np.concatenate(row_indices), np.array(pointers)),
-        shape=(channels * samples, count),
-    )
-    return matrix, time[0] + spacing * np.arange(count)

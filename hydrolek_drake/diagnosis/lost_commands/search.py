@@ -6,14 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from hydrolek_drake.diagnosis import trace
-from hydrolek_drake.diagnosis.fitting.race import (
-    Entrant,
-    Runner,
-    hypothesis_of,
-    problem_with,
-    race,
-    tried_elsewhere,
-)
+from hydrolek_drake.diagnosis.fitting.elsewhere import tried_elsewhere
+from hydrolek_drake.diagnosis.fitting.entrants import Entrant, Runner
+from hydrolek_drake.diagnosis.fitting.problems import hypothesis_of, problem_with
+from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.lost_commands.seen import lost_seen
 from hydrolek_drake.diagnosis.lost_commands.windows import (

@@ -36,7 +36,7 @@ class Lost:
     def run(
         self, experiment: Experiment, records: np.ndarray, step: float, pull: float | None, moved: np.ndarray
     ) -> Run:
-        """See `unknown_input.Trial`."""
+        """See `knot_responses.Trial`."""
         begins = experiment.time[0] + DROPOUTS.sample_s * np.flatnonzero(moved)
         windows = np.stack([begins, begins + DROPOUTS.sample_s], axis=1)
         return experiment.without_command(windows, self.neutral).run(records, step, pull_time=pull)

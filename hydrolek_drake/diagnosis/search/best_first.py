@@ -5,7 +5,8 @@ from dataclasses import replace
 from typing import Protocol
 
 from hydrolek_drake.diagnosis import trace
-from hydrolek_drake.diagnosis.fitting.race import Entrant, race
+from hydrolek_drake.diagnosis.fitting.entrants import Entrant
+from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.enlarging import enlarged

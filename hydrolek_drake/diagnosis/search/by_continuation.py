@@ -5,8 +5,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from hydrolek_drake.diagnosis import trace
+from hydrolek_drake.diagnosis.fitting.entrants import Entrant, Runner, Start, entered
 from hydrolek_drake.diagnosis.fitting.local_search import has_other_minima, searched_near
-from hydrolek_drake.diagnosis.fitting.race import Entrant, Runner, Start, entered, hypotheses_of, run
+from hydrolek_drake.diagnosis.fitting.race import hypotheses_of, run
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
 from hydrolek_drake.diagnosis.search.openings import Opening, observed, surely_above

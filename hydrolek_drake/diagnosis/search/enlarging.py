@@ -4,16 +4,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from hydrolek_drake.diagnosis.fitting.race import (
-    Entrant,
-    Runner,
-    Start,
-    above_noise,
-    entered,
-    hypotheses_of,
-    race,
-    run,
-)
+from hydrolek_drake.diagnosis.fitting.entrants import Entrant, Runner, Start, entered
+from hydrolek_drake.diagnosis.fitting.race import above_noise, hypotheses_of, race, run
 from hydrolek_drake.diagnosis.laws.additions import LawTerm, of_additions
 from hydrolek_drake.diagnosis.lost_commands.search import with_windows
 from hydrolek_drake.diagnosis.search.by_continuation import (

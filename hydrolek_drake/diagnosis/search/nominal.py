@@ -3,7 +3,8 @@
 from dataclasses import replace
 
 from hydrolek_drake.diagnosis import trace
-from hydrolek_drake.diagnosis.fitting.race import Entrant, race
+from hydrolek_drake.diagnosis.fitting.entrants import Entrant
+from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal, out_of_local_minima
 from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.tried import Tried

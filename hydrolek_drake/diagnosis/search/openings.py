@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.diagnosis import trace
-from hydrolek_drake.diagnosis.fitting.race import problem_of
+from hydrolek_drake.diagnosis.fitting.problems import problem_of
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.by_parts import can_be_cut

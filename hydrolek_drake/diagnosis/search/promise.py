@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.fitting.problems import hypothesis_of, problem_with
 from hydrolek_drake.diagnosis.fitting.projection import Across, gain_of
-from hydrolek_drake.diagnosis.fitting.race import hypothesis_of, problem_with
 from hydrolek_drake.diagnosis.settings import GAINS, Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition, Sized
 from hydrolek_drake.diagnosis.structures.workbench import Workbench

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
 from pydrake.systems.framework import Diagram, DiagramBuilder
-from pydrake.systems.primitives import Adder, MatrixGain
 
 from hydrolek_drake.control.catalogue import CONTROLLERS, JointSetting, build_law, joystick_law, rig_setting
 from hydrolek_drake.control.comparison.bench import MACHINE_STEP_S
@@ -22,6 +21,7 @@ from hydrolek_drake.station.simulation import initial_context
 from hydrolek_drake.station.station import Station, make_station
 from hydrolek_drake.station.step_sizes import StepSizes
 from hydrolek_drake.teleop.configuration import teleop_entries
+from hydrolek_drake.teleop.controllers.wiring import add_contact, of_jaws, wired
 from hydrolek_drake.teleop.link.signals import Signals
 from hydrolek_drake.workcell.grip_contact import GripContact
 from hydrolek_drake.workcell.pipe import Pipe
@@ -111,7 +111,7 @@ class HydraulicArms:
 
         def add(builder: DiagramBuilder, body: RigPlant, rig: Rig, joints: np.ndarray) -> None:
             if pipe is not None:
-                self._contact = _add_contact(builder, body, pipe, table)
+                self._contact = add_contact(builder, body, pipe, table)
             if visualize is not None:
                 visualize(builder, body, rig, joints)
 
@@ -135,7 +135,7 @@ class HydraulicArms:
                 grip_force_law(scaling, closing=-1.0) for scaling in jaws
             ]  # a jaw opens in its positive direction
             self._force = Controller(laws, sample_s(), force=True)
-        self._diagram = _wired(self._station, self._controller, self._joystick, self._force, signal_per_volt)
+        self._diagram = wired(self._station, self._controller, self._joystick, self._force, signal_per_volt)
         context = self._diagram.CreateDefaultContext()
         self._inner = self._station.diagram.GetMyMutableContextFromRoot(context)
         self._inner.SetContinuousState(rest.get_continuous_state_vector().CopyToVector())
@@ -210,7 +210,7 @@ class HydraulicArms:
             voltage += np.asarray(system.command.Eval(system.GetMyContextFromRoot(self._root)))
         if self._force is not None:
             jaws = np.asarray(self._force.command.Eval(self._force.GetMyContextFromRoot(self._root)))
-            voltage += _of_jaws(self._station) @ jaws
+            voltage += of_jaws(self._station) @ jaws
         return Signals(
             time=float(self._root.get_time()),
             voltage=voltage[self._places],
@@ -288,56 +288,6 @@ class HydraulicArms:
                 wanted[self._places] = np.asarray(values, dtype=float)
                 wanted[[self.rig.joints.index(joint) for joint in gripping]] = np.nan
             self._diagram.GetInputPort(name).FixValue(context, wanted)
-
-
-def _add_contact(builder: DiagramBuilder, body: RigPlant, pipe: Pipe, table: Table | None) -> GripContact:
-    """Beside the cylinders, which act as moments here and leave the port for forces on bodies free."""
-    contact = builder.AddSystem(GripContact(body.plant, pipe, table))
-    builder.Connect(body.plant.get_state_output_port(), contact.plant_state)
-    builder.Connect(contact.contact_force, body.plant.get_applied_spatial_force_input_port())
-    builder.ExportOutput(contact.grip_force, "grip_force")
-    return contact
-
-
-def _of_jaws(station: Station) -> Array:
-    """Which joint each gripper's jaw is, shape (14, 2)."""
-    spread = np.zeros((len(station.rig.joints), len(SIDES)))
-    spread[[station.rig.joints.index(f"{side}_j7") for side in SIDES], np.arange(len(SIDES))] = 1.0
-    return spread
-
-
-def _wired(
-    station: Station,
-    controller: Controller,
-    joystick: Controller,
-    force: Controller | None,
-    signal_per_volt: Array,
-) -> Diagram:
-    builder = DiagramBuilder()
-    builder.AddSystem(station.diagram)
-    builder.AddSystem(controller)
-    builder.AddSystem(joystick)
-    total = builder.AddNamedSystem("sum", Adder(2 if force is None else 3, len(station.rig.joints)))
-    measured = station.diagram.GetOutputPort("position_measured")
-    for index, system in enumerate((controller, joystick)):
-        builder.Connect(measured, system.measured)
-        builder.Connect(system.command, total.get_input_port(index))
-    if force is not None:
-        builder.AddSystem(force)
-        jaws = builder.AddNamedSystem("to_jaws", MatrixGain(_of_jaws(station)))
-        builder.Connect(station.diagram.GetOutputPort("grip_force"), force.measured)
-        builder.Connect(force.command, jaws.get_input_port())
-        builder.Connect(jaws.get_output_port(), total.get_input_port(2))
-        builder.ExportInput(force.set_point, "force_wanted")
-    signal = builder.AddNamedSystem("signal_of_voltage", MatrixGain(np.diag(signal_per_volt)))
-    builder.Connect(total.get_output_port(), signal.get_input_port())
-    builder.Connect(signal.get_output_port(), station.diagram.GetInputPort("signal_commanded"))
-    builder.ExportInput(controller.set_point, "set_point")
-    builder.ExportInput(joystick.set_point, "deflection")
-    builder.ExportInput(station.diagram.GetInputPort("pressure_available"), "pressure_available")
-    diagram = builder.Build()
-    diagram.set_name("hydraulic_arms")
-    return diagram
 
 
 def _refuse_beyond_stops(start: Array, settings: dict[str, JointSetting]) -> None:

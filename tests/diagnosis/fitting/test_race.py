@@ -5,7 +5,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from hydrolek_drake.diagnosis.fitting.race import Entrant, race
+from hydrolek_drake.diagnosis.fitting.entrants import Entrant
+from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.settings import Rung
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench

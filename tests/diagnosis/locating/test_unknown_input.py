@@ -9,8 +9,9 @@ from scipy.sparse import csc_matrix
 from hydrolek_drake.diagnosis.laws.inputs import inputs_of
 from hydrolek_drake.diagnosis.laws.law import FRICTIONS
 from hydrolek_drake.diagnosis.laws.terms import TERMS, law_record, span_of
+from hydrolek_drake.diagnosis.locating.knot_responses import squared
 from hydrolek_drake.diagnosis.locating.terms_for import Slightly, terms_seen
-from hydrolek_drake.diagnosis.locating.unknown_input import _squared, unknown_inputs
+from hydrolek_drake.diagnosis.locating.unknown_input import unknown_inputs
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales
@@ -88,4 +89,4 @@ def test_products_of_responses_are_those_of_the_whole_matrices(covered: int) -> 
         rows = np.arange(2 * knot, min(2 * knot + covered, samples))
         for channel in range(2):
             whole[channel * samples + rows, knot] = generator.standard_normal(rows.size)
-    np.testing.assert_allclose(_squared(csc_matrix(whole)), whole.T @ whole, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(squared(csc_matrix(whole)), whole.T @ whole, rtol=1e-12, atol=1e-12)

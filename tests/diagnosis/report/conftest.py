@@ -12,7 +12,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.evidence.judged import Conclusion, Judged
-from hydrolek_drake.diagnosis.fitting.race import hypothesis_of
+from hydrolek_drake.diagnosis.fitting.problems import hypothesis_of
 from hydrolek_drake.diagnosis.intervals.curvature import Interval
 from hydrolek_drake.diagnosis.locating.place import Location
 from hydrolek_drake.diagnosis.search.tried import Tried

@@ -1,36 +1,28 @@
-"""Messages: lines to the link and from it, and what a browser says to the console. Each against the real server."""
+"""Lines to the link, against the real server, and from it."""
 
-import asyncio
 import functools
 import json
 import re
 import socket
-import threading
 import time
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from tornado.websocket import WebSocketClosedError, websocket_connect
 
 from fuzzing.byte_damage import damaged
+from fuzzing.json_messages import JSON_PIECES, JSON_RAW, as_json
 from fuzzing.target import Input, Target
 from fuzzing.tree_damage import changed_tree
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.chain import SIDES, joint_limits
-from hydrolek_drake.teleop.console.server import Console
 from hydrolek_drake.teleop.link.client import SetpointClient
 from hydrolek_drake.teleop.link.messages import decode_answer, encode, encode_rate
 from hydrolek_drake.teleop.link.server import SetpointServer
 from hydrolek_drake.teleop.link.signals import Signals, signals_from_line
-from hydrolek_drake.teleop.machine import Machine
-from hydrolek_drake.teleop.session import OperatorSession
-from hydrolek_drake.vision.camera import recorded_camera
-from hydrolek_drake.vision.frames import Frame, FrameSource
 from hydrolek_drake.workcell.scene import home_posture
 
-_ANSWER_S = 5.0  # until an answer counts as missing
-_LINK_ANSWER_S = 1.0  # the same of the link, which ends a connection that is silent for 2 s
+_ENDED_S = 5.0  # until a connection counts as one that does not end
+_ANSWER_S = 1.0  # until an answer counts as missing; the link ends a connection that is silent for 2 s
 _LINE = "line.bin"
 
 _WORDS = (
@@ -143,7 +135,7 @@ def _talk_to_link(path: Path) -> str:
     client.send(home_posture())
     assert server.command()[1], "a good set point does not open the valves"
     peer = client._socket if own else socket.create_connection(("127.0.0.1", server.port))
-    peer.settimeout(_LINK_ANSWER_S)
+    peer.settimeout(_ANSWER_S)
     peer.sendall(message)
     before = goods.index(False) if False in goods else len(lines)
     answers, was_reset = _answers(peer, before + bad)
@@ -193,7 +185,7 @@ def _answers(peer: socket.socket, wanted: int) -> tuple[list[bytes], bool]:
 
 def _closed(server: SetpointServer) -> None:
     """All connections are gone, and with them the valves are closed."""
-    end = time.monotonic() + _ANSWER_S
+    end = time.monotonic() + _ENDED_S
     while server._connections or server.command()[1]:
         assert time.monotonic() < end, "a connection that was ended keeps its seat, or the valves open"
         time.sleep(0.0005)
@@ -216,9 +208,9 @@ def _answer_input(rng: np.random.Generator) -> Input:
     if rng.random() < 0.5:
         return Input(_LINE, _line_of(rng) + b"\n")
     tree = changed_tree(
-        json.loads(_signals().to_line()), ["time", "voltage", "grip", "x"], _JSON_PIECES, rng, _JSON_RAW
+        json.loads(_signals().to_line()), ["time", "voltage", "grip", "x"], JSON_PIECES, rng, JSON_RAW
     )
-    data = _as_json(*tree).encode("utf-8", "surrogatepass") + b"\n"
+    data = as_json(*tree).encode("utf-8", "surrogatepass") + b"\n"
     return Input(_LINE, damaged(data, [_signals().to_line()], rng) if rng.random() < 0.3 else data)
 
 
@@ -240,143 +232,7 @@ def _read_answer(path: Path) -> str:
     return " and ".join(became)
 
 
-_GOOD_MESSAGES: tuple[dict[str, Any], ...] = (
-    {"do": "here"}, {"do": "stop"}, {"do": "token", "token": "x" * 24},
-    {"do": "joystick", "deflection": [40.0] + [0.0] * 13},
-    {"do": "sliders_to", "angles_deg": np.degrees(home_posture()).round(2).tolist()}, {"do": "let_go"},
-    {"do": "back"}, {"do": "resume"}, {"do": "abort"}, {"do": "confirm"}, {"do": "release"},
-    {"do": "click", "u": 100.5, "v": 200}, {"do": "sliders", "low_contrast": 0.3, "sensitivity": None},
-    {"do": "fill", "name": "edges"}, {"do": "task", "name": "place"}, {"do": "timer", "action": "start"},
-    {"do": "timer", "action": "stop"},
-    {
-        "do": "ratings", "operator": "=1+1", "control": "assisted", "note": "", "mental": 1, "physical": 2.0,
-        "temporal": 3, "performance": 4, "effort": 5, "frustration": 6,
-    },
-)  # fmt: skip
-_JSON_WORDS = (
-    "do", "name", "token", "u", "v", "deflection", "angles_deg", "action", "snapshot", "stop", "here", "click",
-    "sliders", "low_contrast", "mental", "operator", "note", "surfaces", "cut", "start", "reset", "__class__",
-    "constructor", "state",
-)  # fmt: skip
-_JSON_PIECES = (list(_GOOD_MESSAGES), {"a": [1, [2, [3]]], "b": {"c": None}})
-_JSON_RAW = (
-    "9" * 350, "-" + "9" * 350, "1e999", "-1e999", "NaN", "Infinity", "-Infinity", '"\\u0000"', '"\\ud800"',
-    '"\\ud83d\\ude00"', "[" * 1500 + "]" * 1500, '{"a":' * 500 + "1" + "}" * 500, '{"do":"stop","do":"here"}',
-    "01", "1.", ".5", "'x'", "tru", '"\\x"', '"', "[1,]", "{,}", "undefined", "// x", "1e-400",
-    "0." + "3" * 400, '"' + "x" * 3000 + '"', "\ufeff", "\x00", "{}",
-)  # fmt: skip
-
-
-def _as_json(tree: Any, raw: list[str]) -> str:
-    text = json.dumps(tree)
-    for number, each in enumerate(raw):
-        text = text.replace(f'"rawtext{number}rawtext"', each)
-    return text
-
-
-def _console_input(rng: np.random.Generator) -> Input:
-    good = _GOOD_MESSAGES[rng.integers(len(_GOOD_MESSAGES))]
-    data = _as_json(*changed_tree(good, _JSON_WORDS, _JSON_PIECES, rng, _JSON_RAW)).encode(
-        "utf-8", "surrogatepass"
-    )
-    if rng.random() < 0.25:
-        data = damaged(data, [json.dumps(each).encode() for each in _GOOD_MESSAGES], rng)
-    return Input("message.json", data[:4000])
-
-
-class _Black(FrameSource):
-    def read(self) -> Frame:
-        colour, depth = np.zeros((480, 640, 3), np.uint8), np.zeros((480, 640), np.uint16)
-        return Frame(colour, depth, recorded_camera(), "black")
-
-
-class _Served:
-    """A console that is served in a thread of its own, with a page that is in control and one that watches."""
-
-    def __init__(self) -> None:
-        self.loop = asyncio.new_event_loop()
-        ready = threading.Event()
-
-        def serve() -> None:
-            asyncio.set_event_loop(self.loop)
-            self.loop.run_until_complete(self._begin())
-            ready.set()
-            self.loop.run_forever()
-
-        threading.Thread(target=serve, daemon=True).start()
-        assert ready.wait(60.0)
-
-    async def _begin(self) -> None:
-        self.machine = Machine(home_posture(), realtime_rate=10.0)
-        self.console = Console(OperatorSession(_Black, self.machine, seed=1), port=0)
-        self._running = asyncio.ensure_future(self.console.run())
-
-    def ask(self, data: bytes) -> list[str]:
-        """Errors that a message and a stop behind it are answered with."""
-        return asyncio.run_coroutine_threadsafe(self._ask(data), self.loop).result(2 * _ANSWER_S)
-
-    async def _ask(self, data: bytes) -> list[str]:
-        page = await websocket_connect(f"ws://127.0.0.1:{self.console.port}/socket")
-        errors: list[str] = []
-        try:
-            await page.write_message(json.dumps({"do": "token", "token": self.console.token}))
-            errors.append(await self._answer(page))
-            try:
-                text: str | bytes = data.decode("utf-8")
-                await page.write_message(text)
-            except UnicodeDecodeError:
-                await page.write_message(data, binary=True)
-            if data_is(data, "here"):
-                errors.append("")
-            else:
-                errors.append(await self._answer(page))
-            await page.write_message('{"do": "stop"}')
-            errors.append(await self._answer(page))
-        finally:
-            page.close()
-        return errors
-
-    async def _answer(self, page: Any) -> str:
-        while True:
-            found = await asyncio.wait_for(page.read_message(), _ANSWER_S)
-            if found is None:
-                raise WebSocketClosedError
-            told = json.loads(found)
-            if "error" in told:
-                return str(told["error"])
-
-
-def data_is(data: bytes, what: str) -> bool:
-    """Whether a message is one without an answer: the page lives."""
-    try:
-        found = json.loads(data)
-    except (ValueError, RecursionError):
-        return False
-    return isinstance(found, dict) and found == {"do": what}
-
-
-@functools.cache
-def _console() -> _Served:
-    return _Served()
-
-
-def _talk_to_console(path: Path) -> str:
-    served = _console()
-    first, error, last = served.ask(path.read_bytes())
-    assert first == "", f"the token is not heeded: {first}"
-    assert not error.startswith(("it failed", "STOP failed")), error
-    assert last == "", f"STOP is not heeded: {last}"
-    assert error.isprintable() and len(error) < 1000, f"answered {error[:200]!r}"
-    assert not served.machine.state().valves_open, "the valves are open after STOP"
-    return "refused" if error else "carried out"
-
-
-def _console_seeds() -> list[Input]:
-    return [Input("message.json", json.dumps(each).encode()) for each in _GOOD_MESSAGES[:2]]
-
-
 TARGETS = (
     Target("link", _link_input, _talk_to_link, _link_seeds),
     Target("answer", _answer_input, _read_answer, lambda: [Input(_LINE, _signals().to_line())]),
-    Target("console", _console_input, _talk_to_console, _console_seeds),
 )
