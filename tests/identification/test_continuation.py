@@ -68,6 +68,7 @@ def test_behind_the_cut_nothing_depends_on_the_supply(recording) -> None:
     assert part.with_recorded_supply() is part
 
 
+@pytest.mark.thorough
 def test_what_the_pump_lacks_is_found_with_the_supply_and_not_behind_the_cut() -> None:
     """A pump that gives a fifth: the effect stands in the joint's part of a rig and acts on the supply."""
     lacking = "joints.joint.effects.supply.pump_loss.fraction"

@@ -39,6 +39,7 @@ PUMP = {
     "supply.speed": 157.0,
     "supply.relief_slope": 1e8,
     "supply.line_volume": 1e-3,
+    "supply.pump_leakage": 0.0,
     "supply.relief_time": 0.0,
     "supply.initial_pressure": 0.0,
     "fluid.bulk_modulus": 1e9,
