@@ -34,6 +34,17 @@ FIGURES = [
 ]  # fmt: skip
 
 
+def _each(numbers):
+    """ "(5.5) to (5.7)" as (5.5), (5.6), (5.7); "Table G.7 to G.11" likewise."""
+    first, _, last = numbers.partition(" to ")
+    if not last:
+        return [numbers]
+    before, start, after = re.fullmatch(r"(.*?)(\d+)(\)?)", first).groups()
+    end = int(re.search(r"\d+(?=\)?$)", last)[0])
+    assert before.endswith(".") and last == f"{before.removeprefix('Table ')}{end}{after}"
+    return [f"{before}{n}{after}" for n in range(int(start), end + 1)]
+
+
 def _rows(part, header):
     page = ROOT / "docs" / "reference" / "equations.md"
     lines = page.read_text(encoding="utf-8").split("## Figures")[part]
@@ -46,7 +57,11 @@ def _rows(part, header):
     return {row[0]: row for row in cells[1:]}
 
 
-ROWS = _rows(0, ["Number", "What", "File", "Function", "Test"])
+def _by_number(rows):
+    return {number: row for numbers, row in rows.items() for number in _each(numbers)}
+
+
+ROWS = _by_number(_rows(0, ["Number", "What", "File", "Function", "Test"]))
 FIGURE_ROWS = _rows(1, ["Figures", "Content", "Drawn by"])
 BUILT = [number for number, row in ROWS.items() if "`" in row[2]]
 
