@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.report.words import unit_at
 from hydrolek_drake.diagnosis.search.cost import gain_needed
+from hydrolek_drake.diagnosis.settings import FITS, NOISE
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.identification.experiments.experiment import Experiment
@@ -21,10 +22,12 @@ from hydrolek_drake.watching.likelihood import SizeTold, of_branches, of_fit
 from hydrolek_drake.watching.reference import Session
 from hydrolek_drake.watching.scanning import Scan, scanned, size_of, strength, strengths
 from hydrolek_drake.watching.settings import (
+    CONTINUED,
     EXACT,
     FITTED,
     FURTHER,
     NOMINAL,
+    OBSERVED,
     RACED,
     ROUNDS,
     TRIED,
@@ -200,9 +203,56 @@ def _fits(
     first = sorted(better, key=lambda path: better[path].objective)[:EXACT]
     again = [replace(better[path], slopes=None, ended=False, exact=False) for path in first]
     better |= dict(zip(first, _ended(again, session), strict=True))
+    led = _by_observers(session, better, scans, experiments, known)
+    better, first = better | led, [*first, *led]
     renewed = [_renewed(place, path in first, nominal.unit.size) for path, place in better.items()]
     known_there = with_slopes(renewed, session.bench.pool, session.cores)
     return dict(zip(better, known_there, strict=True))
+
+
+def _by_observers(
+    session: Session,
+    fits: dict[str, Place],
+    scans: list[Scan],
+    experiments: Sequence[Experiment],
+    known: Knowledge,
+) -> dict[str, Place]:
+    """Where no effect leads to the noise, all of them by continuation; the best ones where that leads to better fits.
+
+    An effect that has grown large bends the nominal model's own numbers: beside these another one promises more, and
+    its own fit ends in a local minimum. So all are fitted from the reference's numbers, through observers that forget
+    (Ljung, System Identification, 1999, chapter 7), fewer with each of them.
+    """
+    if min((fit_of(place).over_noise for place in fits.values()), default=0.0) <= NOISE.above:
+        return {}
+    places: list[tuple[str, Place]] = []
+    for scan in scans:
+        candidate = scan.candidate
+        problem = session.problem((candidate,), experiments, known)
+        moving = session.bench.movable((candidate,), problem.parameters)
+        begun = [scan.start, *candidate.starts[:1]]
+        if candidate.size_path in fits:
+            fitted = fits[candidate.size_path]
+            begun.append(fitted.problem.parameters.values(fitted.unit))
+        for values in begun:
+            own = {free.path: values[free.path] for free in candidate.free if free.path in values}
+            unit = problem.parameters.unit(own)
+            unit[: known.mean.size] = known.mean
+            places.append((candidate.size_path, Place(problem, moving, np.clip(unit, 1e-6, 1.0 - 1e-6))))
+    for seconds, (steps, keep) in zip(FITS.observers_s, OBSERVED, strict=True):
+        pulled = [place.at(place.problem.pulled(seconds)) for _, place in places]
+        led = list(zip((path for path, _ in places), _ended(pulled, session, steps), strict=True))
+        places = sorted(led, key=lambda each: each[1].objective)[:keep]
+    free = [place.at(session.problem(_effect_of(path, scans), experiments, known)) for path, place in places]
+    better = dict(fits)
+    for (path, _), place in zip(places, _ended(free, session, CONTINUED), strict=True):
+        if path not in better or place.objective < better[path].objective:
+            better[path] = place
+    return {path: place for path, place in better.items() if place is not fits.get(path)}
+
+
+def _effect_of(path: str, scans: Sequence[Scan]) -> tuple[Candidate, ...]:
+    return tuple(scan.candidate for scan in scans if scan.candidate.size_path == path)
 
 
 def _renewed(place: Place, every: bool, known: int) -> Place:

@@ -1,6 +1,6 @@
 """Every constant of the watch, with the principle or measurement it comes from."""
 
-METHOD = 1
+METHOD = 2
 """Number of the method: recordings that another one was asked of are asked again."""
 
 DRIFT = 0.02
@@ -18,6 +18,13 @@ ROUNDS = 5
 
 LEFT_OUT = 6
 """So many reference recordings are each asked by what the others tell: enough to see how a healthy machine varies."""
+
+OBSERVED = ((4, 12), (8, 6), (12, 3))
+"""Steps with each observer at most where no effect leads to the noise, and so many fits that go on: as many as in a
+race of the diagnosis."""
+
+CONTINUED = 32
+"""Steps at the end of these at most."""
 
 RACED = 3
 """Steps of every fitted effect, and once more of the `FURTHER` best ones, which then tell the best of all: after three

@@ -17,12 +17,14 @@ GROWTH = 1.0e-13
 """Leakage that each later recording has more, from the third one [m^3/(s Pa)]."""
 
 COUNT = 7
+WARM = 0.15
+"""Share by which friction and flow change as the oil of a machine warms up, far more than is needed to see it."""
 
 
-def _record(path, build, machine, seed):
+def _record(path, build, machine, seed, seconds=SECONDS):
     rig, rng = build.rig, np.random.default_rng(seed)
     noise, resolution = rig.value("sensor.noise"), rig.value("sensor.resolution")
-    done = driven(build, machine, "open", SECONDS, rng, noise, SIZING_STEP_S)
+    done = driven(build, machine, "open", seconds, rng, noise, SIZING_STEP_S)
     reading = done.reading + noise * rng.standard_normal(done.reading.size)
     signals = {"joint.command": done.volts, "joint.angle": np.round(reading / resolution) * resolution}
     write_signals(
@@ -32,13 +34,13 @@ def _record(path, build, machine, seed):
 
 @pytest.fixture(scope="session")
 def machine_days(tmp_path_factory) -> Path:
-    """Folder with `reference_*.csv`, and folders `leaking` and `healthy` with a recording a day."""
+    """Folder with `reference_*.csv`, and folders `leaking`, `healthy` and `warm` with a recording a day."""
     folder = tmp_path_factory.mktemp("days")
     build = build_of(load_rig("joint_bench"))
     rng = np.random.default_rng(7)
     own = {f: build.rig.value(path) * float(rng.uniform(0.92, 1.08)) for f, path in build.spread.items()}
     machine = build.nominal._replace(**own)
-    for name in ("leaking", "healthy"):
+    for name in ("leaking", "healthy", "warm"):
         (folder / name).mkdir()
     for number in range(3):
         _record(folder / f"reference_{number}.csv", build, machine, 10 + number)
@@ -48,6 +50,10 @@ def machine_days(tmp_path_factory) -> Path:
         _record(folder / "leaking" / f"run_2026-03-{day + 1:02d}.csv", build, worn, 30 + day)
         if day < 4:
             _record(folder / "healthy" / f"run_2026-03-{day + 1:02d}.csv", build, machine, 50 + day)
+    for number in range(3):
+        warm = with_concealed(machine, {"fluid.warm_up": {"fraction": WARM, "time_constant_s": 11.7}})
+        path = folder / "warm" / f"run_2026-03-{number + 1:02d}.csv"
+        _record(path, build, warm, 70 + number, seconds=20.0)
     return folder
 
 

@@ -59,6 +59,16 @@ def test_sizes_lie_in_their_intervals(leaking, planted, growth):
     assert told[0].low == 0.0 and 0.0 < told[0].high < 0.2 * growth
 
 
+def test_what_has_grown_large_is_told_to_its_size(machine_days, references):
+    """It bends the machine's own numbers, from which a fit with it would end in a local minimum."""
+    files = sorted((machine_days / "warm").glob("*.csv"))
+    watched = watch(load_rig("joint_bench"), references, files, cores=1)
+    for answer in watched.answers:
+        first = answer.effects[0]
+        assert first.effect == "fluid.warm_up" and first.left < 1.06
+        assert first.size == pytest.approx(0.15, rel=0.1)
+
+
 def test_beside_the_leakage_nothing_else_is_there(leaking):
     watched, _ = leaking
     last = watched.answers[-1]
