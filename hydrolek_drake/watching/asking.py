@@ -1,5 +1,6 @@
 """What differs in one recording: the nominal model with the reference as prior, and beside it one fit per effect."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -217,15 +218,16 @@ def _by_observers(
     experiments: Sequence[Experiment],
     known: Knowledge,
 ) -> dict[str, Place]:
-    """Where no effect leads to the noise, all of them by continuation; the best ones where that leads to better fits.
+    """Where no effect leads to what the reference leaves, all by continuation; those that are better for it.
 
     An effect that has grown large bends the nominal model's own numbers: beside these another one promises more, and
     its own fit ends in a local minimum. So all are fitted from the reference's numbers, through observers that forget
     (Ljung, System Identification, 1999, chapter 7), fewer with each of them.
     """
-    if min((fit_of(place).over_noise for place in fits.values()), default=0.0) <= NOISE.above:
+    least = min((fit_of(place).over_noise for place in fits.values()), default=0.0)
+    if least <= NOISE.above * math.sqrt(session.posterior.scale):
         return {}
-    places: list[tuple[str, Place]] = []
+    places: list[tuple[Candidate, Place]] = []
     for scan in scans:
         candidate = scan.candidate
         problem = session.problem((candidate,), experiments, known)
@@ -238,21 +240,19 @@ def _by_observers(
             own = {free.path: values[free.path] for free in candidate.free if free.path in values}
             unit = problem.parameters.unit(own)
             unit[: known.mean.size] = known.mean
-            places.append((candidate.size_path, Place(problem, moving, np.clip(unit, 1e-6, 1.0 - 1e-6))))
+            places.append((candidate, Place(problem, moving, np.clip(unit, 1e-6, 1.0 - 1e-6))))
     for seconds, (steps, keep) in zip(FITS.observers_s, OBSERVED, strict=True):
         pulled = [place.at(place.problem.pulled(seconds)) for _, place in places]
-        led = list(zip((path for path, _ in places), _ended(pulled, session, steps), strict=True))
+        led = list(zip((candidate for candidate, _ in places), _ended(pulled, session, steps), strict=True))
         places = sorted(led, key=lambda each: each[1].objective)[:keep]
-    free = [place.at(session.problem(_effect_of(path, scans), experiments, known)) for path, place in places]
-    better = dict(fits)
-    for (path, _), place in zip(places, _ended(free, session, CONTINUED), strict=True):
-        if path not in better or place.objective < better[path].objective:
+    free = [place.at(session.problem((candidate,), experiments, known)) for candidate, place in places]
+    better: dict[str, Place] = {}
+    for (candidate, _), place in zip(places, _ended(free, session, CONTINUED), strict=True):
+        path = candidate.size_path
+        before = better.get(path, fits.get(path))
+        if before is None or place.objective < before.objective:
             better[path] = place
-    return {path: place for path, place in better.items() if place is not fits.get(path)}
-
-
-def _effect_of(path: str, scans: Sequence[Scan]) -> tuple[Candidate, ...]:
-    return tuple(scan.candidate for scan in scans if scan.candidate.size_path == path)
+    return better
 
 
 def _renewed(place: Place, every: bool, known: int) -> Place:

@@ -42,7 +42,8 @@ SEED = 1
 
 TRIED, STARTS, MOST_ROUNDS, FOLLOWED = 1024, 24, 6, 1.2
 """So many places are tried over the shortest horizon in a round, and from the best of them it is fitted; so many rounds
-at most, until one place leaves so many times the noise or less: over few samples chance moves it by 5 %."""
+at most, until one place leaves so many times the noise or less: over few samples chance moves it by 5 %, and what is
+left beyond that the longer horizons take."""
 
 FAR = 3.0
 """A chain that leaves so many times the noise behind the cut lacks something there: the supply is left as it is."""
