@@ -64,6 +64,7 @@ def run(
             bench.pool,
             cores,
             share=rung.share,
+            behind=rung.behind,
             stop=told,
         )
         bench.evaluations += sum(p.evaluations for p in problems.values())

@@ -24,7 +24,7 @@ def fit_nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) 
     known = next((h.values for h in found.seeds if not h.effects), {})
     if not known and can_be_cut(bench):
         known = by_parts(bench, (), {}, cores)
-    rungs = (settings.led,) if known else (*settings.free, *settings.ended)
+    rungs = (settings.led,) if known else (*settings.free, settings.ended[0])
     best = as_weighed(bench, race(bench, [Entrant((), known)], rungs, cores)[0], settings, cores)
     trace(f"nominal {best.fit.over_noise:.4f}")
     if not known and NOISE.at < best.fit.over_noise < NOISE.far:
@@ -49,7 +49,7 @@ def as_weighed(bench: Workbench, structure: Hypothesis, settings: Settings, core
     now = structure
     for _ in range(FITS.anew):
         bench.training = tuple(weighted_by(bench, now, bench.training))
-        rung = settings.again if now.fit.over_noise < NOISE.far else settings.led
+        rung = settings.again if now.fit.over_noise <= NOISE.above else settings.led
         before, now = now, race(bench, [Entrant(now.effects, now.values)], (rung,), cores)[0]
         if now.fit.over_noise > 1.0 / NOISE.at or now.fit.over_noise < NOISE.at * before.fit.over_noise:
             break

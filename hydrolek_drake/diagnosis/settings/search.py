@@ -27,6 +27,9 @@ class Fits:
     """Differences by less than this share are none: a number so near an end of its range (in ranges) cannot move on,
     and two fits of a structure whose squares are so nearly the same stand in the same minimum."""
 
+    behind: float = 0.01
+    """Who is behind the best of a race need not be known better than to this share of the distance."""
+
     negligible: float = 1e-6
     """A share that changes nothing which a rollout shows: fits begin so far within their ranges, from where steps to
     both sides can be made, and so much of an effect does nothing."""
@@ -61,7 +64,8 @@ class Rung:
         seconds: so much of the recordings is seen.
         rounds: steps of a fit.
         keep: so many fits go on.
-        share: fits end where a step takes less than this share of what is left.
+        share: fits end where a step takes less than this share of what is left, ...
+        behind: ... or of how far they are behind the best of them, or behind the noise.
         elsewhere: whether what has no slope is tried elsewhere.
         each: so many fits of a structure go on at most, in different minima.
     """
@@ -72,6 +76,7 @@ class Rung:
     rounds: int
     keep: int
     share: float = 5e-4
+    behind: float = 0.0
     elsewhere: bool = False
     each: int = 2
 
@@ -99,22 +104,22 @@ class Settings:
     """So many of them from more than one start."""
 
     free: tuple[Rung, ...] = (
-        Rung(math.inf, FITS.coarse, 20.0, 5, 8),
-        Rung(math.inf, FITS.coarse, math.inf, 12, 4, elsewhere=True),
+        Rung(math.inf, FITS.coarse, 20.0, 5, 8, behind=FITS.behind),
+        Rung(math.inf, FITS.coarse, math.inf, 12, 4, behind=FITS.behind, elsewhere=True),
     )
     """A race of free rollouts, from where the structure before it led."""
 
     continued: tuple[Rung, ...] = (
-        Rung(_FAST, FITS.coarse, 20.0, 4, 12),
-        Rung(_MIDDLE, FITS.coarse, math.inf, 8, 8, elsewhere=True),
-        Rung(_SLOW, FITS.coarse, math.inf, 12, 4, elsewhere=True),
+        Rung(_FAST, FITS.coarse, 20.0, 4, 12, behind=FITS.behind),
+        Rung(_MIDDLE, FITS.coarse, math.inf, 8, 8, behind=FITS.behind, elsewhere=True),
+        Rung(_SLOW, FITS.coarse, math.inf, 12, 4, behind=FITS.behind, elsewhere=True),
     )
     """A race by continuation, from the rig's own numbers: prediction errors of an observer forget, so that they have
     few local minima (Ljung, System Identification, 1999, chapter 7); free rollouts see what is slow."""
 
     ended: tuple[Rung, ...] = (
-        Rung(math.inf, 1.0, math.inf, 8, 4),
-        Rung(math.inf, 1.0, math.inf, 32, 4, share=1e-4, elsewhere=True),
+        Rung(math.inf, 1.0, math.inf, 8, 4, behind=FITS.behind),
+        Rung(math.inf, 1.0, math.inf, 32, 4, share=1e-4, behind=FITS.behind, elsewhere=True),
     )
     """The end of both races."""
 
@@ -150,7 +155,7 @@ class Settings:
     near_rounds: int = 6
     """So often they are looked for at most."""
 
-    again: Rung = Rung(math.inf, 1.0, math.inf, 32, 1, share=1e-4)
+    again: Rung = Rung(math.inf, 1.0, math.inf, 32, 1, share=1e-4, behind=FITS.behind)
     """Fits that begin where nearly the same one ended."""
 
     again_within: float = 2.0

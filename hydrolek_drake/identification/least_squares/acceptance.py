@@ -30,15 +30,20 @@ class Ending:
 
     Attributes:
         worth: where a step promises or takes less than so many squares, ...
-        share: ... or less than this share of what is left.
+        share: ... or less than this share of what is left, ...
+        behind: ... or less than this share of how far the place is behind others ...
+        ahead: ... of which the best one leaves so many squares.
     """
 
     worth: float = 1.0
     share: float = 1e-3
+    behind: float = 0.0
+    ahead: float = 0.0
 
     def least(self, place: Place) -> float:
         """The fall of the squares below which a step is not worth taking."""
-        return max(self.worth, self.share * place.objective)
+        left = place.objective
+        return max(self.worth, self.share * left, self.behind * (left - self.ahead))
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ def descend(
     *,
     worth: float = 1.0,
     share: float = 1e-3,
+    behind: float = 0.0,
     leading: float = 2.0,
     stop: Callable[[], None] = lambda: None,
 ) -> list[Place]:
@@ -38,7 +39,9 @@ def descend(
         pool: threads.
         cores: that roll out at the same time.
         worth: a fit ends where a step promises or takes less than so many squares, ...
-        share: ... or less than this share of what is left.
+        share: ... or less than this share of what is left, ...
+        behind: ... or less than this share of how far it is behind the best of them and behind the noise: who loses
+            by thousands of squares need not be known to one.
         leading: Jacobians are told by rollouts with steps so many times as long, which is enough to lead a fit; 1 for
             the problem's own.
         stop: asked before each round; it raises what ends the descent.
@@ -51,11 +54,15 @@ def descend(
             break
         for i, place in zip(going, with_slopes([now[i] for i in going], pool, cores, leading), strict=True):
             now[i] = place
-        for i, place in zip(
-            going, _stepped([now[i] for i in going], pool, cores, Ending(worth, share)), strict=True
-        ):
+        ending = Ending(worth, share, behind, _ahead(now))
+        for i, place in zip(going, _stepped([now[i] for i in going], pool, cores, ending), strict=True):
             now[i] = place
     return _with_residuals(now, pool, cores)
+
+
+def _ahead(places: Sequence[Place]) -> float:
+    """Squares that the best of some fits leaves, or noise would: nothing is below it."""
+    return min(min(p.objective, p.problem.counted) for p in places if p.residuals is not None)
 
 
 def _with_residuals(places: Sequence[Place], pool: Executor, cores: int) -> list[Place]:

@@ -1,10 +1,11 @@
-"""The direction of a fit's steps: Levenberg's and Marquardt's, within the ranges by an active set.
+"""The direction of a fit's steps: Levenberg's and Marquardt's, within the ranges.
 
 Marquardt, An algorithm for least-squares estimation of nonlinear parameters, SIAM J. 11 (1963) 431.
 """
 
 import numpy as np
 
+from hydrolek_drake.identification.least_squares.box import lowest_in_box
 from hydrolek_drake.identification.least_squares.place import Place
 
 
@@ -25,24 +26,12 @@ class NormalEquations:
         self._unit, self._moving = place.unit, place.moving
 
     def step(self, damping: float) -> np.ndarray:
-        """Marquardt's step within the ranges, by an active set. # (n,)."""
-        free = self._moving & (np.diag(self._square) > 0.0)
+        """Marquardt's step within the ranges. # (n,)."""
+        index = np.flatnonzero(self._moving & (np.diag(self._square) > 0.0))
+        square = self._square[np.ix_(index, index)]
+        damped = square + damping * np.diag(np.diag(square))
         way = np.zeros(self._unit.size)
-        for _ in range(self._unit.size):
-            index = np.flatnonzero(free)
-            if not index.size:
-                break
-            square = self._square[np.ix_(index, index)]
-            held = ~free
-            pull = self._pull[index] - self._square[np.ix_(index, np.flatnonzero(held))] @ way[held]
-            damped = square + damping * np.diag(np.diag(square))
-            own = np.linalg.lstsq(damped, pull, rcond=None)[0]
-            low, high = -self._unit[index], 1.0 - self._unit[index]
-            beyond = (own < low) | (own > high)
-            way[index] = np.clip(own, low, high)
-            if not beyond.any():
-                break
-            free[index[beyond]] = False
+        way[index] = lowest_in_box(damped, self._pull[index], -self._unit[index], 1.0 - self._unit[index])
         return way
 
     def promises(self, way: np.ndarray) -> float:

@@ -8,7 +8,7 @@ of which the compiler leaves out the branches.
 
 import hashlib
 from collections.abc import Callable
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
 
@@ -53,7 +53,8 @@ class Kind:
     @cached_property
     def name(self) -> str:
         """Short, and another one for every kind."""
-        return hashlib.sha256(repr(astuple(self)).encode()).hexdigest()[:12]
+        own = tuple(getattr(self, each.name) for each in fields(self))
+        return hashlib.sha256(repr(own).encode()).hexdigest()[:12]
 
 
 class KindType(types.Opaque):
