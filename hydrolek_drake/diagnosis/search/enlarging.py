@@ -19,6 +19,7 @@ from hydrolek_drake.diagnosis.search.by_continuation import (
 from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.search.openings import Opening
+from hydrolek_drake.diagnosis.search.standing_in import standing_in
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import GAINS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition
@@ -136,16 +137,18 @@ def _lessened(
 ) -> None:
     """Backward elimination: the best structure without each addition, and with what may do as well in its place.
 
-    That is a special case; for the forces of a law the same on the other side of the linkage; and for a law the effects
-    that are known at its stage, since it may describe one of them that was fitted in a wrong local minimum. Each is
-    fitted from where the best structure led, and by continuation; where the best one is at the noise, as long as an
-    observer follows them to it, since a free rollout leaves no less.
+    What may do as well is a number of its stage (`standing_in`); a special case; for the forces of a law the same on
+    the other side of the linkage; and for a law the effects that are known at its stage, since it may describe one of
+    them that was fitted in a wrong local minimum. Each is fitted from where the best structure led, and by
+    continuation; where the best one is at the noise, as long as an observer follows them to it, since a free rollout
+    leaves no less.
     """
     best = found.best
     if best is found.lessened or not best.effects:
         return
     found.lessened = best
     entrants = [Entrant(best.without(c), _values_without(best, [c])) for c in best.effects]
+    entrants += [each for c in best.effects for each in standing_in(bench, best, c, cores)]
     entrants += [
         Entrant(effects, {**_values_without(best, [c]), **start})
         for c, special, effects in narrowings(best.effects, candidates)
