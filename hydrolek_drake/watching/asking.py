@@ -1,6 +1,5 @@
 """What differs in one recording: the nominal model with the reference as prior, and beside it one fit per effect."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -8,32 +7,21 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.report.words import unit_at
 from hydrolek_drake.diagnosis.search.cost import gain_needed
-from hydrolek_drake.diagnosis.settings import FITS, NOISE
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.identification.experiments.experiment import Experiment
-from hydrolek_drake.identification.least_squares.lockstep import descend, with_slopes
+from hydrolek_drake.identification.least_squares.lockstep import with_slopes
 from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.replay.display import display_unit
 from hydrolek_drake.watching.curves import curves_of
+from hydrolek_drake.watching.effect_fits import fits_of_effects, fitted_on
 from hydrolek_drake.watching.knowledge import Knowledge
 from hydrolek_drake.watching.likelihood import SizeTold, of_branches, of_fit
 from hydrolek_drake.watching.reference import Session
 from hydrolek_drake.watching.scanning import Scan, scanned, size_of, strength, strengths
-from hydrolek_drake.watching.settings import (
-    CONTINUED,
-    EXACT,
-    FITTED,
-    FURTHER,
-    NOMINAL,
-    OBSERVED,
-    RACED,
-    ROUNDS,
-    TRIED,
-    WORTH,
-)
+from hydrolek_drake.watching.settings import NOMINAL, TRIED
 
 OWN_NUMBERS = "machine.own_numbers"
 """Stands for: no effect, but the machine's own numbers changed by more than they were said to drift."""
@@ -112,10 +100,10 @@ def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge 
     weighted = weighted_by(bench, session.hypothesis, experiments)
     problem = session.problem((), weighted, knowledge)
     moving = np.ones(knowledge.mean.size, dtype=bool)
-    nominal = _ended([Place(problem, moving, knowledge.mean)], session, NOMINAL)[0]
+    nominal = fitted_on([Place(problem, moving, knowledge.mean)], session, NOMINAL)[0]
     [nominal] = with_slopes([nominal], bench.pool, cores)
     scans = scanned(session, nominal, weighted, knowledge)
-    fitted = _fits(session, nominal, scans, weighted, knowledge)
+    fitted = fits_of_effects(session, nominal, scans, weighted, knowledge)
     scale = session.posterior.scale
     told = [_told(scan, fitted.get(scan.candidate.size_path), nominal, session) for scan in scans]
     own = _own_numbers(session, nominal, weighted, scale)
@@ -171,97 +159,6 @@ def _sizes(candidate: Candidate, known: SizeTold) -> tuple[float, float, float]:
 
 def _path(session: Session, told: EffectTold) -> str:
     return next(c.size_path for c in session.candidates if (c.id, c.joint) == (told.effect, told.joint))
-
-
-def _ended(places: list[Place], session: Session, rounds: int = ROUNDS) -> list[Place]:
-    """Fits continued until no step promises anything that counts."""
-    return descend(places, rounds, session.bench.pool, session.cores, worth=WORTH, share=1e-4)
-
-
-def _fits(
-    session: Session, nominal: Place, scans: list[Scan], experiments: Sequence[Experiment], known: Knowledge
-) -> dict[str, Place]:
-    """Fits of the nominal model with one effect each, by the effect's path; of those alone that promise something."""
-    chosen = [scan for scan in scans if scan.gain > TRIED][:FITTED]
-    assert nominal.slopes is not None
-    values = nominal.problem.parameters.values(nominal.unit)
-    begun = []
-    for scan in chosen:
-        candidate = scan.candidate
-        problem = session.problem((candidate,), experiments, known)
-        moving = session.bench.movable((candidate,), problem.parameters)
-        unit = np.clip(problem.parameters.unit({**values, **scan.start}), 1e-6, 1.0 - 1e-6)
-        unit[: nominal.unit.size] = nominal.unit
-        slopes = np.full((len(nominal.slopes), unit.size), np.nan)
-        slopes[:, : nominal.unit.size] = nominal.slopes
-        begun.append(Place(problem, moving, unit, slopes=slopes))
-    ended = dict(
-        zip((scan.candidate.size_path for scan in chosen), _ended(begun, session, RACED), strict=True)
-    )
-    near = sorted(ended, key=lambda path: ended[path].objective)[:FURTHER]
-    ended |= dict(zip(near, _ended([ended[path] for path in near], session, RACED), strict=True))
-    better = {path: place for path, place in ended.items() if place.objective < nominal.objective}
-    first = sorted(better, key=lambda path: better[path].objective)[:EXACT]
-    again = [replace(better[path], slopes=None, ended=False, exact=False) for path in first]
-    better |= dict(zip(first, _ended(again, session), strict=True))
-    led = _by_observers(session, better, scans, experiments, known)
-    better, first = better | led, [*first, *led]
-    renewed = [_renewed(place, path in first, nominal.unit.size) for path, place in better.items()]
-    known_there = with_slopes(renewed, session.bench.pool, session.cores)
-    return dict(zip(better, known_there, strict=True))
-
-
-def _by_observers(
-    session: Session,
-    fits: dict[str, Place],
-    scans: list[Scan],
-    experiments: Sequence[Experiment],
-    known: Knowledge,
-) -> dict[str, Place]:
-    """Where no effect leads to what the reference leaves, all by continuation; those that are better for it.
-
-    An effect that has grown large bends the nominal model's own numbers: beside these another one promises more, and
-    its own fit ends in a local minimum. So all are fitted from the reference's numbers, through observers that forget
-    (Ljung, System Identification, 1999, chapter 7), fewer with each of them.
-    """
-    least = min((fit_of(place).over_noise for place in fits.values()), default=0.0)
-    if least <= NOISE.above * math.sqrt(session.posterior.scale):
-        return {}
-    places: list[tuple[Candidate, Place]] = []
-    for scan in scans:
-        candidate = scan.candidate
-        problem = session.problem((candidate,), experiments, known)
-        moving = session.bench.movable((candidate,), problem.parameters)
-        begun = [scan.start, *candidate.starts[:1]]
-        if candidate.size_path in fits:
-            fitted = fits[candidate.size_path]
-            begun.append(fitted.problem.parameters.values(fitted.unit))
-        for values in begun:
-            own = {free.path: values[free.path] for free in candidate.free if free.path in values}
-            unit = problem.parameters.unit(own)
-            unit[: known.mean.size] = known.mean
-            places.append((candidate, Place(problem, moving, np.clip(unit, 1e-6, 1.0 - 1e-6))))
-    for seconds, (steps, keep) in zip(FITS.observers_s, OBSERVED, strict=True):
-        pulled = [place.at(place.problem.pulled(seconds)) for _, place in places]
-        led = list(zip((candidate for candidate, _ in places), _ended(pulled, session, steps), strict=True))
-        places = sorted(led, key=lambda each: each[1].objective)[:keep]
-    free = [place.at(session.problem((candidate,), experiments, known)) for candidate, place in places]
-    better: dict[str, Place] = {}
-    for (candidate, _), place in zip(places, _ended(free, session, CONTINUED), strict=True):
-        path = candidate.size_path
-        before = better.get(path, fits.get(path))
-        if before is None or place.objective < before.objective:
-            better[path] = place
-    return better
-
-
-def _renewed(place: Place, every: bool, known: int) -> Place:
-    """A place that asks for its slopes anew: for every one, or for those of the effect alone."""
-    if every or place.slopes is None:
-        return replace(place, slopes=None)
-    slopes = place.slopes.copy()
-    slopes[:, known:] = np.nan
-    return replace(place, slopes=slopes)
 
 
 def _told(scan: Scan, fitted: Place | None, nominal: Place, session: Session) -> EffectTold:
@@ -323,7 +220,7 @@ def _own_numbers(
     problem = session.bench.problem((), session.bench.fine, experiments, kind=kind)
     assert nominal.slopes is not None
     free = replace(nominal, problem=problem, ended=False, exact=False, residuals=None)
-    [place] = _ended([replace(free, slopes=nominal.slopes)], session)
+    [place] = fitted_on([replace(free, slopes=nominal.slopes)], session)
     assert place.residuals is not None
     gain = max(nominal.objective - float(place.residuals @ place.residuals), 0.0) / scale
     moved = np.abs(place.unit - session.posterior.mean)
