@@ -34,6 +34,18 @@ def test_it_is_where_scipys_active_set_ends(seed, alike) -> None:
     assert left(found) <= left(reference) + 1e-9 * abs(left(reference))
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_numbers_that_do_the_same_and_stand_at_their_edges_end(seed) -> None:
+    square, pull, low, high = _problem(seed, 0.0)
+    low[::2], high[::2] = 0.0, 1.0
+    found = lowest_in_box(square, pull, low, high)
+    assert np.all((low <= found) & (found <= high))
+    slope = square @ found - pull
+    tiny = 1e-6 * np.sqrt(np.diag(square)) * np.linalg.norm(pull / np.sqrt(np.diag(square)))
+    assert np.all((slope >= -tiny) | np.isclose(found, high))
+    assert np.all((slope <= tiny) | np.isclose(found, low))
+
+
 def test_less_damping_promises_more() -> None:
     """What several numbers at their edges once broke: a Newton step that promised less than a damped one."""
     for seed in range(40):

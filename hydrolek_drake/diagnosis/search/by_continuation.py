@@ -51,9 +51,9 @@ def continued_nominal(
     centre = Entrant((), {free.path: free.from_unit(0.5) for free in bench.nominal})
     heats = settings.nominal
     led = run(bench, entered(bench, [Entrant((), {}), centre], heats[0], cores), heats, cores)
-    last = settings.ended[:1]
-    ended = run(bench, [*led, *entered(bench, [centre], last[0], cores)], last, cores)
-    fitted = hypotheses_of(bench, ended, last[0])[0]
+    last = settings.ended[0]
+    ended = run(bench, [*led, *entered(bench, [centre], last, cores)], (last,), cores)
+    [fitted] = hypotheses_of(bench, ended[:1], last)
     trace(f"    nominal {direct.fit.over_noise:.4f}, continued {fitted.fit.over_noise:.4f}")
     return fitted if direct.fit.objective - fitted.fit.objective > gain_needed(direct.fit) else None
 

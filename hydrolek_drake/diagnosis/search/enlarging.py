@@ -148,7 +148,8 @@ def _lessened(
         return
     found.lessened = best
     entrants = [Entrant(best.without(c), _values_without(best, [c])) for c in best.effects]
-    entrants += [each for c in best.effects for each in standing_in(bench, best, c, cores)]
+    alone = zip(best.effects, tuple(entrants), strict=True)
+    entrants += [each for c, without in alone for each in standing_in(bench, without, c, cores)]
     entrants += [
         Entrant(effects, {**_values_without(best, [c]), **start})
         for c, special, effects in narrowings(best.effects, candidates)

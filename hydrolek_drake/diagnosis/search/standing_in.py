@@ -11,21 +11,20 @@ from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.problems import problem_with
 from hydrolek_drake.diagnosis.settings import FITS
 from hydrolek_drake.diagnosis.structures.addition import Addition
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
 
-def standing_in(bench: Workbench, structure: Hypothesis, effect: Addition, cores: int) -> list[Entrant]:
+def standing_in(bench: Workbench, without: Entrant, effect: Addition, cores: int) -> list[Entrant]:
     """A start of a structure without one of its additions; none where no number of its stage leaves less.
 
     Args:
         bench: data and problems.
-        structure: fitted.
-        effect: that is taken away.
+        without: the structure without it, where its fit begins.
+        effect: that was taken away.
         cores: that roll out at the same time.
     """
-    rest = structure.without(effect)
-    values = {path: v for path, v in structure.values.items() if not path.startswith(f"{effect.path}.")}
+    values = without.values
     stage = (f"joints.{effect.joint}.{effect.stage}.", f"{effect.stage}.")
     numbers = [free for free in bench.nominal if free.path.startswith(stage)]
     tried = [values] + [
@@ -33,10 +32,10 @@ def standing_in(bench: Workbench, structure: Hypothesis, effect: Addition, cores
         for free in numbers
         for times in FITS.strides
     ]
-    problem = problem_with(bench, rest, bench.fine * FITS.coarse, bench.training)
+    problem = problem_with(bench, without.effects, bench.fine * FITS.coarse, bench.training)
     units = tuple(problem.parameters.unit(each) for each in tried)
     [found] = residuals_at([Request(problem, units)], bench.pool, cores)
     bench.evaluations += problem.evaluations
     squares = [float(residuals @ residuals) for residuals in found]
     best = int(np.argmin(squares))
-    return [Entrant(rest, tried[best])] if best else []
+    return [Entrant(without.effects, tried[best])] if best else []

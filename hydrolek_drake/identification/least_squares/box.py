@@ -5,6 +5,9 @@ import numpy as np
 PATIENCE = 3
 """So many exchanges that leave no fewer wrong are tried before one number is exchanged at a time, which always ends."""
 
+MOST = 100
+"""So many exchanges for each number at most: by then rounding goes round in circles, which a fit must not wait for."""
+
 
 def lowest_in_box(square: np.ndarray, pull: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """The x that minimises x' square x / 2 - pull' x between two bounds.
@@ -12,6 +15,8 @@ def lowest_in_box(square: np.ndarray, pull: np.ndarray, low: np.ndarray, high: n
     By block principal pivoting (Judice and Pires, Computers and Operations Research 21 (1994) 587): numbers that are
     out of their box go to its edge, those at an edge from which the slope leads inwards are set free, all at once, and
     where that goes round in circles one by one, which ends (Murty, Linear Algebra and its Applications 7 (1974) 283).
+
+    After `MOST` exchanges the place that they have led to is returned, within the box.
 
     Args:
         square: symmetric, positive definite. # (n, n)
@@ -26,7 +31,7 @@ def lowest_in_box(square: np.ndarray, pull: np.ndarray, low: np.ndarray, high: n
     lower, upper = low / scale, high / scale
     at = np.zeros(pull.size, dtype=int)  # -1 at the lower edge, 1 at the upper one, 0 free
     fewest, patience = pull.size + 1, PATIENCE
-    while True:
+    for _ in range(MOST * pull.size):
         way = np.where(at < 0, lower, upper)
         free = at == 0
         if free.any():
@@ -37,7 +42,7 @@ def lowest_in_box(square: np.ndarray, pull: np.ndarray, low: np.ndarray, high: n
         should = np.where(((at < 0) & (slope < 0.0)) | ((at > 0) & (slope > 0.0)), 0, should)
         wrong = np.flatnonzero(should != at)
         if not wrong.size:
-            return np.clip(way * scale, low, high)
+            break
         if wrong.size < fewest:
             fewest, patience = wrong.size, PATIENCE
         elif patience:
@@ -45,3 +50,4 @@ def lowest_in_box(square: np.ndarray, pull: np.ndarray, low: np.ndarray, high: n
         else:
             wrong = wrong[-1:]
         at[wrong] = should[wrong]
+    return np.clip(way * scale, low, high)

@@ -4,17 +4,18 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
+from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.search.standing_in import standing_in
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import Free
 
-OWN, ADDED = "joints.joint.command.delay", "joints.joint.effects.command.delay.delay_s"
+OWN = "joints.joint.command.delay"
 
 
 @pytest.fixture
-def begun(bench, recorded, fitted):
+def begun(bench, recorded):
     """(dead time of the machine, what of it is the rig's own) -> starts without the effect that holds the rest."""
 
     def make(delay: float, own: float):
@@ -23,8 +24,7 @@ def begun(bench, recorded, fitted):
         longer = next(c for c in candidates if c.id == "command.delay")
         with ThreadPoolExecutor(2) as pool:
             work = Workbench(bench, (Free(OWN, 0.01, 0.5, log=True),), experiments, pool)
-            structure = fitted(work, (longer,), {OWN: own, ADDED: delay - own}, rounds=0)
-            return standing_in(work, structure, longer, 2)
+            return standing_in(work, Entrant((), {OWN: own}), longer, 2)
 
     return make
 
