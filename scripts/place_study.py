@@ -17,12 +17,12 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.files import read_kept, write_whole
 from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.teleop.clicks import Clicks, Task
 from hydrolek_drake.teleop.controllers.hydraulic_arms import HydraulicArms, joint_settings
 from hydrolek_drake.teleop.link.messages import decode, encode
 from hydrolek_drake.teleop.place_plan import plan_place_by_either
 from hydrolek_drake.teleop.sequencer import Mode, TaskSequencer
 from hydrolek_drake.teleop.steps import OPENING
+from hydrolek_drake.teleop.target_selection.clicks import Clicks, Task
 from hydrolek_drake.vision.camera import camera_pose
 from hydrolek_drake.vision.edges import default_settings
 from hydrolek_drake.vision.selection import Fill

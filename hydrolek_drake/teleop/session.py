@@ -2,28 +2,27 @@
 
 import threading
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.camera_thread import CameraThread
-from hydrolek_drake.teleop.clicks import Clicks, Task
 from hydrolek_drake.teleop.hand import within_limits
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.machine_state import MachineState
-from hydrolek_drake.teleop.pictures import Pictures
 from hydrolek_drake.teleop.place_plan import plan_place_by_either
 from hydrolek_drake.teleop.plan import STEPS, plan_task
 from hydrolek_drake.teleop.release import plan_letting_go
 from hydrolek_drake.teleop.sequencer import Mode, Order
 from hydrolek_drake.teleop.stages import STAGE_FOR, STEPS_OF, Stage
 from hydrolek_drake.teleop.steps import TaskPlan
+from hydrolek_drake.teleop.target_selection.clicks import Clicks, Task
+from hydrolek_drake.teleop.target_selection.pictures import Pictures
+from hydrolek_drake.teleop.target_selection.target_selection import TargetSelection, task_named
 from hydrolek_drake.teleop.undertaking import Undertaking
-from hydrolek_drake.vision.edges import EdgeSettings, default_settings
+from hydrolek_drake.vision.edges import EdgeSettings
 from hydrolek_drake.vision.frames import FrameSource
-from hydrolek_drake.vision.selection import Fill
 
 
 class OperatorSession:
@@ -54,11 +53,10 @@ class OperatorSession:
         self._camera = CameraThread(source, arms_as_they_stand)
         self._generator = np.random.default_rng(seed)
         self._lock = threading.RLock()
-        self._stage, self._task = Stage.LIVE, Task.CUT
-        self._clicks: Clicks | None = None
-        self._settings, self._fill = default_settings(), Fill.SURFACES
+        self._stage = Stage.LIVE
         self._message, self._error = "", ""
         self._pictures = Pictures()
+        self._selection = TargetSelection(self._pictures)
         self._camera_lost = ""
         self._undertaking = Undertaking(machine, self._lock)
         self._steps: tuple[str, ...] = STEPS
@@ -97,8 +95,7 @@ class OperatorSession:
         self._not_while_moving()
         frame = self._camera.read()
         with self._lock:
-            self._clicks = Clicks(frame, self._task, self._settings)
-            self._draw()
+            self._selection.begin(frame)
             self._stage, self._message = Stage.OBJECT, ""
 
     def set_task(self, name: str) -> None:
@@ -107,16 +104,13 @@ class OperatorSession:
         Raises:
             InputError: Unknown name, or the arms are moving.
         """
-        if name not in [task.value for task in Task]:
-            raise InputError(f"task '{name[:40]}' is unknown; choose from cut, place")
+        task = task_named(name)
         self._not_while_moving()
         with self._lock:
-            self._task = Task(name)
-            self._steps = STEPS_OF[self._task]
-            if self._clicks is not None:
-                self._clicks.change_task(self._task)
-                self._stage, self._message = STAGE_FOR[self._clicks.wanted()], self._clicks.told()
-            self._draw()
+            self._steps = STEPS_OF[task]
+            self._selection.change_task(task)
+            if self._selection.clicks is not None:
+                self._ask(self._selection.clicks)
 
     def set_sliders(self, **values: float) -> None:
         """Stage 3: low_contrast, high_contrast, sensitivity between 0 and 1; the edge picture follows.
@@ -124,16 +118,8 @@ class OperatorSession:
         Raises:
             InputError: Unknown name or a value out of range; nothing changes then.
         """
-        names = {"low_contrast", "high_contrast", "sensitivity"}
-        if not set(values) <= names:
-            raise InputError(
-                f"slider '{min(set(values) - names)}' is unknown; choose from {', '.join(sorted(names))}"
-            )
         with self._lock:
-            self._settings = replace(self._settings, **values)
-            if self._clicks is not None and self._stage not in (Stage.PLANNING, Stage.MOVING):
-                self._clicks.process(self._settings)
-                self._draw()
+            self._selection.set_sliders(values, follow=self._stage not in (Stage.PLANNING, Stage.MOVING))
 
     def set_fill(self, name: str) -> None:
         """What a click on the object is filled up to: surfaces or edges.
@@ -141,10 +127,8 @@ class OperatorSession:
         Raises:
             InputError: Unknown name.
         """
-        if name not in [fill.value for fill in Fill]:
-            raise InputError(f"fill '{name}' is unknown; choose from surfaces, edges")
         with self._lock:
-            self._fill = Fill(name)
+            self._selection.set_fill(name)
 
     def click(self, u: float, v: float) -> None:
         """Stages 4 and 5: the object, then the grasp, then the cut or the place.
@@ -153,13 +137,12 @@ class OperatorSession:
             InputError: What is wrong with the click; the stage stays, the arms stand still.
         """
         with self._lock:
-            if self._clicks is None:
-                raise InputError("take a snapshot before you click")
-            if self._stage in (Stage.PLANNING, Stage.MOVING):
+            clicks = self._selection.clicks
+            if clicks is not None and self._stage in (Stage.PLANNING, Stage.MOVING):
                 raise InputError("no click is needed now; confirm, or go back")
-            self._clicks.click(u, v, self._fill)
-            self._stage, self._message = STAGE_FOR[self._clicks.wanted()], self._clicks.told()
-            self._draw()
+            self._selection.click(u, v)
+            assert clicks is not None  # else it was refused
+            self._ask(clicks)
 
     def back(self) -> None:
         """Take the last click back; before the first, go back to the live picture.
@@ -169,11 +152,11 @@ class OperatorSession:
         """
         self._not_while_moving()
         with self._lock:
-            if self._clicks is not None and self._clicks.back():
-                self._stage, self._message = STAGE_FOR[self._clicks.wanted()], self._clicks.told()
+            self._selection.back()
+            if self._selection.clicks is not None:
+                self._ask(self._selection.clicks)
             else:
-                self._clicks, self._stage, self._message = None, Stage.LIVE, ""
-            self._draw()
+                self._stage, self._message = Stage.LIVE, ""
 
     def confirm(self) -> None:
         """Stage 6: plan, and move if a plan is found.
@@ -183,9 +166,9 @@ class OperatorSession:
         """
         with self._lock:
             if self._stage is not Stage.CONFIRM:
-                last = "cut" if self._task is Task.CUT else "place"
+                last = "cut" if self._selection.task is Task.CUT else "place"
                 raise InputError(f"object, grasp and {last} must be clicked before you confirm")
-            clicks = self._clicks
+            clicks = self._selection.clicks
             assert clicks is not None  # the stage says so
             self._begin(lambda: self._plan(clicks), Stage.CONFIRM)
 
@@ -200,9 +183,9 @@ class OperatorSession:
             held = self._undertaking.held
             if held is None:
                 raise InputError("nothing is held; a task must have been started before")
-            self._clicks = None
+            self._selection.forget()
             self._begin(lambda: plan_letting_go(*held, self._posture(), self._generator), Stage.LIVE)
-            self._draw()
+            self._selection.draw()
 
     def halt(self) -> None:
         """Stop the arms and keep a task that is planned from starting; waits for no picture, click or plan."""
@@ -216,7 +199,7 @@ class OperatorSession:
         with self._lock:  # a task that was just starting has started now: it is stopped below
             if self._stage is Stage.PLANNING and order is not Order.RESUME:
                 self._undertaking.withdraw()
-                self._stage = Stage.LIVE if self._clicks is None else Stage.CONFIRM
+                self._stage = Stage.LIVE if self._selection.clicks is None else Stage.CONFIRM
                 self._message = "Stopped before the arms moved."
         self._machine.order(order)
 
@@ -254,20 +237,15 @@ class OperatorSession:
         machine = self._machine.state()
         with self._lock:
             self._after_moving(machine)
-            moving = self._stage is Stage.MOVING
+            moving, clicks = self._stage is Stage.MOVING, self._selection.clicks
             done, left = self._undertaking.progress(machine) if moving else (0.0, None)
             return {
                 "stage": self._stage.name.lower(),
                 "instruction": self._stage.value,
                 "message": self._message,
-                "unsure": self._stage is Stage.GRASP and self._clicks is not None and self._clicks.unsure(),
+                "unsure": self._stage is Stage.GRASP and clicks is not None and clicks.unsure(),
                 "error": self._error or machine.reason,
-                "sliders": {
-                    name: getattr(self._settings, name)
-                    for name in ("low_contrast", "high_contrast", "sensitivity")
-                },
-                "fill": self._fill.value,
-                "task": self._task.value,
+                **self._selection.shown(),
                 "version": self._pictures.version,
                 "steps": list(self._steps),
                 "can_release": self._undertaking.held is not None
@@ -283,16 +261,13 @@ class OperatorSession:
         """`colour` or `edges` as JPEG, empty where there is none yet."""
         with self._lock:
             if name == "colour":
-                clicking = self._clicks is not None and self._stage is not Stage.MOVING
+                clicking = self._selection.clicks is not None and self._stage is not Stage.MOVING
                 name = "colour" if clicking else "live"
             return self._pictures.jpeg(name)
 
-    def _draw(self) -> None:
-        if self._clicks is None:
-            self._pictures.drop("edges")
-            return
-        for name, picture in self._clicks.pictures().items():
-            self._pictures.show(name, picture)
+    def _ask(self, clicks: Clicks) -> None:
+        """Go to the stage of the click that is wanted next."""
+        self._stage, self._message = STAGE_FOR[clicks.wanted()], clicks.told()
 
     def _begin(self, make: Callable[[], TaskPlan], otherwise: Stage) -> None:
         """Undertake what is planned so; the stage if there is no plan."""
@@ -306,7 +281,8 @@ class OperatorSession:
             if isinstance(reason, InputError):
                 self._stage, self._error, self._message = otherwise, str(reason), ""
             else:
-                self._stage, self._clicks = Stage.LIVE, None
+                self._stage = Stage.LIVE
+                self._selection.forget()
                 self._error = f"the motion could not be planned: {reason}"
 
         self._stage, self._error = Stage.PLANNING, ""
@@ -334,8 +310,9 @@ class OperatorSession:
             return
         word = "Done" if ended.mode is Mode.DONE else "Aborted"
         self._message = f"{word} after {self._undertaking.seconds():.1f} s."
-        self._clicks, self._stage = None, Stage.LIVE
-        self._draw()
+        self._stage = Stage.LIVE
+        self._selection.forget()
+        self._selection.draw()
 
     def _not_while_moving(self) -> None:
         with self._lock:
@@ -344,4 +321,4 @@ class OperatorSession:
 
     def settings(self) -> EdgeSettings:
         """The sliders as they stand."""
-        return self._settings
+        return self._selection.settings

@@ -2,9 +2,9 @@
 
 from enum import Enum
 
-from hydrolek_drake.teleop.clicks import Task, Wanted
 from hydrolek_drake.teleop.place_plan import PLACE_STEPS
 from hydrolek_drake.teleop.plan import STEPS
+from hydrolek_drake.teleop.target_selection.clicks import Task, Wanted
 
 
 class Stage(Enum):

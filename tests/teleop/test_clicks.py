@@ -5,7 +5,7 @@ import pytest
 from casting import cast_crossing
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.teleop.clicks import Clicks, Task, Wanted
+from hydrolek_drake.teleop.target_selection.clicks import Clicks, Task, Wanted
 from hydrolek_drake.vision.camera import recorded_camera
 from hydrolek_drake.vision.edges import default_settings
 from hydrolek_drake.vision.frames import Frame

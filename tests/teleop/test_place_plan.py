@@ -5,9 +5,9 @@ import pytest
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.frames import in_frame
-from hydrolek_drake.teleop.clicks import Clicks, Task
 from hydrolek_drake.teleop.place_plan import PLACE_STEPS, plan_place, plan_place_by_either
 from hydrolek_drake.teleop.release import LET_GO_STEPS, pipe_after, plan_letting_go
+from hydrolek_drake.teleop.target_selection.clicks import Clicks, Task
 from hydrolek_drake.vision.camera import camera_pose
 from hydrolek_drake.vision.edges import default_settings
 from hydrolek_drake.vision.selection import Fill

@@ -1,0 +1,1 @@
+"""What the operator points at in a snapshot, and the pictures in which it is shown."""
