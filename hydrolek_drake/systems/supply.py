@@ -5,7 +5,8 @@ from numba import njit
 from pydrake.systems.framework import BasicVector, Context, ContinuousState, DiscreteValues, LeafSystem
 
 from hydrolek_drake.physics.probes import SUPPLY
-from hydrolek_drake.physics.supply import PUMP, at_start, rate_of_change, relieved_by_valve, supply_pressure
+from hydrolek_drake.physics.relief_valve import relieved_by_valve
+from hydrolek_drake.physics.supply import PUMP, at_start, rate_of_change, supply_pressure
 from hydrolek_drake.systems.recorded import Recorded
 from hydrolek_drake.systems.short_law import Outside
 
@@ -49,7 +50,8 @@ class Supply(LeafSystem):
 
     A constant pressure remembers that flow, low-passed, as a continuous state. A line with a relief valve settles in
     a tenth of a millisecond: it advances in the diagram's steps by the one-step method of the rollout,
-    `supply.relieved_by_valve`, from the flow that a step begins with, and hands on its mean over the running step.
+    `relief_valve.relieved_by_valve`, from the flow that a step begins with, and hands on its mean over the running
+    step.
 
     Ports:
         in `oil_flow` (3n): its last n entries are drawn from the supply [m^3/s].

@@ -5,16 +5,13 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from hydrolek_drake.physics.supply import (
-    at_rest,
-    at_start,
-    rate_of_change,
+from hydrolek_drake.physics.relief_valve import (
     relieved,
     relieved_by_valve,
     relieved_with_lag,
     relieved_with_play,
-    supply_pressure,
 )
+from hydrolek_drake.physics.supply import at_rest, at_start, rate_of_change, supply_pressure
 
 
 def test_supply_holds_its_pressure_whatever_is_drawn(bench_joint):
