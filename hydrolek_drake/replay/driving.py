@@ -9,7 +9,8 @@ from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.recorded_inputs import Inputs
 from hydrolek_drake.rollout.rest import rest_state_at_reading
 from hydrolek_drake.rollout.rollout import Signals, roll_out
-from hydrolek_drake.rollout.together.together import JointsTogether, moving_with
+from hydrolek_drake.rollout.together.arms import moving_with
+from hydrolek_drake.rollout.together.together import JointsTogether
 
 
 @dataclass(frozen=True)

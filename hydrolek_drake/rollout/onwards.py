@@ -19,9 +19,10 @@ from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.kernel import SIGNALS, pulled
 from hydrolek_drake.rollout.rest import rest_state
 from hydrolek_drake.rollout.rollout import PreparedJoint
+from hydrolek_drake.rollout.together.arms import moving_with
 from hydrolek_drake.rollout.together.joint_rows import PLAY, STATE, put_state, room, state_at
 from hydrolek_drake.rollout.together.kernel import integrate_together
-from hydrolek_drake.rollout.together.together import JointsTogether, RunTogether, moving_with, put_begun
+from hydrolek_drake.rollout.together.together import JointsTogether, RunTogether, put_begun
 
 
 class _Commands:

@@ -10,7 +10,8 @@ from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rigs.short_law import terms_of
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.rollout.rest import rest_state
-from hydrolek_drake.rollout.together.together import JointsTogether, moving_with
+from hydrolek_drake.rollout.together.arms import moving_with
+from hydrolek_drake.rollout.together.together import JointsTogether
 from hydrolek_drake.station.simulation import command_source, initial_context, run
 from hydrolek_drake.station.station import make_station
 from hydrolek_drake.station.step_sizes import StepSizes

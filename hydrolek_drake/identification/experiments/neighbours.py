@@ -18,7 +18,7 @@ from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.physics.serial_arm import moments_along
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.one_point import stroke_and_lever
-from hydrolek_drake.rollout.together.together import arm_links, carriers_of, payloads
+from hydrolek_drake.rollout.together.arms import arm_links, carriers_of, payloads
 
 SPACING_S = 0.01
 """Spacing of the samples of what the others do [s]."""

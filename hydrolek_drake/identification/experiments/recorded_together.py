@@ -12,7 +12,8 @@ from hydrolek_drake.rigs.driven_by import SUPPLY as SUPPLY_KEY
 from hydrolek_drake.rigs.recorded_inputs import Inputs
 from hydrolek_drake.rollout.rest import rest_state_at_reading
 from hydrolek_drake.rollout.rollout import Signals
-from hydrolek_drake.rollout.together.together import JointsTogether, RunTogether, Together, moving_with
+from hydrolek_drake.rollout.together.arms import moving_with
+from hydrolek_drake.rollout.together.together import JointsTogether, RunTogether, Together
 
 STILL = 1e-6
 """A joint that was not recorded, draws nothing and moves by less [rad] while the others do may be held: rolling it out

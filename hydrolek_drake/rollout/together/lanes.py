@@ -16,11 +16,12 @@ from hydrolek_drake.rollout.lanes.lanes import FEW, OFF, SWITCH
 from hydrolek_drake.rollout.lanes.table import filled_up, side_by_side
 from hydrolek_drake.rollout.lanes.view import LANES, NUMBERS, Kind
 from hydrolek_drake.rollout.rest import rest_state
+from hydrolek_drake.rollout.together.arms import NO_LINKS
 from hydrolek_drake.rollout.together.joint_rows import room
 from hydrolek_drake.rollout.together.kernel import TOLD
 from hydrolek_drake.rollout.together.lane_kernel import integrate_together_lanes
 from hydrolek_drake.rollout.together.lane_programs import BLOCK, NUMBERS_OF_JOINT, TERMS, programs_of
-from hydrolek_drake.rollout.together.together import NO_LINKS, RunTogether, Together, put_begun
+from hydrolek_drake.rollout.together.together import RunTogether, Together, put_begun
 
 Kinds = tuple[Kind, ...]
 """Of the joints of a machine."""

@@ -2,16 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
 from hydrolek_drake.compiled import read_only
-from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.law import LAW, law_of
 from hydrolek_drake.physics.records import as_usual
-from hydrolek_drake.physics.serial_arm import LINK_SIZE, moments_along, scratch
+from hydrolek_drake.physics.serial_arm import moments_along, scratch
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.kernel import SIGNALS
 from hydrolek_drake.rollout.rest import rest_state
@@ -22,10 +19,9 @@ from hydrolek_drake.rollout.rollout import (
     missing_number,
     why_diverged,
 )
+from hydrolek_drake.rollout.together.arms import arm_links, carriers_of, payloads
 from hydrolek_drake.rollout.together.joint_rows import DRIVE, PLAY, RATES, SPOOL, STATE, room
 from hydrolek_drake.rollout.together.kernel import TOLD, integrate_together
-
-NO_LINKS = np.zeros((0, LINK_SIZE))
 
 
 @dataclass(frozen=True)
@@ -63,7 +59,7 @@ class RunTogether:
         joints: their names.
         links: of the arms that they turn, rows of `serial_arm.link`, or none. # (joints, 36)
         records: of the joints. # (joints,)
-        carriers: see `carriers_of`. # (joints,)
+        carriers: see `arms.carriers_of`. # (joints,)
         laws: of each joint, rows of `law.LAW`.
         begun: states at rest, see `rollout.kernel.integrate`; None where there is none. # (joints, 17)
         command_times: when commands change [s]. # (m,)
@@ -256,75 +252,3 @@ class JointsTogether:
         still = np.zeros((1, len(carriers)))
         hanging = payloads(carriers, still[:, 0])
         return moments_along(self._links, positions[None, :], still, still, hanging)[0].tolist()
-
-
-def moving_with(rig: Rig, joints: Sequence[str]) -> tuple[str, ...]:
-    """Joints that move when some are driven: all of their arms, which give way on their oil; else these alone."""
-    sides = {joint.split("_")[0] for joint in joints if _of_arm(rig, joint)}
-    return tuple(j for j in rig.joints if j in joints or (_of_arm(rig, j) and j.split("_")[0] in sides))
-
-
-def arm_links(rig: Rig, joints: Sequence[str]) -> np.ndarray:
-    """Links that turn about some joints, in their order, with the rest where the rig holds it; none if no arm has them.
-
-    Args:
-        rig: the machine.
-        joints: that move, each after those that carry it.
-    """
-    if not _of_arm(rig, joints[0]):
-        return NO_LINKS
-    starts = {j: rig.value(f"joints.{j}.load.initial_position") for j in rig.joints if _of_arm(rig, j)}
-    held = {j: q for j, q in {**starts, **rig.held}.items() if j not in joints}
-    return _links_of(tuple(joints), tuple(sorted(held.items())))
-
-
-def carriers_of(rig: Rig, joints: Sequence[str], records: np.ndarray) -> np.ndarray:
-    """Records that say what hangs on the tool of each joint's arm: those of its first joint with a payload.
-
-    An arm has one tool, and all of its joints feel the same payload, as in the Diagram.
-
-    Args:
-        rig: the machine.
-        joints: of the links.
-        records: of all joints of the rig. # (rig's joints,)
-
-    Returns:
-        # (joints,)
-    """
-    loaded = records["effects"]["load_payload"]["mass_kg"] > 0.0
-    places = []
-    for joint in joints:
-        arm = [rig.joints.index(j) for j in rig.joints if j.split("_")[0] == joint.split("_")[0]]
-        places.append(next((place for place in arm if loaded[place]), rig.joints.index(joint)))
-    return np.ascontiguousarray(records[places])
-
-
-def payloads(carriers: np.ndarray, times: np.ndarray) -> np.ndarray:
-    """What hangs on the tool of each joint's arm [kg]. # (k, joints).
-
-    Args:
-        carriers: see `carriers_of`. # (joints,)
-        times: since switching on [s]. # (k,)
-    """
-    hanging = np.empty((len(times), len(carriers)))
-    _payloads(carriers, times, hanging)
-    return hanging
-
-
-@njit(cache=True)
-def _payloads(carriers: np.ndarray, times: np.ndarray, hanging: np.ndarray) -> None:
-    for k in range(len(times)):
-        for i in range(len(carriers)):
-            hanging[k, i] = hooks.payload(times[k], carriers[i])
-
-
-def _of_arm(rig: Rig, joint: str) -> bool:
-    return rig.variant(joint, "load") == "arm"
-
-
-@cache
-def _links_of(joints: tuple[str, ...], held: tuple[tuple[str, float], ...]) -> np.ndarray:
-    # Drake takes a second to load, and joints mostly move alone
-    from hydrolek_drake.kinematics.rigid_links import rigid_links
-
-    return rigid_links(joints, dict(held))
