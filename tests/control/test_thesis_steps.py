@@ -15,7 +15,7 @@ from hydrolek_drake.control.laws.pi import PiLaw
 from hydrolek_drake.control.thesis_gains import entry, voltage_limit_V
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
-import controller_forms  # the search that docs/evidence/control.md tells
+from thesis_forms import forward_path, pi  # the search that docs/evidence/control.md tells
 
 STEP = {"j1": 30.0, "j2": 30.0, "j3": -30.0, "j4": 30.0}
 
@@ -100,16 +100,14 @@ def test_pi_of_joints_1_and_4_needs_other_gains_than_table_6_4_prints(joint, gai
 def test_the_search_over_forms_runs_the_laws_of_the_catalogue():
     """The form used, many at a time, is `ForwardPathLaw` and `PiLaw` sample by sample."""
     forms = [
-        form
-        for form in controller_forms.forward_forms("j4", "b")
-        if controller_forms.USED.items() <= form.items()
+        form for form in forward_path.forward_forms("j4", "b") if forward_path.USED.items() <= form.items()
     ]
-    found = controller_forms.run_forward("j4", forms)
+    found = forward_path.run_forward("j4", forms)
     for measure, against_final in enumerate((False, True)):
         expected = _measured("pip_forward_b", "j4", 17.0, against_final=against_final)
         assert found[measure, :, 0] == pytest.approx(expected, abs=1e-6)
     assert {form["direction"] for form in forms} == {1, -1}
     k_p, k_i = map(float, entry("pi", "j3"))
-    form = {**controller_forms.USED_PI, "k_p": k_p, "k_i": k_i, "(6.8)": True, "direction": -1}
+    form = {**pi.USED_PI, "k_p": k_p, "k_i": k_i, "(6.8)": True, "direction": -1}
     expected = _measured("pi", "j3", 17.0)
-    assert controller_forms.run_pi("j3", [form])[0, :, 0] == pytest.approx(expected, abs=1e-6)
+    assert pi.run_pi("j3", [form])[0, :, 0] == pytest.approx(expected, abs=1e-6)
