@@ -1,0 +1,1 @@
+"""The Drake Diagram beside the compiled rollout (`agreement.py`)."""
