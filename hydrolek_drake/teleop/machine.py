@@ -15,6 +15,7 @@ from hydrolek_drake.teleop.controllers.arms_end import ArmsEnd
 from hydrolek_drake.teleop.controllers.plant_process import PlantProcess
 from hydrolek_drake.teleop.hand import JOYSTICK, SLIDERS, Hand
 from hydrolek_drake.teleop.link.client import SetpointClient
+from hydrolek_drake.teleop.link.reconnecting_client import ReconnectingClient
 from hydrolek_drake.teleop.link.server import silence
 from hydrolek_drake.teleop.link.signals import Signals
 from hydrolek_drake.teleop.machine_state import MachineState
@@ -76,16 +77,17 @@ class Machine:
         if self._arms is not None:
             controllers, token = ("127.0.0.1", self._arms.server.port), self._arms.token
         assert controllers is not None  # given, or the plant's, or the simple arms'
-        self._controllers, self._token, self._rate = controllers, token, realtime_rate
-        self._client: SetpointClient | None = self._connected()
-        self._again_at = 0.0
+        self._rate = realtime_rate
+        self._link = ReconnectingClient(controllers, realtime_rate=realtime_rate, token=token)
+        client = self._link.client
+        assert client is not None  # it was refused with an error otherwise
         self._sequencer = TaskSequencer()
         self._simulator = Simulator(self._sequencer)
         self._period = teleop_entries("task")["period"] / realtime_rate
         self._step_period = teleop_entries("task")["period"]
         self._lock = threading.Lock()
-        self._measured = self._client.control()
-        self._order, self._lost = Order.NONE, ""
+        self._measured = client.control()
+        self._order = Order.NONE
         self._hand, self._withdrawn = Hand(), 0
         self._last_step = ""
         self._running = True
@@ -99,8 +101,8 @@ class Machine:
             InputError: One is running, the arms have moved since it was planned, or the link is lost.
         """
         with self._lock:
-            if self._lost:
-                raise InputError(self._lost)
+            if self._link.lost:
+                raise InputError(self._link.lost)
             self._hand.let_go()
             self._withdrawn = _WITHDRAWN
             self._sequencer.start(self._simulator.get_mutable_context(), plan, self._measured)
@@ -112,8 +114,8 @@ class Machine:
             InputError: A task is to be resumed while the link is lost.
         """
         with self._lock:
-            if self._lost and order is Order.RESUME:
-                raise InputError(self._lost)
+            if self._link.lost and order is Order.RESUME:
+                raise InputError(self._link.lost)
             if order in (Order.STOP, Order.ABORT):
                 self._hand.block()
             if order is self._order:  # the same again: let the sequencer see a change
@@ -133,8 +135,8 @@ class Machine:
         """
         with self._lock:
             self._hand.check(deflection, towards)  # told whatever state the link is in
-            if self._lost:
-                raise InputError(self._lost)
+            if self._link.lost:
+                raise InputError(self._link.lost)
             context: Any = self._simulator.get_mutable_context()
             mode = self._sequencer.mode(context)
             if mode in (Mode.RUNNING, Mode.STOPPED, Mode.TIMED_OUT):
@@ -171,8 +173,8 @@ class Machine:
                 float(planned),
                 self._measured.copy(),
                 desired,
-                open_ and not self._lost,
-                self._lost,
+                open_ and not self._link.lost,
+                self._link.lost,
                 by_hand,
                 self._signals,
                 self._pipe_now(),
@@ -189,8 +191,7 @@ class Machine:
         """Close the valves and end the thread."""
         self._running = False
         self._thread.join(timeout=2.0)
-        if self._client is not None:
-            self._client.close()
+        self._link.close()
         if self._arms is not None:
             self._arms.server.close()
         if self._plant is not None:
@@ -202,7 +203,7 @@ class Machine:
             try:
                 with self._lock:
                     self._tick(self._order, waiting=self._behind())
-                if self._client is None:
+                if self._link.client is None:
                     self._seek_link()
             except Exception as error:  # nothing ends this thread: without it nobody could stop a task
                 _LOG.exception("teleop: a period of the task failed; the valves are closed")
@@ -210,17 +211,18 @@ class Machine:
                     self._lose(
                         f"a period of the task failed ({type(error).__name__}: {error}); the valves are closed"
                     )
-                self._again_at = time.monotonic() + teleop_entries("link")["again"]
+                self._link.wait()
             following += self._period
             time.sleep(max(0.0, following - time.monotonic()))
             following = max(following, time.monotonic() - 1.0)  # after a pause, do not run to catch up
 
     def _behind(self) -> bool:
         """Whether the plant has not simulated another period yet: on a slow computer the task waits for it."""
-        if self._plant is None or self._client is None:
+        client = self._link.client
+        if self._plant is None or client is None:
             return False
         try:
-            self._signals = self._client.signals()
+            self._signals = client.signals()
         except InputError as error:
             self._lose(str(error))
         if self._signals is None:
@@ -241,12 +243,13 @@ class Machine:
             self._sequencer.position_measured_input.FixValue(context, self._measured)
             self._advance(context, order)
             self._free_the_jaw(self._sequencer.step_name(context))
-        if self._client is None:
+        client = self._link.client
+        if client is None:
             return
         if not waiting or time.monotonic() - self._sent_at > _SIGN_OF_LIFE * silence(self._rate):
             self._sent_at = time.monotonic()
             try:
-                self._measured = self._exchange(self._client, context)
+                self._measured = self._exchange(client, context)
             except InputError as error:
                 self._lose(str(error))
         if self._arms is not None:
@@ -259,33 +262,22 @@ class Machine:
     def _lose(self, reason: str) -> None:
         """The link is lost: the task stops, and goes on only if the operator says so."""
         context: Any = self._simulator.get_mutable_context()
-        if self._client is not None:
-            self._client.close()
-        self._lost, self._client, self._signals = reason, None, None
+        self._link.lose(reason)
+        self._signals = None
         self._hand.block()
         self._order = Order.STOP
         for order in (Order.NONE, Order.STOP):  # the sequencer heeds a change
             self._advance(context, order)
 
-    def _connected(self) -> SetpointClient:
-        host, port = self._controllers
-        return SetpointClient(port, host, realtime_rate=self._rate, token=self._token)
-
     def _seek_link(self) -> None:
         """Try to have the link back, with closed valves."""
-        if time.monotonic() < self._again_at:
+        found = self._link.seek()  # it may wait for an answer: not under the lock
+        if found is None:
             return
-        client = None
-        try:
-            client = self._connected()
-            measured = client.control()
-        except InputError:
-            if client is not None:
-                client.close()
-            self._again_at = time.monotonic() + teleop_entries("link")["again"]
-            return
+        client, measured = found
         with self._lock:
-            self._client, self._measured, self._lost = client, measured, ""
+            self._link.regain(client)
+            self._measured = measured
 
     def _free_the_jaw(self, step: str) -> None:
         """Withdraw the set points for a moment as the jaw is to open: it may have pushed in vain all the while."""
