@@ -1,9 +1,7 @@
 """One joint's chain of stages, integrated in one compiled loop.
 
-The rates of its state come from `rates`, the equations of its stages from `physics`. The integrator is the two-stage
-Rosenbrock-W method (see `physics.solenoid.GAMMA`) with the diagonal of the Jacobian: of second order, and
-stable for stiff friction and small oil volumes, which enter through that diagonal. Steps end exactly where
-the delayed command changes, so that a fit sees the transport delay as a smooth parameter.
+The rates of its state come from `rates`, the equations of its stages from `physics`, a step from `rosenbrock`. Steps
+end exactly where the delayed command changes, so that a fit sees the transport delay as a smooth parameter.
 """
 
 import math
@@ -12,14 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import command, hooks, load, sensor, supply
+from hydrolek_drake.physics import command, hooks, load, sensor
 from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.probes import Probe, probe_at
-from hydrolek_drake.physics.solenoid import GAMMA, steps_needed
+from hydrolek_drake.physics.solenoid import steps_needed
 from hydrolek_drake.physics.usual import rare
 from hydrolek_drake.rollout.drive import Drive, acts_early, driven_on
 from hydrolek_drake.rollout.rates import (
-    Slopes,
     State,
     Turned,
     as_recorded,
@@ -29,80 +26,12 @@ from hydrolek_drake.rollout.rates import (
     rates,
     turned,
 )
+from hydrolek_drake.rollout.rosenbrock import one_step
 
 SIGNALS = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool", "supply_pressure", "force")
 
 PULLED = ("reading", "pressure_a", "pressure_b")
 NOT_PULLED = np.zeros((0, len(PULLED)))
-
-
-@njit
-def _implicit(h: float, slope: float) -> float:
-    """By how much a stiff rate is lessened in a step of `h` seconds, 1 for one that is not."""
-    return 1.0 if slope == 0.0 else 1.0 / (1.0 - GAMMA * h * slope)
-
-
-@njit
-def first_stage(s: State, k: State, slope: Slopes, h: float, joint: Any) -> State:
-    """State after a step of `h` seconds with the rates at its beginning, the stiff ones lessened."""
-    remembered, relief = supply.advanced(s.supply, s.relief, k.supply, slope.supply, h, joint)
-    return State(
-        s.p_a + h * (k.p_a * _implicit(h, slope.p_a)),
-        s.p_b + h * (k.p_b * _implicit(h, slope.p_b)),
-        s.q + h * k.q,
-        s.w + h * (k.w * _implicit(h, slope.w)),
-        remembered,
-        s.tilt + h * k.tilt,
-        s.tilt_rate + h * (k.tilt_rate * _implicit(h, slope.tilt_rate)),
-        s.lead_q + h * k.lead_q,
-        s.lead_w + h * (k.lead_w * _implicit(h, slope.lead_w)),
-        relief,
-    )
-
-
-@njit
-def second_stage(s: State, k: State, m: State, slope: Slopes, h: float, joint: Any) -> State:
-    """State after a step of `h` seconds: rates `k` at its beginning, `m` where the first stage ended."""
-    c_a, c_b, c_w = _implicit(h, slope.p_a), _implicit(h, slope.p_b), _implicit(h, slope.w)
-    c_t, c_l = _implicit(h, slope.tilt_rate), _implicit(h, slope.lead_w)
-    k_a, k_b, k_w, k_t, k_l = k.p_a * c_a, k.p_b * c_b, k.w * c_w, k.tilt_rate * c_t, k.lead_w * c_l
-    half = 0.5 * h
-    mean = 0.5 * (k.supply + m.supply)
-    remembered, relief = supply.advanced(s.supply, s.relief, mean, slope.supply, h, joint)
-    return State(
-        max(s.p_a + half * (3.0 * k_a + (m.p_a - 2.0 * k_a) * c_a), 0.0),
-        max(s.p_b + half * (3.0 * k_b + (m.p_b - 2.0 * k_b) * c_b), 0.0),
-        s.q + half * (k.q + m.q),
-        s.w + half * (3.0 * k_w + (m.w - 2.0 * k_w) * c_w),
-        remembered,
-        s.tilt + half * (k.tilt + m.tilt),
-        s.tilt_rate + half * (3.0 * k_t + (m.tilt_rate - 2.0 * k_t) * c_t),
-        s.lead_q + half * (k.lead_q + m.lead_q),
-        s.lead_w + half * (3.0 * k_l + (m.lead_w - 2.0 * k_l) * c_l),
-        relief,
-    )
-
-
-@njit(inline="always")  # as `driven_on`
-def one_step(
-    s: State,
-    x: float,
-    x_next: float,
-    voltage: float,
-    time: float,
-    h: float,
-    inertia: float,
-    probe: Probe,
-    probe_next: Probe,
-    law: np.ndarray | None,
-    near: Turned,
-    joint: Any,
-) -> State:
-    """One Rosenbrock-W step of `h` seconds; the spool goes from `x` to `x_next` meanwhile."""
-    k, slope, _, _, _ = rates(s, x, voltage, time, inertia, probe, law, near, joint)
-    middle = first_stage(s, k, slope, h, joint)
-    m, _, _, _, _ = rates(middle, x_next, voltage, time + h, inertia, probe_next, law, near, joint)
-    return second_stage(s, k, m, slope, h, joint)
 
 
 @njit
@@ -167,7 +96,7 @@ def written(
     now = felt_at(probe, law, time, s, x, joint)
     voltage = command.drive_voltage(volts + now.command, joint)
     drive = d.behind if joint.command.ramp + now.ramp > 0.0 else voltage
-    _, _, p_supply, force, drawn = rates(s, x, drive, time, inertia, probe, law, near, joint)
+    _, _, p_supply, force, drawn = rates(s, x, drive, time, inertia, probe, law, near, 0.0, None, joint)
     out[0] = sensor.reading(play, time, joint) + now.sensor
     out[1], out[2], out[3], out[4], out[5] = s.q, s.w, s.p_a, s.p_b, x
     out[6], out[7] = p_supply, force

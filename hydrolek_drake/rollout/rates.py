@@ -37,7 +37,10 @@ class State(NamedTuple):
 
 
 class Slopes(NamedTuple):
-    """Diagonal of the Jacobian where it can be stiff [1/s]."""
+    """What a step takes from its beginning: the Jacobian where it can be stiff, and a play's contact.
+
+    Its diagonal [1/s], and how oil, what the actuator turns, and the base swing against each other.
+    """
 
     p_a: float
     p_b: float
@@ -45,6 +48,11 @@ class Slopes(NamedTuple):
     tilt_rate: float
     lead_w: float
     supply: float
+    falls_a: float  # by how much an angle that the actuator turns lowers the pressure on side A [Pa/rad]
+    rises_b: float  # and raises it on side B
+    turned_by: float  # acceleration of what the actuator turns for each newton of its force [rad/s^2/N]
+    tilted_by: float  # and of the base, the other way
+    contact: float  # mean moment through a play over the step [N m]
 
 
 class Turned(NamedTuple):
@@ -120,6 +128,8 @@ def rates(
     outside: Probe,
     law: np.ndarray | None,
     near: Turned,
+    h: float,
+    contact: float | None,
     joint: Any,
 ) -> tuple[State, Slopes, float, float, float]:
     """Rates of the state, their stiff slopes, supply pressure [Pa], rod force [N] and flow drawn [m^3/s].
@@ -133,6 +143,8 @@ def rates(
         outside: inputs from outside the model.
         law: how such inputs follow from the state, or None.
         near: a place that the joint is near to or at.
+        h: a play's contact acts by its mean over so many seconds; 0 for as it is now [s].
+        contact: that mean, where it is known from the beginning of the step [N m]; None where it is not.
         joint: parameter record.
     """
     rocking = hooks.base_stiffness(joint) > 0.0
@@ -149,7 +161,7 @@ def rates(
     seen = Seen(time, s.q, s.w, stroke, v, s.p_a, s.p_b, x)
     probe, braking = felt(outside, law, lever, seen)
 
-    rate_a = rate_b = slope_a = slope_b = 0.0
+    rate_a = rate_b = slope_a = slope_b = falls_a = rises_b = 0.0
     supply_rate = slope_supply = drawn = 0.0
     p_supply = 0.0
     slope_f = 0.0
@@ -168,8 +180,10 @@ def rates(
         rate_b, stiff_b = fluid.softened(probe.capacity_b, rate_b, stiff_b)
         slope_a = -stiff_a * settle_a
         slope_b = -stiff_b * settle_b
+        falls_a = stiff_a * joint.cylinder.area_a * lever if s.p_a > 0.0 else 0.0
+        rises_b = stiff_b * joint.cylinder.area_b * lever if s.p_b > 0.0 else 0.0
         if rare(joint) and pressures_are_driven(joint):
-            rate_a = rate_b = slope_a = slope_b = 0.0
+            rate_a = rate_b = slope_a = slope_b = falls_a = rises_b = 0.0
         friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
         force = cylinder.pressure_force(s.p_a, s.p_b, joint) - friction
         supply_rate, slope_supply = supply.rate_of_change(s.supply, s.relief, drawn + probe.flow, joint)
@@ -179,21 +193,28 @@ def rates(
     resisting, slope_r = load.resisting_load(angle_near(s.q, near.position), s.w, time, joint)
     resisting -= probe.load
     slope_r -= braking
-    lead_acceleration = slope_lead = 0.0
+    lead_acceleration = slope_lead = through = 0.0
     if playing:
         side_inertia = joint.linkage.play_inertia
-        through = linkage.play_torque(s.lead_q - s.q, s.lead_w - s.w, joint)
+        if contact is None:
+            parting, yields = moment / side_inertia + resisting / inertia, 1.0 / side_inertia + 1.0 / inertia
+            through = linkage.mean_play_torque(s.lead_q - s.q, s.lead_w - s.w, parting, yields, h, joint)
+        else:
+            through = contact
         lead_acceleration = (moment - through) / side_inertia
         slope_lead = -slope_f * lever * lever / side_inertia
+        turned_by = lever / side_inertia
         acceleration = (through - resisting) / inertia
         slope_w = -slope_r / inertia
     else:
         acceleration = (moment - resisting) / inertia
         slope_w = -(slope_f * lever * lever + slope_r) / inertia
-    tilt_acceleration = slope_tilt = 0.0
+        turned_by = lever / inertia
+    tilt_acceleration = slope_tilt = tilted_by = 0.0
     if rocking:
         tilt_acceleration, slope_tilt = base.base_acceleration(s.tilt, s.tilt_rate, moment, joint)
         slope_tilt -= slope_f * lever * lever / hooks.base_inertia(joint)
+        tilted_by = lever / hooks.base_inertia(joint)
     return (
         State(
             rate_a,
@@ -207,7 +228,19 @@ def rates(
             lead_acceleration,
             0.0,
         ),
-        Slopes(slope_a, slope_b, slope_w, slope_tilt, slope_lead, slope_supply),
+        Slopes(
+            slope_a,
+            slope_b,
+            slope_w,
+            slope_tilt,
+            slope_lead,
+            slope_supply,
+            falls_a,
+            rises_b,
+            turned_by,
+            tilted_by,
+            through,
+        ),
         p_supply,
         force,
         drawn,

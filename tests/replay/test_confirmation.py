@@ -61,7 +61,7 @@ def test_a_play_is_given_the_steps_that_its_blows_need(rig, recording):
 
 
 def test_a_diagram_that_breaks_down_is_told(rig, recording):
-    wild = rig.with_values({"fluid.bulk_modulus": 1e16})
+    wild = rig.with_values({"supply.pressure": 1e16})
     [found] = confirm(wild, [recording])
     assert found.diverged is not None and found.diverged in found.sentence()
 

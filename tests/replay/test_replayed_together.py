@@ -108,7 +108,7 @@ def test_where_a_joint_without_a_command_stands_is_felt_by_those_that_carry_it()
 
 def test_a_divergence_of_one_is_told_of_all_that_move_with_it(two_joints, recorded_together) -> None:
     recording, _ = recorded_together(two_joints)
-    wild = replay(two_joints.with_values({"fluid.bulk_modulus": 1e16}), recording)
+    wild = replay(two_joints.with_values({"supply.pressure": 1e16}), recording)
     for joint in two_joints.joints:
         assert wild.outcomes[joint].diverged.startswith("left all bounds at ")
         assert any(joint in note and "compared up to there" in note for note in wild.notes)

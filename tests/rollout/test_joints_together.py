@@ -168,7 +168,7 @@ def test_a_number_that_cannot_be_is_an_outcome_with_a_reason(two_joints, value, 
 
 
 def test_a_divergence_is_told_with_its_time(two_joints) -> None:
-    records = two_joints.with_values({"fluid.bulk_modulus": 1e16}).records()
+    records = two_joints.with_values({"supply.pressure": 1e16}).records()
     places = records["load"]["initial_position"]
     done = JointsTogether(two_joints, MOVING).roll_out(records, TIME, _volts(2), TIME, places)
     assert done.diverged is not None

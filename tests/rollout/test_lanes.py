@@ -161,7 +161,7 @@ def test_a_lane_that_diverges_or_has_no_number_disturbs_no_other_by_a_bit():
     times, volts = _driven(4.0)
     good = _in_lanes(records, times, volts, longest_step=STEP)
     spoiled = records.copy()
-    spoiled[2]["fluid"]["bulk_modulus"] = 1e16
+    spoiled[2]["supply"]["pressure"] = 1e16
     spoiled[5]["load"]["inertia"] = np.nan
     spoiled[6]["fluid"]["density"] = 0.0
     found = _in_lanes(spoiled, times, volts, longest_step=STEP)

@@ -87,7 +87,7 @@ def test_every_lane_does_what_it_does_alone(two_joints):
 def test_a_lane_that_diverges_or_has_no_number_disturbs_no_other_by_a_bit(two_joints):
     def spoiled(i, records):
         if i == 2:
-            records["fluid"]["bulk_modulus"] = 1e16
+            records["supply"]["pressure"] = 1e16
         if i == 4:
             records[1]["cylinder"]["area_a"] = np.nan
         if i == 5:

@@ -19,7 +19,6 @@ from hydrolek_drake.rollout.kernel import (
     arrived,
     inertia_at,
     next_stretch,
-    one_step,
     out_of_bounds,
     pulled,
     written,
@@ -60,6 +59,7 @@ from hydrolek_drake.rollout.lanes.view import (
     spool_steps_of,
 )
 from hydrolek_drake.rollout.rates import State, carried_on, turned
+from hydrolek_drake.rollout.rosenbrock import one_step
 
 _L = LANES
 

@@ -13,22 +13,31 @@ from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.angle import AngleKept, angle_near
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.rollout.drive import Drive, driven_on
-from hydrolek_drake.rollout.kernel import first_stage, inertia_at, second_stage
+from hydrolek_drake.rollout.kernel import inertia_at
 from hydrolek_drake.rollout.rates import State, Turned, carried_on, rates
+from hydrolek_drake.rollout.rosenbrock import (
+    changed,
+    first_stage,
+    implicit,
+    pushed,
+    second_stage,
+    through_oil,
+)
 from hydrolek_drake.rollout.together.joint_rows import (
     COMMAND,
     COSINE,
+    DRAG,
     DRAWN,
     INERTIA,
     LATER,
     MIDDLE,
     MOMENT,
-    OF_SUPPLY,
+    OIL,
     PLAY,
+    PUSH,
     RATES,
     ROD,
     SINE,
-    SLOPES,
     SPOOL,
     STATE,
     TOTAL,
@@ -37,6 +46,7 @@ from hydrolek_drake.rollout.together.joint_rows import (
     near_at,
     put_drive,
     put_near,
+    put_slopes,
     put_state,
     slopes_at,
     state_at,
@@ -86,11 +96,12 @@ def begins(
     )
     r[i, SPOOL], r[i, VOLTS], r[i, INERTIA] = d.x, drive, inertia
     near = near_at(r, i)
-    k, slope, _, _, drawn = rates(s, d.x, drive, time, inertia, outside, law, near, joint)
+    k, slope, _, _, drawn = rates(s, d.x, drive, time, inertia, outside, law, near, h, None, joint)
     put_state(r, i, RATES, k)
-    f = SLOPES
-    r[i, f], r[i, f + 1], r[i, f + 2], r[i, f + 3] = slope.p_a, slope.p_b, slope.w, slope.tilt_rate
-    r[i, f + 4], r[i, f + 5] = slope.lead_w, slope.supply
+    put_slopes(r, i, slope)
+    drag, share = through_oil(slope, h, inertia, joint)
+    r[i, DRAG], r[i, OIL] = drag - slope.w * inertia, share
+    r[i, PUSH] = pushed(k, slope, h, joint)
     _tell(r, i, s, k.w, inertia, drawn, near, time, joint)
 
 
@@ -124,8 +135,10 @@ def halfway(r: np.ndarray, i: int, h: float, joint: Any) -> None:
     """
     s, k = state_at(r, i, STATE), state_at(r, i, RATES)
     rate, _ = supply.rate_of_change(s.supply, s.relief, r[i, TOTAL], joint)
-    r[i, RATES + OF_SUPPLY] = rate
-    put_state(r, i, MIDDLE, first_stage(s, _with_supply(k, rate), slopes_at(r, i), h, joint))
+    slope = slopes_at(r, i)
+    k = implicit(_with_supply(k, rate), slope, h, joint)
+    put_state(r, i, RATES, k)
+    put_state(r, i, MIDDLE, first_stage(s, k, slope, h, joint))
 
 
 @njit
@@ -136,7 +149,7 @@ def _with_supply(k: State, rate: float) -> State:
 
 @njit
 def goes_on(
-    r: np.ndarray, i: int, x: float, time: float, outside: Probe, law: np.ndarray | None, joint: Any
+    r: np.ndarray, i: int, x: float, time: float, h: float, outside: Probe, law: np.ndarray | None, joint: Any
 ) -> None:
     """Take the rates where the first stage ended.
 
@@ -145,14 +158,17 @@ def goes_on(
         i: which of them.
         x: the spool there [m].
         time: there, since switching on [s].
+        h: step [s].
         outside: what the joint feels of the others' laws.
         law: of the joint, or None.
         joint: parameter record.
     """
     s, near, inertia = state_at(r, i, MIDDLE), near_at(r, i), r[i, INERTIA]
-    k, _, _, _, drawn = rates(s, x, r[i, VOLTS], time, inertia, outside, law, near, joint)
-    put_state(r, i, LATER, k)
-    _tell(r, i, s, k.w, inertia, drawn, near, time, joint)
+    slope, before = slopes_at(r, i), state_at(r, i, RATES)
+    m, _, _, _, drawn = rates(s, x, r[i, VOLTS], time, inertia, outside, law, near, h, slope.contact, joint)
+    put_state(r, i, LATER, m)
+    r[i, PUSH] = pushed(changed(m, before), slope, h, joint)
+    _tell(r, i, s, m.w, inertia, drawn, near, time, joint)
 
 
 @njit

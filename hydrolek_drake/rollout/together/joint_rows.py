@@ -12,18 +12,21 @@ from hydrolek_drake.rollout.drive import Drive
 from hydrolek_drake.rollout.rates import Slopes, State, Turned
 
 STATE, RATES, MIDDLE, LATER, SLOPES, NEAR, DRIVE, SPOOL, VOLTS, COMMAND, PLAY, INERTIA, ROD, DRAG = (
-    0, 10, 20, 30, 40, 46, 52, 57, 58, 59, 60, 61, 62, 63,
+    0, 10, 20, 30, 40, 51, 57, 62, 63, 64, 65, 66, 67, 68,
 )  # fmt: skip
 """Where a joint's numbers begin in its row: `State`, its rates at the beginning of a step, the state after the first
 stage and rates there, stiff slopes at the beginning, `Turned` at the beginning, `Drive`, the spool before the
 step, the voltage that drives, the command, what the sensor's play reads, inertia with the others held, the rod's part
 of it, and the drag that enters a step through the mass matrix."""
 
-MOMENT, SINE, COSINE, DRAWN, TOTAL = range(64, 69)
+MOMENT, SINE, COSINE, DRAWN, TOTAL = range(69, 74)
 """What it tells the others where its rates were taken: the moment left for motion, sine and cosine of its angle, and
 the flow that it draws from the supply; and the flow that all of them draw."""
 
-ROW_SIZE = 69
+OIL, PUSH = 74, 75
+"""How the oil acts on the joint within a step: `rosenbrock.through_oil`'s share, and `rosenbrock.pushed` of a stage."""
+
+ROW_SIZE = 76
 
 TORQUE, BIAS, PAYLOAD, SINES, COSINES, SPEEDS = range(6)
 """Rows of what the arms' equation of motion takes and gives, a number for each joint."""
@@ -32,13 +35,15 @@ MASS, LESSENED, THERE = range(3)
 """M at the beginning of a step; M with stiff friction there, and M where the first stage ended, both factored."""
 
 OF_SUPPLY, W = State._fields.index("supply"), State._fields.index("w")
-STIFF_SUPPLY, STIFF_W = Slopes._fields.index("supply"), Slopes._fields.index("w")
+STIFF_W = Slopes._fields.index("w")
+TURNED_BY, CONTACT = Slopes._fields.index("turned_by"), Slopes._fields.index("contact")
 X = 3
-"""Places of what the supply remembers and of the speed in `State` and in `Slopes`, and of the spool in `Drive`."""
+"""Places of what the supply remembers and of the speed in `State`, of the speed and two more in `Slopes`, and of the
+spool in `Drive`."""
 
 
 def room(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Room for so many joints: rows, vectors and matrices. # (n, 69), (6, n), (3, n, n)."""
+    """Room for so many joints: rows, vectors and matrices. # (n, 76), (6, n), (3, n, n)."""
     return np.zeros((n, ROW_SIZE)), np.zeros((6, n)), np.zeros((3, n, n))
 
 
@@ -97,7 +102,29 @@ def put_near(r: np.ndarray, i: int, near: Turned) -> None:
 def slopes_at(r: np.ndarray, i: int) -> Slopes:
     """Stiff slopes at the beginning of a step."""
     f = SLOPES
-    return Slopes(r[i, f], r[i, f + 1], r[i, f + 2], r[i, f + 3], r[i, f + 4], r[i, f + 5])
+    return Slopes(
+        r[i, f],
+        r[i, f + 1],
+        r[i, f + 2],
+        r[i, f + 3],
+        r[i, f + 4],
+        r[i, f + 5],
+        r[i, f + 6],
+        r[i, f + 7],
+        r[i, f + 8],
+        r[i, f + 9],
+        r[i, f + 10],
+    )
+
+
+@njit
+def put_slopes(r: np.ndarray, i: int, slope: Slopes) -> None:
+    """Write them."""
+    f = SLOPES
+    r[i, f], r[i, f + 1], r[i, f + 2], r[i, f + 3] = slope.p_a, slope.p_b, slope.w, slope.tilt_rate
+    r[i, f + 4], r[i, f + 5], r[i, f + 6] = slope.lead_w, slope.supply, slope.falls_a
+    r[i, f + 7], r[i, f + 8], r[i, f + 9] = slope.rises_b, slope.turned_by, slope.tilted_by
+    r[i, f + 10] = slope.contact
 
 
 @njit

@@ -91,7 +91,7 @@ def _step(
         outside = from_others(r, i, MIDDLE, DRIVE + X, shared, time + h, laws, first, joints)
         if recorded is not None:
             outside = driven_by(probe_at(time + h, 0.0, spacing, recorded[i]), outside)
-        goes_on(r, i, r[i, DRIVE + X], time + h, outside, own, joints[i])
+        goes_on(r, i, r[i, DRIVE + X], time + h, h, outside, own, joints[i])
     drawn_by_all(r)
     if len(links) > 0:
         put_payloads(vectors[PAYLOAD], links, carriers, time + h)

@@ -54,7 +54,7 @@ def _go_on(kind: Any, b: np.ndarray) -> None:
         r = lane_rows(b, BLOCK, lane)
         h = r[0, H]
         halfway(r, 0, h, joint)
-        goes_on(r, 0, r[0, DRIVE + X], r[0, TIME] + h, no_probe(), law, joint)
+        goes_on(r, 0, r[0, DRIVE + X], r[0, TIME] + h, h, no_probe(), law, joint)
 
 
 @njit(forceinline=True)

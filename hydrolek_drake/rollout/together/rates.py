@@ -2,7 +2,8 @@
 
 A joint's own rates are those with the other joints held; from its acceleration there follows the moment that is left
 for motion, and from all moments the accelerations of the arm. Stiff friction enters a step through the diagonal D of
-its slopes, with the whole mass matrix M: (M + GAMMA h D)^-1 M where a joint alone has 1 / (1 + GAMMA h d / I).
+its slopes, with the whole mass matrix M: (M + GAMMA h D)^-1 M where a joint alone has 1 / (1 + GAMMA h d / I); so does
+the stiffness of the oil in the chambers (`rosenbrock.through_oil`).
 """
 
 import numpy as np
@@ -18,12 +19,13 @@ from hydrolek_drake.rollout.together.joint_rows import (
     COSINES,
     DRAG,
     DRAWN,
-    INERTIA,
     LATER,
     LESSENED,
     MASS,
     MOMENT,
+    OIL,
     PAYLOAD,
+    PUSH,
     RATES,
     ROD,
     SINE,
@@ -34,6 +36,7 @@ from hydrolek_drake.rollout.together.joint_rows import (
     THERE,
     TORQUE,
     TOTAL,
+    TURNED_BY,
     W,
     state_at,
 )
@@ -132,8 +135,8 @@ def arm_begins(r: np.ndarray, torque: np.ndarray, matrices: np.ndarray, links: n
     for i in range(len(links)):
         for k in range(i + 1):
             matrices[LESSENED, i, k] = matrices[MASS, i, k]
-        r[i, DRAG] = -r[i, SLOPES + STIFF_W] * r[i, INERTIA]
-        r[i, SLOPES + STIFF_W] = 0.0
+        r[i, SLOPES + STIFF_W] = r[i, SLOPES + TURNED_BY] = 0.0
+        torque[i] += r[i, OIL] * r[i, PUSH]
         matrices[LESSENED, i, i] += GAMMA * h * r[i, DRAG]
     factored(links, matrices[LESSENED])
     solved(links, matrices[LESSENED], torque)
@@ -150,6 +153,8 @@ def arm_goes_on(
     for i in range(len(links)):
         change[i] = torque[i] - 2.0 * r[i, RATES + W]
     moments_of(links, matrices[MASS], change, torque)
+    for i in range(len(links)):
+        torque[i] += r[i, OIL] * r[i, PUSH]
     solved(links, matrices[LESSENED], torque)
     for i in range(len(links)):
         r[i, LATER + W] = torque[i] + 2.0 * r[i, RATES + W]

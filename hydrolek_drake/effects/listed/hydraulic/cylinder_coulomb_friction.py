@@ -4,8 +4,8 @@ from typing import Any
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Formula, Search
+from hydrolek_drake.physics.friction import coulomb_friction
 from hydrolek_drake.physics.parameters import Parameter
-from hydrolek_drake.physics.smooth import hyperbolic_tangent
 
 EFFECT = Effect(
     id="cylinder.coulomb_friction",
@@ -41,10 +41,6 @@ EFFECT = Effect(
 @EFFECT.hook("rod_friction")
 @njit
 def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, float]:
-    """Friction [N] and its secant slope [N s/m] (see valve_spool_stiction) at a rod velocity [m/s]."""
-    coulomb = joint.effects.cylinder_coulomb_friction.coulomb_N
-    if coulomb == 0.0:
-        return 0.0, 0.0
-    smooth = joint.cylinder.friction_velocity
-    share = hyperbolic_tangent(velocity / smooth)
-    return coulomb * share, coulomb * share / velocity if abs(share) > 1e-3 else coulomb / smooth
+    """Friction [N] and its slope [N s/m] at a rod velocity [m/s]."""
+    level = joint.effects.cylinder_coulomb_friction.coulomb_N
+    return coulomb_friction(velocity, level, joint.cylinder.friction_velocity)

@@ -4,8 +4,8 @@ from typing import Any
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Formula, Search
+from hydrolek_drake.physics.friction import coulomb_friction
 from hydrolek_drake.physics.parameters import Parameter
-from hydrolek_drake.physics.smooth import hyperbolic_tangent
 
 EFFECT = Effect(
     id="load.coulomb_friction",
@@ -37,10 +37,7 @@ EFFECT = Effect(
 @EFFECT.hook("load_friction")
 @njit
 def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
-    """Friction [N] and its secant slope [N s/m] (see valve_spool_stiction)."""
-    force = joint.effects.load_coulomb_friction.force_N
-    if force == 0.0:
-        return 0.0, 0.0
-    smooth = joint.load.friction_velocity
-    share = hyperbolic_tangent(velocity / smooth)
-    return force * share, force * share / velocity if abs(share) > 1e-3 else force / smooth
+    """Friction [N] and its slope [N s/m]."""
+    return coulomb_friction(
+        velocity, joint.effects.load_coulomb_friction.force_N, joint.load.friction_velocity
+    )
