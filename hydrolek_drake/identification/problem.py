@@ -56,6 +56,7 @@ class Problem:
 
     Attributes:
         batch: so many places are best asked for at once.
+        scales: differences by which slopes may be told, the widest first [ranges].
     """
 
     batch = LANES
@@ -68,6 +69,7 @@ class Problem:
         pool: Executor | None = None,
         prior: np.ndarray | None = None,
         pull_time: float | None = None,
+        wide: Sequence[float] = (),
     ) -> None:
         """Prepare.
 
@@ -81,6 +83,8 @@ class Problem:
                 infinite for those of which nothing is known; None for none of them. # (n,)
             pull_time: with which rollouts are pulled to what was measured [s], so that errors do not pile up:
                 residuals then are prediction errors over that time; None for free rollouts.
+            wide: differences by which slopes lead a fit before those of `DIFFERENCE` do, the widest first [ranges];
+                none where residuals change smoothly.
         """
         self.parameters = parameters
         self.experiments = tuple(experiments)
@@ -90,6 +94,7 @@ class Problem:
         self._prior_mean = parameters.unit()
         self._prior_weight = np.zeros(len(parameters)) if prior is None else 1.0 / prior
         self.pull_time = pull_time
+        self.scales = (*wide, DIFFERENCE)
         self._anchor: list[tuple[tuple[bytes, ...], np.ndarray]] | None = None
         self._longer_does = True
         self.evaluations = 0
@@ -282,9 +287,14 @@ class Problem:
         change = self.residuals(unit + steps) - at
         return bool(np.linalg.norm(slopes @ steps - change) <= SAME * np.linalg.norm(change))
 
-    def differences(self, unit: np.ndarray) -> np.ndarray:
-        """Differences of the Jacobian: forward, and backward near the upper end. # (n,)."""
-        sizes = np.clip(self._to_the_next_step(unit), DIFFERENCE, 0.5)
+    def differences(self, unit: np.ndarray, scale: float = DIFFERENCE) -> np.ndarray:
+        """Differences of the Jacobian: forward, and backward near the upper end. # (n,).
+
+        Args:
+            unit: place in the unit cube. # (n,)
+            scale: of them [ranges].
+        """
+        sizes = np.clip(self._to_the_next_step(unit), scale, 0.5)
         return np.where(unit + sizes <= 1.0, sizes, -sizes)
 
     def _to_the_next_step(self, unit: np.ndarray) -> np.ndarray:

@@ -157,14 +157,34 @@ def advanced(
     if joint.solenoid.variant == NO_SPOOL:
         return 0.0, 0.0
     dt = h / steps
-    if steps == STEPS_WHERE_STICKING:  # written out: within a loop over lanes no other may stand
-        x, v = _step(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
-        x, v = _step(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
-        x, v = _step(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
-        return _step(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
+    if steps == 2:  # written out, as below: within a loop over lanes no other may stand
+        return _two_steps(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
+    if steps in (4, 8):
+        x, v = _two_steps(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
+        x, v = _two_steps(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
+        if steps == 8:
+            x, v = _two_steps(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
+            x, v = _two_steps(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
+        return x, v
     for _ in range(steps):
         x, v = _step(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
     return x, v
+
+
+@njit
+def _two_steps(
+    x: float,
+    v: float,
+    drive_a: float,
+    drive_b: float,
+    dt: float,
+    joint: Any,
+    closing_a: float,
+    closing_b: float,
+) -> tuple[float, float]:
+    """Two of them."""
+    x, v = _step(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
+    return _step(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)
 
 
 @njit

@@ -13,6 +13,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.laws.additions import LawTerm, WithTerms
 from hydrolek_drake.diagnosis.lost_commands.windows import LostProblem, LostWindows, WithWindows
 from hydrolek_drake.diagnosis.progress import Progress
+from hydrolek_drake.diagnosis.settings import FITS
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.identification.experiments.experiment import Experiment
@@ -197,6 +198,7 @@ class Workbench:
             pool=self.pool,
             prior=prior,
             pull_time=pull_time,
+            wide=FITS.wide if any(c.sudden for c in effects) else (),
             **known,
         )
 

@@ -91,9 +91,11 @@ def after(place: Place, trials: Sequence[Trial], ending: Ending) -> Place:
 
 
 def _with_better_slopes(place: Place) -> Place | None:
-    """A place whose slopes are to be computed again, or with the problem's own step; None where they are."""
+    """A place whose slopes are to be computed again, over less, or with the problem's own step; None where they are."""
     if not place.fresh:
         return replace(place, slopes=None)
+    if place.scale + 1 < len(place.problem.scales):
+        return replace(place, slopes=None, scale=place.scale + 1, damping=DAMPED)
     return None if place.exact else replace(place, slopes=None, exact=True)
 
 

@@ -1,6 +1,9 @@
 """Many bounded least-squares fits in lockstep: what all of them want to be rolled out goes into tables of lanes.
 
-Several dampings of each step are tried at once, which costs little in lanes. Direction (`normal_equations`), acceptance
+Several dampings of each step are tried at once, which costs little in lanes. Residuals that change by leaps, as those
+of a play whose sides meet a step sooner or later, have slopes over a wide difference that lead down, and none over a
+narrow one: fits go on from the first to the second (implicit filtering; Kelley, Implicit Filtering, SIAM 2011).
+Direction (`normal_equations`), acceptance
 and ending (`acceptance`) are apart, as in Optimistix (Rader, Lyons, Kidger, arXiv:2402.09983).
 """
 
@@ -82,7 +85,7 @@ def with_slopes(places: Sequence[Place], pool: Executor, cores: int, leading: fl
     for place, columns in zip(places, wanted, strict=True):
         requests.append(Request(place.problem, (place.unit,) if place.residuals is None else ()))
         longer = place.problem.with_step(1.0 if place.exact else leading)
-        steps = longer.differences(place.unit)
+        steps = longer.differences(place.unit, place.problem.scales[place.scale])
         moved = [place.unit + steps * (np.arange(place.unit.size) == i) for i in columns]
         requests.append(Request(longer, (place.unit, *moved) if moved else ()))
     answers = residuals_at(requests, pool, cores)
@@ -93,7 +96,8 @@ def with_slopes(places: Sequence[Place], pool: Executor, cores: int, leading: fl
             place = replace(place, residuals=own_there[0])
         if columns.size:
             assert place.residuals is not None
-            steps = requests[2 * number + 1].problem.differences(place.unit)
+            longer, scale = requests[2 * number + 1].problem, place.problem.scales[place.scale]
+            steps = longer.differences(place.unit, scale)
             slopes = (
                 np.zeros((place.residuals.size, place.unit.size))
                 if place.slopes is None

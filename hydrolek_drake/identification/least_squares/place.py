@@ -23,6 +23,7 @@ class Place:
         slopes: d residuals / d unit, of some place near; NaN in columns that nobody has asked for yet, None for none of
             them. # (values, n)
         fresh: whether the slopes are of this place.
+        scale: which of the problem's differences tell the slopes.
         exact: whether slopes are to be those with the problem's own step.
         damping: that helped last.
         ended: whether nothing is left to gain that would count.
@@ -34,6 +35,7 @@ class Place:
     residuals: np.ndarray | None = None
     slopes: np.ndarray | None = None
     fresh: bool = False
+    scale: int = 0
     exact: bool = False
     damping: float = DAMPED
     ended: bool = False
