@@ -3,10 +3,13 @@
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics.smooth import exponential, hyperbolic_tangent
 
+FURTHER = 1.001
+"""The slope is told over a thousandth of the velocity, over which a friction's curve is straight."""
+
 
 @njit
 def coulomb_friction(velocity: float, level: float, smooth: float) -> tuple[float, float]:
-    """Friction and its slope over velocity: level tanh(v / smooth).
+    """Friction and its secant slope over velocity (see valve_spool_stiction): level tanh(v / smooth).
 
     Args:
         velocity: of the body [m/s or rad/s].
@@ -16,18 +19,17 @@ def coulomb_friction(velocity: float, level: float, smooth: float) -> tuple[floa
     if level == 0.0:
         return 0.0, 0.0
     share = hyperbolic_tangent(velocity / smooth)
-    return level * share, level * (1.0 - share * share) / smooth
+    return level * share, level * share / velocity if abs(share) > 1e-3 else level / smooth
 
 
 @njit
 def stribeck(
     velocity: float, coulomb: float, at_rest: float, fading: float, smooth: float
 ) -> tuple[float, float]:
-    """Friction and its slope over velocity, none where it falls.
+    """Friction and its secant slope over velocity (see valve_spool_stiction).
 
     (coulomb + at_rest e^(-(v / fading)^2)) tanh(v / smooth); Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30
-    (1994) 1083. With the secant in place of the slope a step lets go too late of a body that breaks away; where
-    friction falls the body runs away, which a step follows explicitly.
+    (1994) 1083.
 
     Args:
         velocity: of the body [m/s or rad/s].
@@ -41,5 +43,20 @@ def stribeck(
     share = hyperbolic_tangent(velocity / smooth)
     ratio = velocity / fading
     level = coulomb + at_rest * exponential(-ratio * ratio)
-    falling = 2.0 * (level - coulomb) * ratio / fading * share
-    return level * share, max(level * (1.0 - share * share) / smooth - falling, 0.0)
+    return level * share, level * share / velocity if abs(share) > 1e-3 else level / smooth
+
+
+@njit
+def slope_of_growth(friction: float, secant: float, further: float, velocity: float) -> float:
+    """What the slope of dry friction is beyond its secant for a body that speeds up; it does not fall below zero.
+
+    The secant holds a body that comes to rest, and lets go too late of one that breaks away: there friction changes no
+    more with speed, or falls, and a step follows the body explicitly. A joint that sticks and slips errs half as much.
+
+    Args:
+        friction: at a velocity.
+        secant: its slope there.
+        further: friction at the velocity `FURTHER` times as large.
+        velocity: not zero.
+    """
+    return max((further - friction) / ((FURTHER - 1.0) * velocity), 0.0) - secant

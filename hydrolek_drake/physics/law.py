@@ -140,34 +140,39 @@ def _other_factor(law: Any, seen: Seen) -> float:
     return 1.0 if shape == 0.0 else relative_pressure if shape <= 3.0 else relative_opening
 
 
+Slopes = tuple[float, float]
+"""Secant and slope of a moment over the joint's speed [N m s/rad]."""
+
+
 @njit
-def _speed_factor(law: Any, seen: Seen) -> tuple[float, float]:
-    """A factor of `SPEEDS`, and for one that changes its sign with the speed v also the factor over v, else 0."""
+def _speed_factor(law: Any, seen: Seen) -> tuple[float, float, float]:
+    """A factor of `SPEEDS`; for one that changes its sign with the speed v also the factor over v and its slope."""
     shape = law.speed_shape
     if shape == 0.0:
-        return 1.0, 0.0
+        return 1.0, 0.0, 0.0
     v = seen.v if law.at_rod > 0.0 else seen.w
     if shape == 1.0:
         sign = hyperbolic_tangent(v / law.slow)
-        return sign, sign / v if abs(v) > 1e-6 * law.slow else 1.0 / law.slow
+        secant = sign / v if abs(v) > 1e-6 * law.slow else 1.0 / law.slow
+        return sign, secant, (1.0 - sign * sign) / law.slow
     relative = v / law.speed
     if shape == 2.0:
-        return relative, 1.0 / law.speed
+        return relative, 1.0 / law.speed, 1.0 / law.speed
     if shape == 3.0:
-        return abs(relative), 0.0
-    return relative * abs(relative), abs(relative) / law.speed
+        return abs(relative), 0.0, 0.0
+    return relative * abs(relative), abs(relative) / law.speed, 2.0 * abs(relative) / law.speed
 
 
 @njit
-def _value_and_slope(law: Any, seen: Seen) -> tuple[float, float]:
-    """A term's value, and its secant slope over the speed where it changes its sign with it, else 0."""
+def _value_and_slopes(law: Any, seen: Seen) -> tuple[float, float, float]:
+    """A term's value, and its secant and slope over the speed where it changes its sign with it, else 0."""
     size = law.sine
     if law.frequency > 0.0:
         sine, cosine = sine_and_cosine_of_turns(law.frequency * seen.time)
         size = law.sine * sine + law.cosine * cosine
     size *= _time_factor(law, seen) * _place_factor(law, seen) * _other_factor(law, seen)
-    factor, secant = _speed_factor(law, seen)
-    return size * factor, size * secant
+    factor, secant, slope = _speed_factor(law, seen)
+    return size * factor, size * secant, size * slope
 
 
 @njit
@@ -178,43 +183,43 @@ def law_value(law: Any, seen: Seen) -> float:
         law: a record of `LAW`.
         seen: what it depends on.
     """
-    return _value_and_slope(law, seen)[0]
+    return _value_and_slopes(law, seen)[0]
 
 
 @njit
-def _with_term(law: Any, probe: Probe, slope: float, lever: float, seen: Seen) -> tuple[Probe, float]:
-    """Probes and slope of `felt` with those of one more term."""
-    value, secant = _value_and_slope(law, seen)
+def _with_term(law: Any, probe: Probe, slopes: Slopes, lever: float, seen: Seen) -> tuple[Probe, Slopes]:
+    """Probes and slopes of `felt` with those of one more term."""
+    value, secant, slope = _value_and_slopes(law, seen)
     arm = lever if law.at_rod > 0.0 else 1.0
-    brakes = law.probe == CYLINDER or law.probe == LOAD
-    return added(probe, law.probe, value), slope + (secant * arm * arm if brakes else 0.0)
+    squared = arm * arm if law.probe == CYLINDER or law.probe == LOAD else 0.0
+    return added(probe, law.probe, value), (slopes[0] + secant * squared, slopes[1] + slope * squared)
 
 
-def _with_terms(laws: Any, probe: Any, slope: Any, lever: Any, seen: Any) -> Any:
-    """Probes and slope with those of all terms; compiled code takes one of the forms below."""
+def _with_terms(laws: Any, probe: Any, slopes: Any, lever: Any, seen: Any) -> Any:
+    """Probes and slopes with those of all terms; compiled code takes one of the forms below."""
     for row in range(len(laws)):
-        probe, slope = _with_term(laws[row], probe, slope, lever, seen)
-    return probe, slope
+        probe, slopes = _with_term(laws[row], probe, slopes, lever, seen)
+    return probe, slopes
 
 
-def _without_terms(laws: Any, probe: Any, slope: Any, lever: Any, seen: Any) -> Any:
-    return probe, slope
+def _without_terms(laws: Any, probe: Any, slopes: Any, lever: Any, seen: Any) -> Any:
+    return probe, slopes
 
 
-def _unrolled(laws: Any, probe: Any, slope: Any, lever: Any, seen: Any) -> Any:
-    probe, slope = _with_term(laws[0], probe, slope, lever, seen)
-    return _with_terms(laws[1:], probe, slope, lever, seen)
+def _unrolled(laws: Any, probe: Any, slopes: Any, lever: Any, seen: Any) -> Any:
+    probe, slopes = _with_term(laws[0], probe, slopes, lever, seen)
+    return _with_terms(laws[1:], probe, slopes, lever, seen)
 
 
 @overload(_with_terms, jit_options=COMPILED)
-def _form_of_terms(laws: Any, probe: Any, slope: Any, lever: Any, seen: Any) -> Any:
+def _form_of_terms(laws: Any, probe: Any, slopes: Any, lever: Any, seen: Any) -> Any:
     if not isinstance(laws, types.BaseTuple):
         return _with_terms
     return _unrolled if len(laws) else _without_terms  # a loop would keep lanes from vector instructions
 
 
 @njit
-def felt(probe: Probe, laws: Any, lever: float, seen: Seen) -> tuple[Probe, float]:
+def felt(probe: Probe, laws: Any, lever: float, seen: Seen) -> tuple[Probe, Slopes]:
     """Probes with what the terms of a law add, if there is one, and how a stiff integrator sees its frictions.
 
     Args:
@@ -224,13 +229,13 @@ def felt(probe: Probe, laws: Any, lever: float, seen: Seen) -> tuple[Probe, floa
         seen: what the law depends on.
 
     Returns:
-        The probes, and the secant slope of the law's moment over the joint's speed where it brakes, else 0
-        [N m s/rad].
+        The probes, and the secant and the slope of the law's moment over the joint's speed where it brakes, else 0
+        [N m s/rad]; see `friction.slope_of_growth`.
     """
     if laws is None:  # known when this is compiled: the rollout without a law is a program of its own
-        return probe, 0.0
-    probe, slope = _with_terms(laws, probe, 0.0, lever, seen)
-    return probe, min(slope, 0.0)
+        return probe, (0.0, 0.0)
+    probe, slopes = _with_terms(laws, probe, (0.0, 0.0), lever, seen)
+    return probe, (min(slopes[0], 0.0), min(slopes[1], 0.0))
 
 
 @njit

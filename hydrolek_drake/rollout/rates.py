@@ -16,6 +16,7 @@ from hydrolek_drake.physics.driven import (
     pressures_are_driven,
     spool_position,
 )
+from hydrolek_drake.physics.friction import FURTHER, slope_of_growth
 from hydrolek_drake.physics.law import Seen, felt
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.physics.usual import rare
@@ -159,7 +160,7 @@ def rates(
     )
     v = lever * side_w
     seen = Seen(time, s.q, s.w, stroke, v, s.p_a, s.p_b, x)
-    probe, braking = felt(outside, law, lever, seen)
+    probe, (braking, easing) = felt(outside, law, lever, seen)
 
     rate_a = rate_b = slope_a = slope_b = falls_a = rises_b = 0.0
     supply_rate = slope_supply = drawn = 0.0
@@ -193,6 +194,14 @@ def rates(
     resisting, slope_r = load.resisting_load(angle_near(s.q, near.position), s.w, time, joint)
     resisting -= probe.load
     slope_r -= braking
+    if (moment - resisting) * side_w > 0.0:
+        slope_r += braking - easing
+        rubbing, secant = hooks.load_friction(s.w, joint)
+        further, _ = hooks.load_friction(FURTHER * s.w, joint)
+        slope_r += slope_of_growth(rubbing, secant, further, s.w) if s.w != 0.0 else 0.0
+        rubbing, secant = hooks.rod_friction(v, stroke, joint)
+        further, _ = hooks.rod_friction(FURTHER * v, stroke, joint)
+        slope_f += slope_of_growth(rubbing, secant, further, v) if v != 0.0 else 0.0
     lead_acceleration = slope_lead = through = 0.0
     if playing:
         side_inertia = joint.linkage.play_inertia

@@ -23,7 +23,7 @@ STEP = 0.5e-3  # seconds
 @pytest.mark.parametrize("joint", agreement.JOINTS)
 @pytest.mark.thorough(but=3)
 def test_every_instrumented_joint_agrees_with_its_rollout(joint):
-    [(_, largest)] = agreement.compare(load_rig(joint), 4.0, STEP, 3)
+    [(_, largest)] = differences.compare(load_rig(joint), 4.0, STEP, 3)
     assert largest <= REQUIRED_DEG
 
 
@@ -37,7 +37,7 @@ ON_THE_ARMS = [e for e in sorted(EFFECTS) if EFFECTS[e].needs.get("supply") != (
 def test_a_pump_with_its_relief_valve_and_four_edges_agree_with_their_rollout(values):
     """A line that settles in a tenth of a millisecond, in both executions' steps."""
     rig = load_rig("hopsan_link").with_values(values)
-    [(_, largest)] = agreement.compare(rig, 3.0, sizes_for(rig).step, 5)
+    [(_, largest)] = differences.compare(rig, 3.0, sizes_for(rig).step, 5)
     assert largest <= REQUIRED_DEG
 
 
@@ -45,9 +45,9 @@ def test_a_pump_with_its_relief_valve_and_four_edges_agree_with_their_rollout(va
 @pytest.mark.thorough(but=5)
 def test_every_effect_agrees_with_its_rollout(number, effect):
     joint = agreement.JOINTS[number % len(agreement.JOINTS)]
-    rig = agreement.with_effect(load_rig(joint), effect)
+    rig = cases.with_effect(load_rig(joint), effect)
     assert effect in rig.effects_on(joint.removeprefix("hydrolek_"))
-    [(_, largest)] = agreement.compare(rig, 3.0, STEP, number)
+    [(_, largest)] = differences.compare(rig, 3.0, STEP, number)
     assert largest <= REQUIRED_DEG
 
 
@@ -62,9 +62,9 @@ def test_every_effect_agrees_with_its_rollout(number, effect):
 )
 def test_a_command_that_takes_time_agrees_with_its_rollout(joint, slow):
     rig = load_rig(joint)
-    [(_, largest)] = agreement.compare(rig.with_values(slow), 3.0, STEP, 4)
+    [(_, largest)] = differences.compare(rig.with_values(slow), 3.0, STEP, 4)
     assert largest <= REQUIRED_DEG
-    times, volts = agreement.random_voltage(3.0, np.random.default_rng(4))
+    times, volts = differences.random_voltage(3.0, np.random.default_rng(4))
     at_once, late = (
         roll_out(each.records(), times, volts, times, longest_step=STEP).signals.reading
         for each in (rig, rig.with_values(slow))
@@ -74,18 +74,18 @@ def test_a_command_that_takes_time_agrees_with_its_rollout(joint, slow):
 
 def test_the_difference_shrinks_with_the_step():
     rig = load_rig("hydrolek_right_j3")
-    coarse, fine = (agreement.compare(rig, 3.0, step, 5)[0][0] for step in (1e-3, 0.25e-3))
+    coarse, fine = (differences.compare(rig, 3.0, step, 5)[0][0] for step in (1e-3, 0.25e-3))
     assert fine < 0.5 * coarse
 
 
-@pytest.mark.parametrize("plant", [agreement.on_the_arms, agreement.bodies])
+@pytest.mark.parametrize("plant", [cases.on_the_arms, cases.bodies])
 def test_cases_that_share_a_diagram_are_those_that_run_alone(plant):
     cases = [("hydrolek_left_j2", "linkage.backlash"), ("hydrolek_right_j3", "base.compliance")]
-    together = agreement.compare(plant(cases), 1.5, 1e-3, 2, 3)
+    together = differences.compare(plant(cases), 1.5, 1e-3, 2, 3)
     alone = [
         figures
         for case, seed in zip(cases, (2, 3), strict=True)
-        for figures in agreement.compare(agreement.single(case), 1.5, 1e-3, seed)
+        for figures in differences.compare(cases.single(case), 1.5, 1e-3, seed)
     ]
     assert min(rms for rms, _ in alone) > 0.0  # they did move
     np.testing.assert_allclose(together, alone, rtol=1e-3)
@@ -107,7 +107,7 @@ def test_forces_at_the_mounts_are_the_joint_moments_of_virtual_work():
 @pytest.mark.thorough
 def test_symplectic_euler_stays_near_runge_kutta():
     rig = load_rig("hydrolek_right_j2")
-    times, volts = agreement.random_voltage(4.0, np.random.default_rng(9))
+    times, volts = differences.random_voltage(4.0, np.random.default_rng(9))
     ends = []
     for integrator in ("runge_kutta2", "symplectic_euler"):
         station = make_station(

@@ -41,6 +41,6 @@ EFFECT = Effect(
 @EFFECT.hook("rod_friction")
 @njit
 def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, float]:
-    """Friction [N] and its slope [N s/m] at a rod velocity [m/s]."""
+    """Friction [N] and its secant slope [N s/m] at a rod velocity [m/s]."""
     level = joint.effects.cylinder_coulomb_friction.coulomb_N
     return coulomb_friction(velocity, level, joint.cylinder.friction_velocity)

@@ -51,7 +51,7 @@ EFFECT = Effect(
 @EFFECT.hook("rod_friction")
 @njit
 def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, float]:
-    """Friction [N] and its slope [N s/m] at a rod velocity [m/s]."""
+    """Friction [N] and its secant slope [N s/m] at a rod velocity [m/s]."""
     p = joint.effects.cylinder_stribeck_friction
     return stribeck(
         velocity, p.coulomb_N, p.stribeck_N, p.stribeck_velocity_m_per_s, joint.cylinder.friction_velocity

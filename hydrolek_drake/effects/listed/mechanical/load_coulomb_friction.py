@@ -37,7 +37,7 @@ EFFECT = Effect(
 @EFFECT.hook("load_friction")
 @njit
 def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
-    """Friction [N] and its slope [N s/m]."""
+    """Friction [N] and its secant slope [N s/m]."""
     return coulomb_friction(
         velocity, joint.effects.load_coulomb_friction.force_N, joint.load.friction_velocity
     )

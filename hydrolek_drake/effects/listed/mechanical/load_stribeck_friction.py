@@ -53,7 +53,7 @@ EFFECT = Effect(
 @EFFECT.hook("load_friction")
 @njit
 def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
-    """Friction [N or N m] and its slope."""
+    """Friction [N or N m] and its secant slope."""
     p = joint.effects.load_stribeck_friction
     return stribeck(
         velocity, p.force_N, p.stribeck_N, p.stribeck_velocity_m_per_s, joint.load.friction_velocity
