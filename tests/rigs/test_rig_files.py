@@ -72,7 +72,7 @@ def test_si_values_of_the_bench_are_the_page_s():
         "linkage.angle_offset": np.pi / 3,
         "load.lower_stop": np.radians(-10.3),
         "fluid.bulk_modulus": 1e9,
-        "integration.longest_step": 5e-4,
+        "command.delay": 0.02,
     }.items():
         assert rig.value(path) == pytest.approx(value, rel=1e-12)
 

@@ -14,13 +14,13 @@ from hydrolek_drake.station.station import make_station
 from hydrolek_drake.station.step_sizes import StepSizes, sizes_for
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
-import agreement  # the study that docs/evidence/agreement.md records, here for a few seconds a case
+from two_executions import cases, differences  # of docs/evidence/agreement.md, here for a few seconds a case
 
 REQUIRED_DEG = 0.02
 STEP = 0.5e-3  # seconds
 
 
-@pytest.mark.parametrize("joint", agreement.JOINTS)
+@pytest.mark.parametrize("joint", cases.JOINTS)
 @pytest.mark.thorough(but=3)
 def test_every_instrumented_joint_agrees_with_its_rollout(joint):
     [(_, largest)] = differences.compare(load_rig(joint), 4.0, STEP, 3)
@@ -44,7 +44,7 @@ def test_a_pump_with_its_relief_valve_and_four_edges_agree_with_their_rollout(va
 @pytest.mark.parametrize(("number", "effect"), list(enumerate(ON_THE_ARMS)))
 @pytest.mark.thorough(but=5)
 def test_every_effect_agrees_with_its_rollout(number, effect):
-    joint = agreement.JOINTS[number % len(agreement.JOINTS)]
+    joint = cases.JOINTS[number % len(cases.JOINTS)]
     rig = cases.with_effect(load_rig(joint), effect)
     assert effect in rig.effects_on(joint.removeprefix("hydrolek_"))
     [(_, largest)] = differences.compare(rig, 3.0, STEP, number)
@@ -80,11 +80,11 @@ def test_the_difference_shrinks_with_the_step():
 
 @pytest.mark.parametrize("plant", [cases.on_the_arms, cases.bodies])
 def test_cases_that_share_a_diagram_are_those_that_run_alone(plant):
-    cases = [("hydrolek_left_j2", "linkage.backlash"), ("hydrolek_right_j3", "base.compliance")]
-    together = differences.compare(plant(cases), 1.5, 1e-3, 2, 3)
+    chosen = [("hydrolek_left_j2", "linkage.backlash"), ("hydrolek_right_j3", "base.compliance")]
+    together = differences.compare(plant(chosen), 1.5, 1e-3, 2, 3)
     alone = [
         figures
-        for case, seed in zip(cases, (2, 3), strict=True)
+        for case, seed in zip(chosen, (2, 3), strict=True)
         for figures in differences.compare(cases.single(case), 1.5, 1e-3, seed)
     ]
     assert min(rms for rms, _ in alone) > 0.0  # they did move
