@@ -47,7 +47,10 @@ def test_what_shakes_the_load_is_seen_there_with_its_course(seen_of) -> None:
     estimates = {u.input.probe: u.estimated() for u in seen.unknowns}
     most = estimates["load"]
     other = {key for key, each in estimates.items() if each.evidence > 0.1 * most.evidence}
-    assert other <= {"load", "cylinder"}  # a force at the rod is a moment at the joint, but for the lever's change
+    assert other <= {
+        "load",
+        "cylinder",
+    }  # a force at the rod is a moment at the joint, but for the lever's change
     assert max(each.evidence for each in estimates.values()) < 1.001 * most.evidence
     course = SHAKING_NM * np.sin(2.0 * np.pi * SHAKING_HZ * most.unknown.times)
     slope, _ = np.polyfit(course, most.course, 1)  # what a constant does, the machine's own numbers undo
