@@ -86,7 +86,7 @@ class Diagnosis:
     def step(self) -> float:
         """Integration step of the last fits [s]."""
         assert self.bench is not None
-        return FITS.last_step * self.bench.fine
+        return self.bench.step_for(self.best.hypothesis.effects, FITS.last_step)
 
     def fitted_rig(self) -> Rig:
         """The rig with the named effects and the law switched on and every parameter estimated anew."""
@@ -161,7 +161,7 @@ def _diagnosed(
     if law is not None:
         parameters = bench.parameters(best.effects)
         records = parameters.records(parameters.unit(law.parameters))
-        law = law.held_against(held_out, records, FITS.last_step * bench.fine)
+        law = law.held_against(held_out, records, bench.step_for(best.effects, FITS.last_step))
     places: tuple[Location, ...] = ()
     proposal: Proposal | None = None
     visible: tuple[Visible, ...] = ()

@@ -159,7 +159,7 @@ class Session:
         """Residuals of a structure on a recording, with what is known as the prior."""
         together = any(e.others is not None for e in experiments)
         kind = KnownTogether if together else KnownProblem
-        problem = self.bench.problem(effects, self.bench.fine, experiments, kind=kind)
+        problem = self.bench.problem(effects, self.bench.step_for(effects), experiments, kind=kind)
         assert isinstance(problem, KnownProblem | KnownTogether)
         problem.know(known)
         return problem

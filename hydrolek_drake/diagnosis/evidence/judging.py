@@ -58,7 +58,7 @@ def _looked_at(
     """What hypotheses leave of the held-out data as they are fitted."""
     counted = sum(experiment.counted for experiment in held_out)
     return bench.side_by_side(
-        lambda h: Judged(h, bench.residuals(h, held_out, bench.fine), counted), hypotheses
+        lambda h: Judged(h, bench.residuals(h, held_out, bench.step_for(h.effects)), counted), hypotheses
     )
 
 
@@ -134,7 +134,7 @@ def judge_structures(
         if entrants:
             refined += race(bench, entrants, (replace(last, rounds=rounds, keep=len(entrants)),), cores)
     refined = [h for h in refined if pays(h, refined) and all(c.says_something(h.values) for c in h.effects)]
-    judged = _predicted(bench, refined, held_out, last.coarse * bench.fine, settings, cores)
+    judged = _predicted(bench, refined, held_out, settings, cores)
     return with_probabilities([j for j in judged if predicts(j, judged)])
 
 
@@ -158,7 +158,6 @@ def _predicted(
     bench: Workbench,
     hypotheses: Sequence[Hypothesis],
     held_out: Sequence[Experiment],
-    step: float,
     settings: Settings,
     cores: int,
 ) -> list[Judged]:
@@ -171,7 +170,9 @@ def _predicted(
     for own in begun:
         for experiment in held_out:
             effects, unit = own.stands[recording_of(experiment)]
-            problem = problem_with(bench, effects, step, [experiment])
+            problem = problem_with(
+                bench, effects, bench.step_for(effects, settings.last.coarse), [experiment]
+            )
             places.append(Place(problem, bench.movable(effects, problem.parameters), unit, exact=True))
     told = iter(with_slopes(places, bench.pool, cores))
     judged, far = [], []
@@ -187,7 +188,7 @@ def _predicted(
         far.append(is_far and any(h is d for d in doubtful) and not own_of_recordings(h).any())
         judged.append(one)
     chosen = [i for i, is_far in enumerate(far) if is_far]
-    again = _beyond(bench, [judged[i].hypothesis for i in chosen], held_out, step, settings, cores)
+    again = _beyond(bench, [judged[i].hypothesis for i in chosen], held_out, settings, cores)
     for i, squares in zip(chosen, again, strict=True):
         judged[i] = replace(judged[i], chi_squared=squares)
     return judged
@@ -197,14 +198,13 @@ def _beyond(
     bench: Workbench,
     hypotheses: Sequence[Hypothesis],
     held_out: Sequence[Experiment],
-    step: float,
     settings: Settings,
     cores: int,
 ) -> list[float]:
     """Squares that structures fitted to both data leave beyond those that they leave of the training data alone."""
     both, again = [*bench.training, *held_out], []
     for h in hypotheses:
-        problem = problem_with(bench, h.effects, step, both)
+        problem = problem_with(bench, h.effects, bench.step_for(h.effects, settings.last.coarse), both)
         again.append(Place(problem, bench.movable(h.effects, problem.parameters), h.fit.unit))
     rung = settings.again
     fitted = descend(again, rung.rounds, bench.pool, cores, share=rung.share, stop=bench.alive)
@@ -231,13 +231,17 @@ def left_of(
         settings: of the search.
         cores: that roll out at the same time.
     """
-    step = settings.last.coarse * bench.fine
     judged = [with_stands(bench, j, held_out, settings, cores) for j in judged]
     requests = []
     for own in judged:
         for experiment in held_out:
             effects, unit = own.stands[recording_of(experiment)]
-            requests.append(Request(problem_with(bench, effects, step, [experiment]), (unit,)))
+            requests.append(
+                Request(
+                    problem_with(bench, effects, bench.step_for(effects, settings.last.coarse), [experiment]),
+                    (unit,),
+                )
+            )
     answers = iter(residuals_at(requests, bench.pool, cores))
     counted = sum(experiment.counted for experiment in held_out)
     told = tuple(
@@ -247,7 +251,7 @@ def left_of(
     told = with_differences(told, held_out)
     if not told[0].fails_ahead_alone or own_of_recordings(told[0].hypothesis).any():
         return told
-    [squares] = _beyond(bench, [told[0].hypothesis], held_out, step, settings, cores)
+    [squares] = _beyond(bench, [told[0].hypothesis], held_out, settings, cores)
     return (replace(told[0], fitted_too=math.sqrt(squares / max(counted, 1))), *told[1:])
 
 

@@ -145,20 +145,22 @@ def _separations(
     played = residuals_at(
         [
             Request(problem, (problem.parameters.unit(truth.values),))
-            for problem in (bench.problem(truth.effects, bench.fine, [e]) for e in experiments)
+            for problem in (
+                bench.problem(truth.effects, bench.step_for(truth.effects), [e]) for e in experiments
+            )
         ],
         bench.pool,
         cores,
     )
     places = []
     for experiment in experiments:
-        problem = bench.problem(rival.effects, bench.fine, [experiment])
+        problem = bench.problem(rival.effects, bench.step_for(rival.effects), [experiment])
         unit = problem.parameters.unit(rival.values)
         places.append(Place(problem, bench.movable(rival.effects, problem.parameters), unit, exact=True))
     found = []
     for place, (shown,) in zip(with_slopes(places, bench.pool, cores), played, strict=True):
         assert place.residuals is not None and place.slopes is not None
-        fit = hypothesis_of(rival.effects, place, bench.fine).fit
+        fit = hypothesis_of(rival.effects, place, bench.step_for(rival.effects)).fit
         across = Across(replace(fit, slopes=place.slopes))
         unchanged = np.zeros_like(fit.off_prior)
         found.append(float(np.linalg.norm(across(np.concatenate([place.residuals - shown, unchanged])))))

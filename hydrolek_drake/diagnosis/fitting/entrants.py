@@ -90,7 +90,7 @@ def entered(bench: Workbench, entrants: Sequence[Entrant], rung: Rung, cores: in
 
 
 def _begun(bench: Workbench, entrant: Entrant) -> Runner:
-    problem = problem_with(bench, entrant.effects, bench.fine, bench.training)
+    problem = problem_with(bench, entrant.effects, bench.step_for(entrant.effects), bench.training)
     moving = bench.movable(entrant.effects, problem.parameters)
     return Runner(
         entrant.effects, Place(problem, moving, _inside(problem.parameters.unit(entrant.values), moving))

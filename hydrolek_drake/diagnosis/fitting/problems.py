@@ -21,7 +21,7 @@ def problem_of(bench: Workbench, effects: tuple[Addition, ...], rung: Rung) -> P
         rung: says which data are followed, in what steps, and by what observer.
     """
     data = bench.training if math.isinf(rung.seconds) else [e.until(rung.seconds) for e in bench.training]
-    return problem_with(bench, effects, rung.coarse * bench.fine, data, rung.observer_s)
+    return problem_with(bench, effects, bench.step_for(effects, rung.coarse), data, rung.observer_s)
 
 
 def problem_with(

@@ -86,7 +86,7 @@ def run(
 
 def hypotheses_of(bench: Workbench, runners: Sequence[Runner], rung: Rung) -> list[Hypothesis]:
     """Fits of a rung as the rest of the diagnosis takes them."""
-    return [hypothesis_of(r.effects, r.place, rung.coarse * bench.fine) for r in runners]
+    return [hypothesis_of(r.effects, r.place, bench.step_for(r.effects, rung.coarse)) for r in runners]
 
 
 def _told_apart(runner: Runner) -> float:

@@ -46,7 +46,8 @@ class LastNumbers:
         """
         self._bench = bench
         self._begun = hypothesis
-        self._step = bench.fine if bench.together else min(hypothesis.step, FITS.last_step * bench.fine)
+        resolved = bench.step_for(hypothesis.effects)
+        self._step = bench.fine if bench.together else min(hypothesis.step, FITS.last_step * resolved)
         self.problem = self._problem(bench.training)
         self._moving = bench.movable(hypothesis.effects, self.problem.parameters)
         self._descent = self._descending()
@@ -194,7 +195,7 @@ def _errors(
     bench: Workbench, hypothesis: Hypothesis, free: Free, moments: np.ndarray, cores: int
 ) -> np.ndarray:
     """Squared residuals that each moment leaves after the best change of all else. # (moments,)."""
-    problem = bench.problem(hypothesis.effects, bench.fine)
+    problem = bench.problem(hypothesis.effects, bench.step_for(hypothesis.effects))
     across, off = Across(hypothesis.fit), hypothesis.fit.off_prior
     units = [problem.parameters.unit({**hypothesis.values, free.path: moment}) for moment in moments]
     [found] = residuals_at([Request(problem, tuple(units))], bench.pool, cores)

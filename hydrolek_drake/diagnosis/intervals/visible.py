@@ -62,7 +62,8 @@ def _visible_size(
 ) -> float:
     """That of one effect; NaN if none in its range is seen."""
     path = candidate.size_path
-    problem = bench.problem((*hypothesis.effects, candidate), FITS.coarse * bench.fine)
+    effects = (*hypothesis.effects, candidate)
+    problem = bench.problem(effects, bench.step_for(effects, FITS.coarse))
     start = promise.starts[0]
     sign = math.copysign(1.0, start[path])
     alone = {**hypothesis.values, **start, **_without_special_cases(candidate)}

@@ -49,6 +49,7 @@ class LawTerm:
     tried: ClassVar[tuple[float, ...]] = (1.0,)
     weakens: ClassVar[bool] = False
     sudden: ClassVar[bool] = False
+    step_share: ClassVar[float] = 1.0
     moments: ClassVar[tuple[Free, ...]] = ()
     searched: ClassVar[tuple[Free, ...]] = ()
     beneath: ClassVar[float] = 0.0

@@ -74,7 +74,9 @@ def law_of(
     records = parameters.records(h.fit.unit)
     without = records.copy()
     without["law"] = bench.rig.records()["law"]
-    with_law, plain = (experiment.simulate(r, bench.fine).signals.reading for r in (records, without))
+    with_law, plain = (
+        experiment.simulate(r, bench.step_for(h.effects)).signals.reading for r in (records, without)
+    )
     return FoundLaw(
         law=law,
         values=np.array([h.values[paths[i]] for i in order]),
@@ -233,7 +235,9 @@ def lost_of(
     records = parameters.records(h.fit.unit)
     first = next(e for e in bench.training if e.joint == lost.joint)
     [arrived] = arrivals(h.effects, h.values, [first])
-    with_lost, plain = (e.simulate(records, bench.fine).signals.reading for e in (arrived, first))
+    with_lost, plain = (
+        e.simulate(records, bench.step_for(h.effects)).signals.reading for e in (arrived, first)
+    )
     lasted = np.concatenate([np.diff(windows, axis=1).ravel() for windows in every.values()])
     return LostCommands(
         law=Law(LOST, (Term(("command",)),), 0.0),

@@ -137,7 +137,9 @@ def near(bench: Workbench, structure: Hypothesis, observer_s: float, cores: int)
         observer_s: time constant of the observer [s].
         cores: that roll out at the same time.
     """
-    problem = bench.problem(structure.effects, FITS.coarse * bench.fine, bench.training, observer_s)
+    problem = bench.problem(
+        structure.effects, bench.step_for(structure.effects, FITS.coarse), bench.training, observer_s
+    )
     moving = bench.movable(structure.effects, problem.parameters)
     starts = [
         problem.parameters.unit(of_additions(structure.values)),
@@ -168,7 +170,7 @@ def unknown_inputs(
         observer_s: time constant of the observer [s]; infinite for free rollouts, of which each knot takes one.
         cores: that roll out at the same time.
     """
-    step = FITS.coarse * bench.fine
+    step = bench.step_for(parent.effects, FITS.coarse)
     pulled = None if math.isinf(observer_s) else observer_s
     problem = bench.problem(parent.effects, step, bench.training, pulled)
     arrived = arrivals(parent.effects, values, bench.training)

@@ -52,6 +52,7 @@ class LostWindows:
     """In effects, as of terms of laws."""
 
     sudden: ClassVar[bool] = False
+    step_share: ClassVar[float] = 1.0
     moments: ClassVar[tuple[Free, ...]] = ()
     beneath: ClassVar[float] = 0.0
     stage: ClassVar[str] = "command"

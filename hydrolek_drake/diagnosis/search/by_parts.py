@@ -55,5 +55,12 @@ def _way(bench: Workbench, effects: tuple[Addition, ...], cores: int = 1) -> Con
         trace(f"  by parts {over_noise:.4f}")
 
     return Continuation(
-        parameters, tuple(bench.training), bench.pool, cores, bench.fine, prior, bench.alive, told
+        parameters,
+        tuple(bench.training),
+        bench.pool,
+        cores,
+        bench.step_for(effects),
+        prior,
+        bench.alive,
+        told,
     )

@@ -106,7 +106,9 @@ def opened(
         return Opening(parent, kind, (), (), (), sizes, math.inf)
     exact = Rung(math.inf, 1.0, math.inf, 0, 1)
     place = descend([_place(bench, parent, exact, parent.fit.unit)], 0, bench.pool, cores)[0]
-    free = promises_at(bench, place, parent.effects, own, FITS.coarse * bench.fine, settings, cores)
+    free = promises_at(
+        bench, place, parent.effects, own, bench.step_for(parent.effects, FITS.coarse), settings, cores
+    )
     if kind == "effects":
         found.left = free
     pulled: list[Promise] = []
@@ -170,7 +172,9 @@ def observed(
     parameters = bench.parameters(parent.effects)
     unit = np.clip(parameters.unit(of_additions(parent.values)), FITS.negligible, 1.0 - FITS.negligible)
     near = descend([_place(bench, parent, first, unit)], 2, bench.pool, cores)[0]
-    pulled = promises_at(bench, near, parent.effects, own, first.coarse * bench.fine, settings, cores)
+    pulled = promises_at(
+        bench, near, parent.effects, own, bench.step_for(parent.effects, first.coarse), settings, cores
+    )
     return pulled, _share(pulled[0].gain, near.objective, near.problem.counted)
 
 

@@ -25,6 +25,11 @@ class Addition(Protocol):
         ...
 
     @property
+    def step_share(self) -> float:
+        """Steps so many times the rig's own resolve it."""
+        ...
+
+    @property
     def beneath(self) -> float:
         """No larger than this, its size says no more than what the model's own equations simplify."""
         ...

@@ -10,6 +10,9 @@ from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.short_law import terms_of
 
 SOURCE = "fitted to recordings by hydrolek diagnose"
+RESOLVED = "what was found opens and closes contacts, which a longer step does not resolve"
+
+STEP = "integration.longest_step"
 
 
 def rig_of(rig: Rig, hypothesis: Hypothesis) -> Rig:
@@ -42,11 +45,15 @@ def enlarged_rig(rig: Rig, hypothesis: Hypothesis, law: FoundLaw | None) -> Rig:
         law: found beside it, with which its values were fitted again; None if there is none.
     """
     values = {**hypothesis.values, **(law.parameters if law is not None else {})}
+    share = min((c.step_share for c in hypothesis.effects), default=1.0)
+    sources = dict.fromkeys(values, SOURCE)
+    if share < 1.0:
+        values[STEP], sources[STEP] = share * rig.value(STEP), RESOLVED
     enlarged = rig.with_values(values)
     entries = dict(enlarged.entries)
-    for path in values:
+    for path, source in sources.items():
         full = enlarged.full_path(path)
-        entries[full] = replace(entries[full], source=SOURCE)
+        entries[full] = replace(entries[full], source=source)
     enlarged = replace(enlarged, entries=entries)
     if law is None or not law.of_the_machine:
         return enlarged

@@ -55,6 +55,11 @@ class Candidate:
         return self.effect.sudden
 
     @property
+    def step_share(self) -> float:
+        """Steps so many times the rig's own resolve it."""
+        return self.effect.step_share
+
+    @property
     def stage(self) -> str:
         """Where it acts."""
         return self.effect.stage

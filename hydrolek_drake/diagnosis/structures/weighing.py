@@ -40,18 +40,19 @@ def weighted_by(
     is told by rolling out all joints where the model is near the noise, and known to `DATA.others_unknown` elsewhere.
     """
     of_training = experiments is bench.training
-    problem = bench.problem(hypothesis.effects, bench.fine, experiments)
+    step = bench.step_for(hypothesis.effects)
+    problem = bench.problem(hypothesis.effects, step, experiments)
     records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
     if hypothesis.fit.over_noise < NOISE.far and any(e.others is not None for e in experiments):
         experiments = felt_together(rig_of(bench.rig, hypothesis), experiments)
     better = []
     arrived = arrivals(hypothesis.effects, hypothesis.values, experiments)
     for recorded, experiment in zip(experiments, arrived, strict=True):
-        coarse = experiment.simulate(records, bench.fine).signals
-        fine = experiment.simulate(records, 0.5 * bench.fine).signals
+        coarse = experiment.simulate(records, step).signals
+        fine = experiment.simulate(records, 0.5 * step).signals
         alone = None
         if experiment.others is not None and experiment.others_error is None:
-            alone = replace(experiment, others=None).simulate(records, 0.5 * bench.fine).signals
+            alone = replace(experiment, others=None).simulate(records, 0.5 * step).signals
         channels = []
         for number, channel in enumerate(experiment.channels):
             model = getattr(fine, channel.model)
@@ -68,7 +69,7 @@ def weighted_by(
                     model_error=np.nan_to_num(error),
                 )
             )
-        response = experiment.responding(records, 0.5 * bench.fine, fine)
+        response = experiment.responding(records, 0.5 * step, fine)
         better.append(replace(recorded, channels=tuple(channels), start_response=response))
     if not bench.signals_apart:
         return better

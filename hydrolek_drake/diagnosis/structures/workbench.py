@@ -155,6 +155,16 @@ class Workbench:
         """The rig's own integration step [s]."""
         return self.training[0].longest_step
 
+    def step_for(self, effects: Iterable[Addition], coarse: float = 1.0) -> float:
+        """The integration step that resolves a structure [s]; joints that move together have one step.
+
+        Args:
+            effects: of the structure.
+            coarse: so many times as long.
+        """
+        share = 1.0 if self.together else min((c.step_share for c in effects), default=1.0)
+        return share * coarse * self.fine
+
     @property
     def together(self) -> bool:
         """Whether joints move at the same time."""

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Formula, Search
+from hydrolek_drake.effects.effect import STICKS_AND_SLIPS, Effect, Formula, Search
 from hydrolek_drake.physics.friction import stribeck
 from hydrolek_drake.physics.parameters import Parameter
 
@@ -32,6 +32,7 @@ EFFECT = Effect(
         "Move the joint slowly and see whether it sticks and slips; look at seals and guide bands, a dry "
         "or scored rod, and the oil's lubricity."
     ),
+    step_share=STICKS_AND_SLIPS,
     size="stribeck_N",
     contains=("cylinder.coulomb_friction",),
     search={

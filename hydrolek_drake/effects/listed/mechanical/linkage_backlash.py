@@ -10,6 +10,10 @@ SCANNED = tuple(0.15 * 0.8**step for step in range(28))
 """Shares of the travel: the squares have a local minimum for every contact that comes a little earlier or later, and a
 fit reaches no farther than a tenth to either side (play of 0.047 rad at an arm's first joint)."""
 
+STEP_SHARE = 0.5
+"""With a play of 0.047 rad at an arm's first joint the rollout leaves 2.3 times the noise at 1 ms where the machine's
+own numbers are known, 1.02 times at 0.5 ms (40 s of random voltage)."""
+
 EFFECT = Effect(
     id="linkage.backlash",
     title="play in the linkage",
@@ -34,6 +38,7 @@ EFFECT = Effect(
         "valve.spool_stiction": "a sticking spool also delays the start from rest",
     },
     sudden=True,
+    step_share=STEP_SHARE,
     needs={"cylinder": ("cylinder", "vane", "hydraulic_motor")},
 )
 

@@ -3,7 +3,7 @@
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.effects.effect import Effect, Formula, Search
+from hydrolek_drake.effects.effect import STICKS_AND_SLIPS, Effect, Formula, Search
 from hydrolek_drake.physics.friction import stribeck
 from hydrolek_drake.physics.parameters import Parameter
 
@@ -34,6 +34,7 @@ EFFECT = Effect(
         "Move the load slowly with the drive uncoupled and see whether it sticks and slips: grease, "
         "preload and seals of the bearing."
     ),
+    step_share=STICKS_AND_SLIPS,
     size="stribeck_N",
     contains=("load.coulomb_friction",),
     search={
