@@ -75,3 +75,26 @@ def test_how_one_observers_fit_ended_does_not_stop_the_next_ones(problem) -> Non
         [begun] = descend([stuck.at(problem)], 0, pool, 2)
         [ended] = descend([stuck.at(problem)], 5, pool, 2)
     assert ended.objective < 0.5 * begun.objective
+
+
+class Leaping(Problem):
+    """Residuals that change by leaps in each parameter and are level between them."""
+
+    WIDTH = 5e-4
+    """Between leaps [ranges]."""
+
+    def runs(self, unit):
+        return super().runs(np.clip(np.round(unit / self.WIDTH) * self.WIDTH, 0.0, 1.0))
+
+
+@pytest.mark.parametrize(("wide", "arrives"), [((0.03, 0.01, 0.001), True), ((), False)])
+def test_a_fit_of_residuals_that_leap_is_led_by_wide_differences(
+    bench, recorded, problem, wide, arrives
+) -> None:
+    leaping = Leaping(problem.parameters, recorded(bench, bench), 1e-3, wide=wide)
+    with ThreadPoolExecutor(2) as pool:
+        [begun] = descend([_begun(leaping, 0.2)], 0, pool, 2)
+        [ended] = descend([_begun(leaping, 0.2)], 40, pool, 2)
+    noise = float(leaping.counted)
+    assert begun.objective > 20.0 * noise
+    assert (ended.objective < 2.0 * noise) is arrives

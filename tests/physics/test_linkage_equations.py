@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from hydrolek_drake.physics.linkage import play_torque, stroke_and_lever
+from hydrolek_drake.physics.linkage import mean_play_torque, play_torque, stroke_and_lever
 
 REVERSED = {"linkage.direction": -1.0, "linkage.angle_offset": np.radians(100.0)}
 
@@ -53,3 +53,27 @@ def test_play_carries_nothing_inside_its_gap_and_is_spring_and_damper_where_clos
     assert play_torque(-0.007, -3.0, joint) == 0.0
     assert_allclose(play_torque(0.009, 0.3, joint), 2e5 * (0.009 - gap / 2) + 400 * 0.3, rtol=1e-12)
     assert_allclose(play_torque(-0.009, -0.3, joint), -2e5 * (0.009 - gap / 2) - 400 * 0.3, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("lead", "velocity"),
+    [(0.0, 12.0), (0.0088, -9.0), (-0.0079, 6.0), (0.02, -30.0), (0.0, 0.5), (0.009, 0.0)],
+)
+def test_the_mean_of_a_play_over_a_step_counts_the_share_in_contact(bench_joint, lead, velocity):
+    """Against a numeric mean on the straight way; what presses the sides together yields to nothing here."""
+    joint, step = bench_joint({"effects.linkage.backlash.gap_rad": 0.015}), 1e-3
+    times = np.linspace(0.0, step, 200001)
+    told = [play_torque(lead + velocity * t, velocity, joint) for t in 0.5 * (times[1:] + times[:-1])]
+    assert_allclose(
+        mean_play_torque(lead, velocity, 0.0, 0.0, step, joint), np.mean(told), rtol=1e-4, atol=1e-9
+    )
+    assert mean_play_torque(lead, velocity, 0.0, 0.0, 0.0, joint) == play_torque(lead, velocity, joint)
+
+
+def test_the_mean_of_a_play_has_no_leap_where_the_sides_meet_a_step_sooner(bench_joint):
+    joint, step = bench_joint({"effects.linkage.backlash.gap_rad": 0.015}), 1e-3
+    leads = (
+        0.0075 - 0.3 * step + np.linspace(-1e-6, 1e-6, 201)
+    )  # the end of the step passes the edge of the gap
+    means = [mean_play_torque(lead, 0.3, 0.0, 0.0, step, joint) for lead in leads]
+    assert np.abs(np.diff(means)).max() < 0.02 * play_torque(0.0075 + 1e-9, 0.3, joint)

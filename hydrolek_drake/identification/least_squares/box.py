@@ -31,6 +31,7 @@ def lowest_in_box(square: np.ndarray, pull: np.ndarray, low: np.ndarray, high: n
     lower, upper = low / scale, high / scale
     at = np.zeros(pull.size, dtype=int)  # -1 at the lower edge, 1 at the upper one, 0 free
     fewest, patience = pull.size + 1, PATIENCE
+    way = np.zeros(pull.size)  # where there is no number
     for _ in range(MOST * pull.size):
         way = np.where(at < 0, lower, upper)
         free = at == 0
