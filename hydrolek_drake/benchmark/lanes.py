@@ -73,12 +73,18 @@ def measure_lanes(
         report(f"machines in lanes: {label}")
         records = varied(np.repeat(rig.records()[:1], max(COUNTS)), np.random.default_rng(1))
         step = rig.value("integration.longest_step")
+        spool_steps = round(rig.value("integration.spool_steps"))
 
-        def alone(i: int, records: np.ndarray = records, step: float = step) -> Any:
-            return roll_out(records[i : i + 1], times, volts, times, longest_step=step)
+        def alone(
+            i: int, records: np.ndarray = records, step: float = step, spool_steps: int = spool_steps
+        ) -> Any:
+            record = records[i : i + 1]
+            return roll_out(record, times, volts, times, longest_step=step, spool_steps=spool_steps)
 
-        def together(count: int, records: np.ndarray = records, step: float = step) -> Any:
-            run = Run(records[:1], times, volts, times, step)
+        def together(
+            count: int, records: np.ndarray = records, step: float = step, spool_steps: int = spool_steps
+        ) -> Any:
+            run = Run(records[:1], times, volts, times, step, spool_steps)
             return roll_out_lanes(run.of(records[:count]), at_once=True)
 
         def every(count: int, alone: Callable[[int], Any] = alone) -> None:
@@ -109,7 +115,9 @@ def measure_jacobians(
     for label, rig in _machines():
         report(f"Jacobian: {label}")
         record, step, joint = rig.records()[:1], rig.value("integration.longest_step"), rig.joints[0]
-        reading = roll_out(record, times, volts, times, longest_step=step).signals.reading
+        spool_steps = round(rig.value("integration.spool_steps"))
+        done = roll_out(record, times, volts, times, longest_step=step, spool_steps=spool_steps)
+        reading = done.signals.reading
         signals = {f"{joint}.command": volts, f"{joint}.angle": reading}
         recording = Recording("made", times, signals, Path("made.csv"))
         free = varied_parameters(rig, joint, SPREAD).free[:COLUMNS]
@@ -118,8 +126,10 @@ def measure_jacobians(
         place = parameters.unit()
         base = problem.residuals(place)
 
-        def one(_: int, record: np.ndarray = record, step: float = step) -> None:
-            roll_out(record, times, volts, times, longest_step=step)
+        def one(
+            _: int, record: np.ndarray = record, step: float = step, spool_steps: int = spool_steps
+        ) -> None:
+            roll_out(record, times, volts, times, longest_step=step, spool_steps=spool_steps)
 
         def whole(
             _: int, problem: Problem = problem, at: np.ndarray = place, base: np.ndarray = base

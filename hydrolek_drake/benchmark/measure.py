@@ -97,10 +97,13 @@ def measure(
     )
     report("one joint compiled")
     records, step = rig.records(), rig.value("integration.longest_step")
+    spool_steps = round(rig.value("integration.spool_steps"))
     command = np.ascontiguousarray(volts[:, 0])
 
     def rollout(longest_step: float = step) -> np.ndarray:
-        return roll_out(records, times, command, times, longest_step=longest_step).signals.position
+        return roll_out(
+            records, times, command, times, longest_step=longest_step, spool_steps=spool_steps
+        ).signals.position
 
     rollout()
     speeds.append(_speed(f"rollout, one joint, {step * 1e3:g} ms", times[-1], rollout, 5 * repeats))

@@ -43,7 +43,10 @@ def against_the_model(
     state = rest_state_at_reading(record, start) if _within(rig, joint, start) else None
     step = rig.value("integration.longest_step")
     recorded = recorded_inputs(rig, joint, recording)
-    outcome = roll_out(record, times, volts, times, state=state, longest_step=step, probes=recorded)
+    spool_steps = round(rig.value("integration.spool_steps"))
+    outcome = roll_out(
+        record, times, volts, times, state=state, longest_step=step, spool_steps=spool_steps, probes=recorded
+    )
     if outcome.diverged:
         return [Complaint(key, f"the model {outcome.diverged} under this command", "", wrong=False)]
     model = outcome.signals

@@ -21,7 +21,7 @@ ALLOWED_DEG = 0.02
 
 @pytest.fixture(scope="module")
 def drooping(two_joints):
-    return two_joints.with_values({DROOP: 3e10})
+    return two_joints.with_values({DROOP: 3e10, "integration.longest_step": 5e-4})
 
 
 def _off_deg(outcomes, reading: np.ndarray) -> np.ndarray:

@@ -120,6 +120,7 @@ def test_a_joint_that_moves_alone_moves_as_in_its_own_rollout(two_joints) -> Non
         TIME,
         state=start,
         longest_step=alone.value("integration.longest_step"),
+        spool_steps=round(alone.value("integration.spool_steps")),
     ).signals
     done = JointsTogether(two_joints, MOVING[:1]).roll_out(records, TIME, volts, TIME, np.array([0.2]))
     assert done.signals["reading"][:, 0] == pytest.approx(wanted.reading, abs=1e-9)
@@ -130,7 +131,8 @@ def test_a_joint_of_no_arm_moves_as_in_its_own_rollout() -> None:
     bench, volts = load_rig("joint_bench", {}), _volts(1)
     records, step = bench.records(), bench.value("integration.longest_step")
     start = np.array([bench.value("load.initial_position")])
-    wanted = roll_out(records, TIME, volts[:, 0], TIME, longest_step=step).signals
+    spool_steps = round(bench.value("integration.spool_steps"))
+    wanted = roll_out(records, TIME, volts[:, 0], TIME, longest_step=step, spool_steps=spool_steps).signals
     done = JointsTogether(bench, bench.joints).roll_out(records, TIME, volts, TIME, start)
     for name in ("reading", "pressure_a", "spool", "force"):
         assert done.signals[name][:, 0] == pytest.approx(getattr(wanted, name), rel=1e-9, abs=1e-12), name

@@ -36,6 +36,7 @@ def judge(
     from hydrolek_drake.control.comparison.conditions import Condition, conditions_data, judged_conditions
     from hydrolek_drake.control.comparison.judged import as_json, as_rows
     from hydrolek_drake.control.comparison.judging import judge_all, make_cases
+    from hydrolek_drake.control.models.rig_model import control_step
     from hydrolek_drake.files import write_out
     from hydrolek_drake.rigs import load_rig
 
@@ -43,7 +44,7 @@ def judge(
     half = Condition(load_kg=0.5 * float(conditions_data()["load"]["value"]))
     with progress("step tests of every joint") as tell:
         settings = {name: rig_setting(load_rig(f"hydrolek_{name}"), name) for name in joints}
-        step = load_rig(f"hydrolek_{joints[0]}").value("integration.longest_step")
+        step = control_step(load_rig(f"hydrolek_{joints[0]}"))
         cases = make_cases(joints, judged_conditions(), step)
         cases += make_cases(joints, [half] * machines, step, generator)
         found = {}
@@ -82,6 +83,7 @@ def tune(
     from hydrolek_drake.control.comparison.tuning import tune as search
     from hydrolek_drake.control.laws.feedforward_tuning import FeedforwardTuning, tuning
     from hydrolek_drake.control.laws.rate_map import rig_model_and_rates
+    from hydrolek_drake.control.models.rig_model import control_step
     from hydrolek_drake.files import write_out
     from hydrolek_drake.rigs import load_rig
 
@@ -89,7 +91,7 @@ def tune(
     _check_joints(joints)
     generator = np.random.default_rng(seed)
     rigs = {name: load_rig(f"hydrolek_{name}") for name in joints}
-    step = rigs[joints[0]].value("integration.longest_step")
+    step = control_step(rigs[joints[0]])
     output, half = console(), Condition(load_kg=0.5 * float(conditions_data()["load"]["value"]))
     best: list[FeedforwardTuning] = [tuning()]
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from hydrolek_drake.control.models.rig_model import (
     StepTests,
+    control_step,
     ends_left_out,
     joint_range_deg,
     one_joint,
@@ -154,7 +155,7 @@ def rig_model_and_rates(rig: Rig, joint: str) -> tuple[SdpModel, RateMap]:
     Raises:
         InputError: no such joint, no turning joint, or one that does not move.
     """
-    record, longest_step = one_joint(rig, joint), rig.value("integration.longest_step")
+    record, longest_step = one_joint(rig, joint), control_step(rig)
     tests = step_tests(record, longest_step)
     model = rig_model(rig, joint, tests)
     shapes = (rate_shape(record, -1.0, longest_step), rate_shape(record, 1.0, longest_step))

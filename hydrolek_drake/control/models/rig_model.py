@@ -66,6 +66,11 @@ def one_joint(rig: Rig, joint: str) -> np.ndarray:
     return record
 
 
+def control_step(rig: Rig) -> float:
+    """Integration step of a loop that steps the spool once with the rest, as short as the rig's spool takes [s]."""
+    return rig.value("integration.longest_step") / rig.value("integration.spool_steps")
+
+
 def run_step(record: np.ndarray, voltage_V: float, longest_step: float) -> tuple[Array, Array]:
     """Times [s] and angles [deg] of one step from rest, near the end of the range that it leads away from."""
     data = _data()
@@ -150,7 +155,7 @@ def rig_model(rig: Rig, joint: str, tests: StepTests | None = None) -> SdpModel:
     """
     record = one_joint(rig, joint)
     sample = float(thesis_data()["sample"]["value"])
-    tests = tests or step_tests(record, rig.value("integration.longest_step"))
+    tests = tests or step_tests(record, control_step(rig))
     alpha = fit_law(tests, sample)
     wanted = float(thesis_data()["inverse"]["rate"]["value"])
     speed = np.abs(tests.rate_deg_per_s)

@@ -65,6 +65,7 @@ def run(
             cores,
             share=rung.share,
             behind=rung.behind,
+            leading=max(FITS.coarse / rung.coarse, 1.0),
             stop=told,
         )
         bench.evaluations += sum(p.evaluations for p in problems.values())

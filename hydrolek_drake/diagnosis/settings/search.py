@@ -12,7 +12,7 @@ class Fits:
     """Time constants of observers [s], each five or six times the one before: what they forget makes few local
     minima, what they remember tells slow things."""
 
-    coarse: float = 2.0
+    coarse: float = 4.0
     """Steps so many times the rig's own lead fits until their end, and tell what an addition changes where they are on
     both sides of a difference."""
 
