@@ -59,12 +59,26 @@ class _Served:
             ready.set()
             self.loop.run_forever()
 
-        threading.Thread(target=serve, daemon=True).start()
+        self._thread = threading.Thread(target=serve, daemon=True)
+        self._thread.start()
         assert ready.wait(60.0)
+
+    def close(self) -> None:
+        """End what runs."""
+        asyncio.run_coroutine_threadsafe(self._end(), self.loop).result(_ANSWER_S)
+        self.session.close()
+        self.machine.close()
+        self.loop.call_soon_threadsafe(self.loop.stop)
+        self._thread.join(_ANSWER_S)
+
+    async def _end(self) -> None:
+        self._running.cancel()
+        self.console.close()
 
     async def _begin(self) -> None:
         self.machine = Machine(home_posture(), realtime_rate=10.0)
-        self.console = Console(OperatorSession(_Black, self.machine, seed=1), port=0)
+        self.session = OperatorSession(_Black, self.machine, seed=1)
+        self.console = Console(self.session, port=0)
         self._running = asyncio.ensure_future(self.console.run())
 
     def ask(self, data: bytes) -> list[str]:
@@ -131,4 +145,10 @@ def _console_seeds() -> list[Input]:
     return [Input("message.json", json.dumps(each).encode()) for each in GOOD_MESSAGES[:2]]
 
 
-TARGETS = (Target("console", _console_input, _talk_to_console, _console_seeds),)
+def _end() -> None:
+    if _console.cache_info().currsize:
+        _console().close()
+        _console.cache_clear()
+
+
+TARGETS = (Target("console", _console_input, _talk_to_console, _console_seeds, end=_end),)

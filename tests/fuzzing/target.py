@@ -34,6 +34,7 @@ class Target:
             input; anything else is a failure.
         seeds: inputs that are good as they are; each must be read without an error.
         prepare: puts further files beside the input, once.
+        end: ends the threads that it has begun, which may abort a program that leaves them behind.
     """
 
     name: str
@@ -41,6 +42,7 @@ class Target:
     call: Callable[[Path], str]
     seeds: Callable[[], list[Input]]
     prepare: Callable[[Path], None] = lambda folder: None
+    end: Callable[[], None] = lambda: None
 
     def input(self, seed: int, index: int) -> Input:
         """The input of a number; always the same."""

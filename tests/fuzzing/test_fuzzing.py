@@ -23,6 +23,13 @@ INPUTS = (
 )
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _no_threads_are_left():
+    yield
+    if "fuzzing.console_targets" in sys.modules:
+        target_named("console").end()
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_good_inputs_are_read(name, tmp_path):
     target = target_named(name)
