@@ -138,7 +138,7 @@ def near(bench: Workbench, structure: Hypothesis, observer_s: float, cores: int)
         cores: that roll out at the same time.
     """
     problem = bench.problem(
-        structure.effects, bench.step_for(structure.effects, FITS.coarse), bench.training, observer_s
+        structure.effects, bench.step_for(structure.effects, LOCATING.coarse), bench.training, observer_s
     )
     moving = bench.movable(structure.effects, problem.parameters)
     starts = [
@@ -170,7 +170,7 @@ def unknown_inputs(
         observer_s: time constant of the observer [s]; infinite for free rollouts, of which each knot takes one.
         cores: that roll out at the same time.
     """
-    step = bench.step_for(parent.effects, FITS.coarse)
+    step = bench.step_for(parent.effects, LOCATING.coarse)
     pulled = None if math.isinf(observer_s) else observer_s
     problem = bench.problem(parent.effects, step, bench.training, pulled)
     arrived = arrivals(parent.effects, values, bench.training)

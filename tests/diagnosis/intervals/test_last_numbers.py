@@ -66,6 +66,7 @@ def _numbers(curve: Callable[[float], ArrayLike], begun: float):
     """Fit and intervals of a drawn problem, begun at a size between 0 and 1."""
     bench = SimpleNamespace(
         training=(),
+        step_for=lambda effects, coarse=1.0: coarse * 5e-4,
         fine=5e-4,
         together=False,
         evaluations=0,
