@@ -40,10 +40,8 @@ def stribeck(
     """
     if coulomb == 0.0 and at_rest == 0.0:
         return 0.0, 0.0
-    share = hyperbolic_tangent(velocity / smooth)
     ratio = velocity / fading
-    level = coulomb + at_rest * exponential(-ratio * ratio)
-    return level * share, level * share / velocity if abs(share) > 1e-3 else level / smooth
+    return coulomb_friction(velocity, coulomb + at_rest * exponential(-ratio * ratio), smooth)
 
 
 @njit

@@ -140,7 +140,7 @@ def _other_factor(law: Any, seen: Seen) -> float:
     return 1.0 if shape == 0.0 else relative_pressure if shape <= 3.0 else relative_opening
 
 
-Slopes = tuple[float, float]
+SecantAndSlope = tuple[float, float]
 """Secant and slope of a moment over the joint's speed [N m s/rad]."""
 
 
@@ -187,7 +187,9 @@ def law_value(law: Any, seen: Seen) -> float:
 
 
 @njit
-def _with_term(law: Any, probe: Probe, slopes: Slopes, lever: float, seen: Seen) -> tuple[Probe, Slopes]:
+def _with_term(
+    law: Any, probe: Probe, slopes: SecantAndSlope, lever: float, seen: Seen
+) -> tuple[Probe, SecantAndSlope]:
     """Probes and slopes of `felt` with those of one more term."""
     value, secant, slope = _value_and_slopes(law, seen)
     arm = lever if law.at_rod > 0.0 else 1.0
@@ -219,7 +221,7 @@ def _form_of_terms(laws: Any, probe: Any, slopes: Any, lever: Any, seen: Any) ->
 
 
 @njit
-def felt(probe: Probe, laws: Any, lever: float, seen: Seen) -> tuple[Probe, Slopes]:
+def felt(probe: Probe, laws: Any, lever: float, seen: Seen) -> tuple[Probe, SecantAndSlope]:
     """Probes with what the terms of a law add, if there is one, and how a stiff integrator sees its frictions.
 
     Args:

@@ -147,12 +147,12 @@ def mean_play_torque(
     """
     half = 0.5 * hooks.linkage_gap(joint)
     p = joint.linkage
-    before = _pressed(lead, half)
-    touching = 0.0 if before == 0.0 else 1.0
-    now = touching * (p.play_stiffness * before + p.play_damping * lead_velocity)
+    now = play_torque(lead, lead_velocity, joint)
     pace = lead_velocity + 0.5 * h * (parting - yields * now)
     ahead = lead + h * pace
-    after = _pressed(ahead, half)
+    before, after = _pressed(lead, half), _pressed(ahead, half)
     way = ahead - lead
-    share = touching if way == 0.0 else min(max((after - before) / way, 0.0), 1.0)
+    if way == 0.0:
+        return now
+    share = min(max((after - before) / way, 0.0), 1.0)
     return share * (0.5 * p.play_stiffness * (before + after) + p.play_damping * pace)

@@ -194,7 +194,9 @@ def rates(
     resisting, slope_r = load.resisting_load(angle_near(s.q, near.position), s.w, time, joint)
     resisting -= probe.load
     slope_r -= braking
-    if (moment - resisting) * side_w > 0.0:
+    if (
+        contact is None and (moment - resisting) * side_w > 0.0
+    ):  # a second stage takes the slopes of the first
         slope_r += braking - easing
         rubbing, secant = hooks.load_friction(s.w, joint)
         further, _ = hooks.load_friction(FURTHER * s.w, joint)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.diagnosis.fitting.projection import Across
-from hydrolek_drake.diagnosis.settings import FITS
+from hydrolek_drake.diagnosis.settings import LOCATING
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, redundant
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.place import Place, fit_of
@@ -84,9 +84,13 @@ def scanned(
     values = place.problem.parameters.values(place.unit)
     candidates = [c for c in session.candidates if c not in beside and not redundant(beside, c)]
     tried = {c.size_path: _tried(c) for c in candidates}
-    requests = [Request(place.problem.with_step(FITS.coarse), (place.unit,))]
+    # one step for all: what an effect changes must not be what a shorter step of its own does
+    requests = [Request(place.problem.with_step(LOCATING.coarse), (place.unit,))]
     for candidate in candidates:
-        problem = session.problem((*beside, candidate), experiments, known).with_step(FITS.coarse)
+        with_it = (*beside, candidate)
+        problem = session.problem(with_it, experiments, known).with_step(
+            LOCATING.coarse * bench.step_for(beside) / bench.step_for(with_it)
+        )
         own = problem.parameters
         units = tuple(own.unit({**values, **start}) for start in tried[candidate.size_path])
         requests.append(Request(problem, units))

@@ -32,7 +32,9 @@ def standing_in(bench: Workbench, without: Entrant, effect: Addition, cores: int
         for free in numbers
         for times in FITS.strides
     ]
-    problem = problem_with(bench, without.effects, bench.fine * FITS.coarse, bench.training)
+    problem = problem_with(
+        bench, without.effects, bench.step_for(without.effects, FITS.coarse), bench.training
+    )
     units = tuple(problem.parameters.unit(each) for each in tried)
     [found] = residuals_at([Request(problem, units)], bench.pool, cores)
     bench.evaluations += problem.evaluations

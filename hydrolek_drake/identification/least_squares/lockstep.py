@@ -3,8 +3,8 @@
 Several dampings of each step are tried at once, which costs little in lanes. Residuals that change by leaps, as those
 of a play whose sides meet a step sooner or later, have slopes over a wide difference that lead down, and none over a
 narrow one: fits go on from the first to the second (implicit filtering; Kelley, Implicit Filtering, SIAM 2011).
-Direction (`normal_equations`), acceptance
-and ending (`acceptance`) are apart, as in Optimistix (Rader, Lyons, Kidger, arXiv:2402.09983).
+Direction (`normal_equations`), acceptance and ending (`acceptance`) are apart, as in Optimistix (Rader, Lyons, Kidger,
+arXiv:2402.09983).
 """
 
 from collections.abc import Callable, Sequence
