@@ -199,11 +199,13 @@ def rates(
     ):  # a second stage takes the slopes of the first
         slope_r += braking - easing
         rubbing, secant = hooks.load_friction(s.w, joint)
-        further, _ = hooks.load_friction(FURTHER * s.w, joint)
-        slope_r += slope_of_growth(rubbing, secant, further, s.w) if s.w != 0.0 else 0.0
+        if secant > 0.0 and s.w != 0.0:
+            further, _ = hooks.load_friction(FURTHER * s.w, joint)
+            slope_r += slope_of_growth(rubbing, secant, further, s.w)
         rubbing, secant = hooks.rod_friction(v, stroke, joint)
-        further, _ = hooks.rod_friction(FURTHER * v, stroke, joint)
-        slope_f += slope_of_growth(rubbing, secant, further, v) if v != 0.0 else 0.0
+        if secant > 0.0 and v != 0.0:
+            further, _ = hooks.rod_friction(FURTHER * v, stroke, joint)
+            slope_f += slope_of_growth(rubbing, secant, further, v)
     lead_acceleration = slope_lead = through = 0.0
     if playing:
         side_inertia = joint.linkage.play_inertia
