@@ -1,0 +1,107 @@
+"""Foreign machines, rigs from data sheets that are wrong: drawn, concealed, diagnosed and scored.
+
+Draws ten machines, tells the digest of their labels, writes each rig with the wizard from its data sheet alone, and
+diagnoses all of them, each once. A run that was cut off goes on.
+"""
+
+import argparse
+import json
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from hydrolek_drake.challenge.diagnosed import REPORT, diagnosed
+from hydrolek_drake.challenge.foreign.drawing import Foreign, digest, draw_foreign, labels_of, record
+from hydrolek_drake.errors import HydrolekError
+from hydrolek_drake.files import write_whole
+from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.wizard.making import written_rig
+
+LABELS = "labels.json"
+SECONDS = "seconds.json"
+RIGHT_FRICTIONS = {
+    "cylinder.coulomb_friction": {"load.coulomb_friction"},
+    "cylinder.stribeck_friction": {"load.stribeck_friction"},
+}
+"""Where the lever hardly changes, a friction at the rod is one at the joint."""
+
+
+def drawn(out: Path, count: int, seed: int) -> list[Foreign]:
+    """The cases, from an earlier run or drawn now."""
+    path = out / LABELS
+    if path.exists():
+        return [Foreign(**label) for label in json.loads(path.read_text())]
+    cases = draw_foreign(count, seed)
+    write_whole(path, labels_of(cases))
+    return cases
+
+
+def run(case: Foreign, folder: Path, cores: int) -> float:
+    """Record and diagnose one; processor time [s]."""
+    record(case, folder)
+    text, _ = written_rig(f"foreign_{case.name}", case.sheet)
+    rig_file = folder / "rig.yaml"
+    write_whole(rig_file, text)
+    rig = load_rig(str(rig_file), {})
+    started = time.process_time()
+    with ThreadPoolExecutor(cores) as pool:
+        diagnosed(rig, folder, pool, cores)
+    return time.process_time() - started
+
+
+def row(case: Foreign, folder: Path) -> tuple[str, bool]:
+    """A line of the table, and whether the answer is right."""
+    wanted = ", ".join(case.conceals) or "nothing"
+    wrong = max(case.wrong, key=lambda key: abs(case.wrong[key] - 1.0) * (1.0 + (case.wrong[key] < 1.0)))
+    machine = f"{case.kind}, {case.drive}{'' if case.pressures else ', no pressures'}"
+    begin = f"| {case.name} | {machine} | {wrong} | {wanted} | {case.shows:.0f} |"
+    if not (folder / REPORT).exists():
+        return f"{begin} not ended | | |", False
+    report = json.loads((folder / REPORT).read_text())
+    named = {each["id"] for each in report["effects"]}
+    seconds = json.loads((folder / SECONDS).read_text())
+    right = report["verdict"] == ("none" if not case.conceals else "effects") and len(named) == len(
+        case.conceals
+    )
+    for effect in case.conceals:
+        right = right and bool(named & ({effect} | RIGHT_FRICTIONS.get(effect, set())))
+    told = ", ".join(sorted(named)) or report["verdict"]
+    return f"{begin} {told} | {'yes' if right else '**no**'} | {seconds:.0f} |", right
+
+
+def main() -> None:
+    """Draw, diagnose, tell."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seed", type=int, required=True)
+    parser.add_argument("--count", type=int, default=10, help="machines, of four cases each")
+    parser.add_argument("--cores", type=int, default=1)
+    parser.add_argument("--part", default="1/1", help="1/2: every other case from the first")
+    parser.add_argument("--out", type=Path, required=True)
+    given = parser.parse_args()
+    given.out.mkdir(parents=True, exist_ok=True)
+    cases = drawn(given.out, given.count, given.seed)
+    print(f"labels {digest(labels_of(cases))}", flush=True)
+    first, parts = (int(each) for each in given.part.split("/"))
+    for case in cases[first - 1 :: parts]:
+        folder = given.out / case.name
+        if (folder / SECONDS).exists():
+            continue
+        try:
+            seconds = run(case, folder, given.cores)
+        except HydrolekError as error:
+            print(f"{case.name}: {error}", flush=True)
+            continue
+        write_whole(folder / SECONDS, json.dumps(seconds))
+        print(f"{case.name}: {seconds:.0f} s", flush=True)
+    print("| case | machine | most wrong | concealed | times the noise | told | right | s |")
+    print(8 * "|---" + "|")
+    rows = [row(case, given.out / case.name) for case in cases]
+    print("\n".join(line for line, _ in rows))
+    for title, healthy in (("healthy", True), ("concealed", False)):
+        of = [right for case, (_, right) in zip(cases, rows, strict=True) if (not case.conceals) == healthy]
+        print(f"{title}: {sum(of)} of {len(of)}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
