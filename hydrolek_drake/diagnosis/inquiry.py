@@ -14,7 +14,7 @@ from hydrolek_drake.diagnosis.locating.terms_for import estimates_for, terms_for
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.lost_commands.search import lost_in
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
-from hydrolek_drake.diagnosis.search.best_first import search_structures
+from hydrolek_drake.diagnosis.search.from_the_cut import search_machine
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
@@ -151,7 +151,7 @@ class Inquiry:
         interrupted = False
 
         try:
-            search_structures(
+            search_machine(
                 bench,
                 self.candidates,
                 found,

@@ -7,8 +7,11 @@ import numpy as np
 from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.structures.addition import Addition
-from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Workbench
+from hydrolek_drake.diagnosis.settings import NOISE
+from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.least_squares.continuation import Continuation
+from hydrolek_drake.rigs import Rig
+from hydrolek_drake.rigs.driven_by import SUPPLY, counts
 
 
 def can_be_cut(bench: Workbench) -> bool:
@@ -18,6 +21,38 @@ def can_be_cut(bench: Workbench) -> bool:
     a model that explains the data well enough to be called right need not be searched for others.
     """
     return _way(bench, ()).parts() is not None
+
+
+def enough_for(bench: Workbench) -> float:
+    """Times the noise that need not be explained unless something promises to.
+
+    What a recorded supply pressure does between its samples, and what fits by parts leave of a line that rings, is no
+    missing physics.
+    """
+    return NOISE.explained if bench.cut or can_be_cut(bench) else NOISE.at
+
+
+def acts_behind(rig: Rig, path: str) -> bool:
+    """Whether a number still counts where the recorded supply pressure stands in place of the supply."""
+    return counts(path, (SUPPLY,), rig.joints)
+
+
+def behind_supply(bench: Workbench) -> Workbench | None:
+    """The machine behind the recorded pressure of its pump, without the supply's numbers; None where none is."""
+    parts = _way(bench, ()).parts()
+    if parts is None:
+        return None
+    own = [free for free in bench.nominal if acts_behind(bench.rig, free.path)]
+    return Workbench(
+        bench.rig, own, parts, bench.pool, bench.cores, bench.progress, signals_apart=bench.signals_apart
+    )
+
+
+def supply_before(bench: Workbench, structure: Hypothesis, cores: int) -> dict[str, float]:
+    """Numbers of the supply before a structure that was fitted behind its recorded pressure: full path -> value."""
+    way = _way(bench, structure.effects, cores)
+    found = way.parameters.values(way.supply_before([way.parameters.unit(dict(structure.values))]))
+    return {path: value for path, value in found.items() if not acts_behind(bench.rig, path)}
 
 
 def by_parts(

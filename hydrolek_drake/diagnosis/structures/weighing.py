@@ -38,6 +38,8 @@ def weighted_by(
     The error of the integration is told from a second rollout with half the step: the method is of second
     order, so the coarser one is wrong by 4/3 of their difference. What joints that move at the same time do
     is told by rolling out all joints where the model is near the noise, and known to `DATA.others_unknown` elsewhere.
+    What a signal that is recorded in place of a part of the model does between its samples is told by leaving out every
+    other one.
     """
     of_training = experiments is bench.training
     step = bench.step_for(hypothesis.effects)
@@ -53,11 +55,15 @@ def weighted_by(
         alone = None
         if experiment.others is not None and experiment.others_error is None:
             alone = replace(experiment, others=None).simulate(records, 0.5 * step).signals
+        sparse = experiment.with_every_other_of_recorded()
+        between = fine if sparse is experiment else sparse.simulate(records, 0.5 * step).signals
         channels = []
         for number, channel in enumerate(experiment.channels):
             model = getattr(fine, channel.model)
             level = noise_level(channel.measured - model)
             error = 4.0 / 3.0 * np.abs(getattr(coarse, channel.model) - model)
+            if sparse is not experiment:
+                error = np.hypot(error, getattr(between, channel.model) - model)
             if experiment.others_error is not None:
                 error = np.hypot(error, experiment.others_error[number])
             if alone is not None:

@@ -170,6 +170,11 @@ class Workbench:
         """Whether joints move at the same time."""
         return any(experiment.others is not None for experiment in self.training)
 
+    @property
+    def cut(self) -> bool:
+        """Whether a recorded signal stands in place of a part of the machine, which the rig does not say."""
+        return any(experiment.cut for experiment in self.training)
+
     def parameters(self, effects: Sequence[Addition]) -> ParameterSet:
         """The searched parameters of the nominal model with these effects."""
         own = [p for candidate in effects for p in candidate.free]

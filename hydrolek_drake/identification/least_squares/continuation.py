@@ -113,11 +113,18 @@ class Continuation:
         if behind.objective > FAR**2 * behind.problem.counted:
             # what it lacks, the supply's numbers would make up for
             return np.where(supply, starts[0], behind.unit)
-        behind_unit = behind.unit
-        own = [np.where(supply, start, behind_unit) for start in starts]
-        spread = np.tile(behind_unit, (MOST_ROUNDS * TRIED, 1))
+        return self.supply_before([np.where(supply, start, behind.unit) for start in starts])
+
+    def supply_before(self, starts: Sequence[np.ndarray]) -> np.ndarray:
+        """A place where the supply's numbers have been found, what lies behind it staying as it is.
+
+        Args:
+            starts: places in the unit cube, which differ in the supply's numbers. # (n,) each
+        """
+        supply = self._supply
+        spread = np.tile(starts[0], (MOST_ROUNDS * TRIED, 1))
         spread[:, supply] = spread_evenly(MOST_ROUNDS * TRIED, int(supply.sum()))
-        return self._over_growing_horizons(own, np.split(spread, MOST_ROUNDS), supply)
+        return self._over_growing_horizons(starts, np.split(spread, MOST_ROUNDS), supply)
 
     def parts(self) -> tuple[Experiment, ...] | None:
         """The experiments with the chain cut at the recorded supply pressure; None as above."""

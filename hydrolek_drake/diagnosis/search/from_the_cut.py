@@ -1,0 +1,108 @@
+"""A search that begins where the chain is cut: behind the recorded pressure of a pump, and then all of the machine.
+
+A line between a pump and its relief valve rings, so that rollouts of all of the machine have local minima for every
+oscillation that the supply's numbers are off. With the recorded pressure in place of the supply there are none of
+these, and what lies behind it shows what it lacks. What was found there goes on into all of the machine, whose supply
+may lack something too.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from hydrolek_drake.diagnosis.fitting.entrants import Entrant
+from hydrolek_drake.diagnosis.fitting.race import race
+from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
+from hydrolek_drake.diagnosis.search.best_first import Unlisted, search_structures
+from hydrolek_drake.diagnosis.search.by_parts import acts_behind, behind_supply, supply_before
+from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.settings import Settings
+from hydrolek_drake.diagnosis.structures.addition import Sized
+from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+
+
+def search_machine(
+    bench: Workbench,
+    candidates: Sequence[Candidate],
+    found: Tried,
+    say: Callable[[str], None],
+    settings: Settings,
+    cores: int,
+    unlisted: Unlisted | None = None,
+) -> None:
+    """Fill what is found; as `search_structures`, behind the cut first where there is one.
+
+    Args:
+        bench: data and problems; its training data are weighed anew by what is found.
+        candidates: every effect that may be missing.
+        found: receives what was tried.
+        say: told what is being done.
+        settings: of the search.
+        cores: that roll out at the same time.
+        unlisted: physics in no list; None for none.
+
+    Raises:
+        KeyboardInterrupt: what was found by then is in `found`, unless nothing was.
+    """
+    part = behind_supply(bench)
+    if part is None:
+        search_structures(bench, candidates, found, say, settings, cores, unlisted)
+        return
+    seen = Tried(seeds=found.seeds)
+    behind = [c for c in candidates if acts_behind(bench.rig, c.size_path)]
+
+    def told(text: str) -> None:
+        say(f"behind the recorded supply pressure: {text}")
+
+    cut_off = False
+    try:
+        search_structures(part, behind, seen, told, settings, cores, unlisted)
+    except KeyboardInterrupt:
+        if not seen.hypotheses:
+            raise
+        cut_off = True
+    bench.evaluations += part.evaluations
+    say("finding the supply's numbers")
+    found.seeds = _with_supply(bench, seen, settings, cores)
+    if cut_off:
+        as_they_are = replace(settings.again, rounds=0, keep=len(found.seeds))
+        for each in race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (as_they_are,), cores):
+            found.keep(each)
+        raise KeyboardInterrupt
+    before = [c for c in candidates if not acts_behind(bench.rig, c.size_path)]
+    try:
+        search_structures(
+            bench, before, found, say, settings, cores, None if unlisted is None else _BeforeTheCut(unlisted)
+        )
+    finally:
+        found.left = [*found.left, *seen.left]
+
+
+def _with_supply(bench: Workbench, seen: Tried, settings: Settings, cores: int) -> list[Hypothesis]:
+    """The structures with which the search goes on, each with the supply's numbers that the best one was given.
+
+    These are the nominal model, the best one with all that it contains, and those that are near it.
+    """
+    best = seen.best
+    ranked = sorted(seen.hypotheses.values(), key=lambda h: h.fit.objective)
+    within = settings.again_within**2 * best.fit.objective
+    near = [h for h in ranked if h.fit.objective < within][: settings.most_again]
+    chosen = {h.ids: h for h in [*near, *(h for h in ranked if h.ids <= best.ids)]}
+    supply = supply_before(bench, best, cores)
+    return [replace(h, values={**h.values, **supply}) for h in chosen.values()]
+
+
+@dataclass(frozen=True)
+class _BeforeTheCut:
+    """Physics in no list at the supply alone, for a machine that was searched behind it."""
+
+    all: Unlisted
+
+    def offer(self, bench: Workbench, parent: Hypothesis) -> Sequence[Sized | LostWindows]:
+        """Terms of laws that do not count behind the cut."""
+        offered = self.all.offer(bench, parent)
+        return [
+            each
+            for each in offered
+            if not isinstance(each, LostWindows) and not acts_behind(bench.rig, each.size_path)
+        ]
