@@ -14,6 +14,7 @@ from hydrolek_drake.diagnosis.locating.terms_for import estimates_for, terms_for
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.lost_commands.search import lost_in
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
+from hydrolek_drake.diagnosis.search.by_parts import enough_for
 from hydrolek_drake.diagnosis.search.from_the_cut import search_machine
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, NOISE, Settings
@@ -233,12 +234,13 @@ def _beside(known: Known, best: Judged) -> Judged:
 def _astray(known: Known) -> bool:
     """Whether the best structure leaves more of the held-out data than the training data lead one to expect.
 
-    That is as much, to what noise is known to; where it does not explain these, what it leaves is its own discrepancy,
+    That is as much, to what noise is known to, and what a recorded supply pressure leaves behind it; where it does not explain these, what it leaves is its own discrepancy,
     which differs between movements by more.
     """
     best = known.judged[0]
     left = best.hypothesis.fit.over_noise
-    return best.over_noise > max(left, 1.0) * (NOISE.ahead if left <= NOISE.ahead else NOISE.explained_ahead)
+    known_to = max(NOISE.ahead, enough_for(known.bench))
+    return best.over_noise > max(left, 1.0) * (known_to if left <= known_to else NOISE.explained_ahead)
 
 
 def _far_in_all(known: Known) -> bool:

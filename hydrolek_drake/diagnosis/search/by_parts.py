@@ -1,13 +1,13 @@
 """Structures fitted part by part where a pump's pressure was recorded: behind the cut first, and then the supply."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.laws.additions import of_additions
-from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.settings import NOISE
+from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.least_squares.continuation import Continuation
 from hydrolek_drake.rigs import Rig
@@ -48,10 +48,20 @@ def behind_supply(bench: Workbench) -> Workbench | None:
     )
 
 
-def supply_before(bench: Workbench, structure: Hypothesis, cores: int) -> dict[str, float]:
-    """Numbers of the supply before a structure that was fitted behind its recorded pressure: full path -> value."""
+def supply_before(
+    bench: Workbench, structure: Hypothesis, known: Sequence[Mapping[str, float]], cores: int
+) -> dict[str, float]:
+    """Numbers of the supply before a structure that was fitted behind its recorded pressure: full path -> value.
+
+    Args:
+        bench: data and problems.
+        structure: as fitted behind the pressure.
+        known: numbers of the supply as fitted to other data.
+        cores: that roll out at the same time.
+    """
     way = _way(bench, structure.effects, cores)
-    found = way.parameters.values(way.supply_before([way.parameters.unit(dict(structure.values))]))
+    starts = [way.parameters.unit({**structure.values, **supply}) for supply in ({}, *known)]
+    found = way.parameters.values(way.supply_before(starts))
     return {path: value for path, value in found.items() if not acts_behind(bench.rig, path)}
 
 

@@ -63,7 +63,7 @@ def search_machine(
         cut_off = True
     bench.evaluations += part.evaluations
     say("finding the supply's numbers")
-    found.seeds = _with_supply(bench, seen, settings, cores)
+    found.seeds = _with_supply(bench, seen, found.seeds, settings, cores)
     if cut_off:
         as_they_are = replace(settings.again, rounds=0, keep=len(found.seeds))
         for each in race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (as_they_are,), cores):
@@ -78,17 +78,30 @@ def search_machine(
         found.left = [*found.left, *seen.left]
 
 
-def _with_supply(bench: Workbench, seen: Tried, settings: Settings, cores: int) -> list[Hypothesis]:
+def _with_supply(
+    bench: Workbench, seen: Tried, before: Sequence[Hypothesis], settings: Settings, cores: int
+) -> list[Hypothesis]:
     """The structures with which the search goes on, each with the supply's numbers that the best one was given.
 
     These are the nominal model, the best one with all that it contains, and those that are near it.
+
+    Args:
+        bench: data and problems.
+        seen: what was found behind the cut.
+        before: structures fitted to other data of all of the machine.
+        settings: of the search.
+        cores: that roll out at the same time.
     """
     best = seen.best
     ranked = sorted(seen.hypotheses.values(), key=lambda h: h.fit.objective)
     within = settings.again_within**2 * best.fit.objective
     near = [h for h in ranked if h.fit.objective < within][: settings.most_again]
     chosen = {h.ids: h for h in [*near, *(h for h in ranked if h.ids <= best.ids)]}
-    supply = supply_before(bench, best, cores)
+    nearest = sorted(before, key=lambda h: h.fit.over_noise)[:1]
+    known = [
+        {path: value for path, value in h.values.items() if not acts_behind(bench.rig, path)} for h in nearest
+    ]
+    supply = supply_before(bench, best, known, cores)
     return [replace(h, values={**h.values, **supply}) for h in chosen.values()]
 
 

@@ -45,6 +45,9 @@ TRIED, STARTS, MOST_ROUNDS, FOLLOWED = 1024, 24, 6, 1.2
 at most, until one place leaves so many times the noise or less: over few samples chance moves it by 5 %, and what is
 left beyond that the longer horizons take."""
 
+AGAIN = 2
+"""So often the rounds that are left are tried where the first ones do not lead to the noise over all of the time."""
+
 FAR = 3.0
 """A chain that leaves so many times the noise behind the cut lacks something there: the supply is left as it is."""
 
@@ -159,21 +162,37 @@ class Continuation:
         """Where the numbers that move end, from short horizons to all of the time. # (n,).
 
         The shortest one is fitted from the starts themselves, and from others in rounds as long as none of them follows
-        it to the noise: of the places of a round those that leave least.
+        it to the noise: of the places of a round those that leave least. Where they do not lead to the noise over all
+        of the time, which the shortest one could not tell, the rounds that are left are tried too.
         """
+        left = list(rounds)
+        places = self._led_over_horizons(own, left, moving)
+        for _ in range(AGAIN):
+            if not left or places[0].objective <= FOLLOWED**2 * places[0].problem.counted:
+                break
+            places += self._led_over_horizons([], left, moving)
+            places.sort(key=_objective)
+        return places[0].unit
+
+    def _led_over_horizons(
+        self, own: Sequence[np.ndarray], rounds: list[np.ndarray], moving: np.ndarray
+    ) -> list[Place]:
+        """The best place over all of the time, from starts and from rounds, which are used up."""
         whole = max(float(e.time[-1] - e.time[0]) for e in self.experiments)
         samples = min(e.time.size for e in self.experiments)
         most = min(int(math.log2(max(samples / FEWEST, 1.0))), len(HORIZONS) - 1)
+        places: list[Place] = []
         for halvings in range(most, -1, -1):
             keep = HORIZONS[len(HORIZONS) - 1 - halvings]
             parts = tuple(e.until(whole / 2**halvings) if halvings else e for e in self.experiments)
             steps, share = (SHORT_STEPS, 1e-3) if halvings else (LONG_STEPS, 1e-4)
             if halvings == most:
-                places = self._descended(parts, own, moving, None, steps, share=share)
-                for spread in rounds:
-                    if places[0].objective <= FOLLOWED**2 * places[0].problem.counted:
-                        break
-                    tried = self._descended(parts, list(spread), moving, None, 0)
+                if own:
+                    places = self._descended(parts, own, moving, None, steps, share=share)
+                while rounds and not (
+                    places and places[0].objective <= FOLLOWED**2 * places[0].problem.counted
+                ):
+                    tried = self._descended(parts, list(rounds.pop(0)), moving, None, 0)
                     units = [place.unit for place in tried[:STARTS]]
                     places += self._descended(parts, units, moving, None, steps, share=share)
                     places.sort(key=_objective)
@@ -183,7 +202,7 @@ class Continuation:
                     self._descended(parts, units, moving, None, steps, share=share), key=_objective
                 )
             places = places[:keep]
-        return places[0].unit
+        return places
 
     def _descended(
         self,
