@@ -14,8 +14,8 @@ from hydrolek_drake.diagnosis.locating.terms_for import estimates_for, terms_for
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.lost_commands.search import lost_in
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
-from hydrolek_drake.diagnosis.search.by_parts import enough_for
-from hydrolek_drake.diagnosis.search.from_the_cut import search_machine
+from hydrolek_drake.diagnosis.search.by_parts import can_be_cut
+from hydrolek_drake.diagnosis.search.from_the_cut import left_behind, search_machine
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
@@ -234,13 +234,17 @@ def _beside(known: Known, best: Judged) -> Judged:
 def _astray(known: Known) -> bool:
     """Whether the best structure leaves more of the held-out data than the training data lead one to expect.
 
-    That is as much, to what noise is known to, and what a recorded supply pressure leaves behind it; where it does not explain these, what it leaves is its own discrepancy,
-    which differs between movements by more.
+    That is as much, to what noise is known to; where it does not explain these, what it leaves is its own discrepancy,
+    which differs between movements by more. What a pump's line does is not told for long (`ahead_at_most`), but what
+    lies behind its recorded pressure is.
     """
     best = known.judged[0]
-    left = best.hypothesis.fit.over_noise
-    known_to = max(NOISE.ahead, enough_for(known.bench))
-    return best.over_noise > max(left, 1.0) * (known_to if left <= known_to else NOISE.explained_ahead)
+    left, ahead = best.hypothesis.fit.over_noise, best.over_noise
+    if can_be_cut(known.bench):
+        if ahead > max(left, 1.0) * NOISE.explained_ahead:
+            return True
+        left, ahead = left_behind(known.bench, best.hypothesis, known.held_out)
+    return ahead > max(left, 1.0) * (NOISE.ahead if left <= NOISE.ahead else NOISE.explained_ahead)
 
 
 def _far_in_all(known: Known) -> bool:

@@ -34,6 +34,7 @@ class Judged:
         behind_error: standard error of that.
         fitted_too: times the noise that it leaves of these data beyond what it leaves of the others, fitted to both;
             None where nobody asked.
+        ahead_at_most: times the noise that a model without additions leaves of held-out data that it explains.
         stands: recording (`windows.recording_of`) -> additions and place in the unit cube there (`nuisance`).
     """
 
@@ -46,6 +47,7 @@ class Judged:
     behind: float = 0.0
     behind_error: float = math.nan
     fitted_too: float | None = None
+    ahead_at_most: float = NOISE.explained
     stands: Mapping[str, tuple[tuple[Addition, ...], np.ndarray]] = field(default_factory=dict)
 
     @property
@@ -57,7 +59,7 @@ class Judged:
     def explains_ahead(self) -> bool:
         """Whether it leaves so little of the held-out data that nothing is missing that these show."""
         left = self.over_noise if self.fitted_too is None else min(self.over_noise, self.fitted_too)
-        return left <= (NOISE.explained_ahead if self.hypothesis.effects else NOISE.explained)
+        return left <= (NOISE.explained_ahead if self.hypothesis.effects else self.ahead_at_most)
 
     @property
     def fails_ahead_alone(self) -> bool:

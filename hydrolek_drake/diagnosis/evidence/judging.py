@@ -22,6 +22,7 @@ from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.problems import problem_with
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
+from hydrolek_drake.diagnosis.search.by_parts import ahead_at_most
 from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE, Settings
@@ -58,7 +59,13 @@ def _looked_at(
     """What hypotheses leave of the held-out data as they are fitted."""
     counted = sum(experiment.counted for experiment in held_out)
     return bench.side_by_side(
-        lambda h: Judged(h, bench.residuals(h, held_out, bench.step_for(h.effects)), counted), hypotheses
+        lambda h: Judged(
+            h,
+            bench.residuals(h, held_out, bench.step_for(h.effects)),
+            counted,
+            ahead_at_most=ahead_at_most(bench),
+        ),
+        hypotheses,
     )
 
 
@@ -164,7 +171,14 @@ def _predicted(
     """Structures with the density of the held-out data."""
     counted = sum(experiment.counted for experiment in held_out)
     begun = [
-        with_stands(bench, Judged(h, np.zeros(0), counted), held_out, settings, cores) for h in hypotheses
+        with_stands(
+            bench,
+            Judged(h, np.zeros(0), counted, ahead_at_most=ahead_at_most(bench)),
+            held_out,
+            settings,
+            cores,
+        )
+        for h in hypotheses
     ]
     places = []
     for own in begun:

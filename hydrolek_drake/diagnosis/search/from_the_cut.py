@@ -6,6 +6,7 @@ these, and what lies behind it shows what it lacks. What was found there goes on
 may lack something too.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -18,7 +19,9 @@ from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.identification.experiments.experiment import Experiment
 
 
 def search_machine(
@@ -76,6 +79,27 @@ def search_machine(
         )
     finally:
         found.left = [*found.left, *seen.left]
+
+
+def left_behind(
+    bench: Workbench, structure: Hypothesis, held_out: Sequence[Experiment]
+) -> tuple[float, float]:
+    """Times the noise that a structure leaves behind the cut: of the training data, and of others.
+
+    Args:
+        bench: data and problems of all of the machine, which can be cut.
+        structure: fitted to all of the machine.
+        held_out: of all of the machine.
+    """
+    part = behind_supply(bench)
+    assert part is not None
+    left = []
+    for experiments in (part.training, [e.with_recorded_supply() for e in held_out]):
+        weighted = weighted_by(part, structure, experiments)
+        residuals = part.residuals(structure, weighted, part.step_for(structure.effects))
+        counted = max(sum(e.counted for e in weighted), 1)
+        left.append(math.sqrt(float(residuals @ residuals) / counted))
+    return left[0], left[1]
 
 
 def _with_supply(
