@@ -235,13 +235,13 @@ def _astray(known: Known) -> bool:
     """Whether the best structure leaves more of the held-out data than the training data lead one to expect.
 
     That is as much, to what noise is known to; where it does not explain these, what it leaves is its own discrepancy,
-    which differs between movements by more. What a pump's line does is not told for long (`ahead_at_most`), but what
+    which differs between movements by more. What a pump's line does is not told for long (`Judged.rings`), but what
     lies behind its recorded pressure is.
     """
     best = known.judged[0]
     left, ahead = best.hypothesis.fit.over_noise, best.over_noise
     if can_be_cut(known.bench):
-        if ahead > max(left, 1.0) * NOISE.explained_ahead:
+        if not best.explains_ahead:
             return True
         left, ahead = left_behind(known.bench, best.hypothesis, known.held_out)
     return ahead > max(left, 1.0) * (NOISE.ahead if left <= NOISE.ahead else NOISE.explained_ahead)

@@ -22,7 +22,7 @@ from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.problems import problem_with
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
-from hydrolek_drake.diagnosis.search.by_parts import ahead_at_most
+from hydrolek_drake.diagnosis.search.by_parts import can_be_cut
 from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE, Settings
@@ -63,7 +63,7 @@ def _looked_at(
             h,
             bench.residuals(h, held_out, bench.step_for(h.effects)),
             counted,
-            ahead_at_most=ahead_at_most(bench),
+            rings=can_be_cut(bench),
         ),
         hypotheses,
     )
@@ -173,7 +173,7 @@ def _predicted(
     begun = [
         with_stands(
             bench,
-            Judged(h, np.zeros(0), counted, ahead_at_most=ahead_at_most(bench)),
+            Judged(h, np.zeros(0), counted, rings=can_be_cut(bench)),
             held_out,
             settings,
             cores,

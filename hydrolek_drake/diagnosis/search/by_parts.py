@@ -32,14 +32,6 @@ def enough_for(bench: Workbench) -> float:
     return NOISE.explained if bench.cut or can_be_cut(bench) else NOISE.at
 
 
-def ahead_at_most(bench: Workbench) -> float:
-    """Times the noise that a nominal model leaves at most of held-out data that it explains.
-
-    When a relief valve sticks and its line rings next depends on all before it, which no model tells for long.
-    """
-    return NOISE.explained_ahead if can_be_cut(bench) else NOISE.explained
-
-
 def acts_behind(rig: Rig, path: str) -> bool:
     """Whether a number still counts where the recorded supply pressure stands in place of the supply."""
     return counts(path, (SUPPLY,), rig.joints)

@@ -20,7 +20,7 @@ from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench, key_of
 from hydrolek_drake.identification.experiments.experiment import Experiment
 
 
@@ -51,7 +51,7 @@ def search_machine(
     if part is None:
         search_structures(bench, candidates, found, say, settings, cores, unlisted)
         return
-    seen = Tried(seeds=found.seeds)
+    seen = Tried(seeds=_behind_of(bench, found.seeds))
     behind = [c for c in candidates if acts_behind(bench.rig, c.size_path)]
 
     def told(text: str) -> None:
@@ -79,6 +79,15 @@ def search_machine(
         )
     finally:
         found.left = [*found.left, *seen.left]
+
+
+def _behind_of(bench: Workbench, seeds: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """Structures of all of the machine without what they add before the cut, the best of each."""
+    kept: dict[frozenset[str], Hypothesis] = {}
+    for each in sorted(seeds, key=lambda h: h.fit.over_noise):
+        effects = tuple(c for c in each.effects if acts_behind(bench.rig, c.size_path))
+        kept.setdefault(key_of(effects), replace(each, effects=effects))
+    return list(kept.values())
 
 
 def left_behind(
