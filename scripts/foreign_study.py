@@ -6,14 +6,13 @@ diagnoses all of them, each once. A run that was cut off goes on.
 
 import argparse
 import json
-import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from hydrolek_drake.challenge.diagnosed import REPORT, diagnosed
 from hydrolek_drake.challenge.foreign.drawing import Foreign, digest, draw_foreign, labels_of, record
-from hydrolek_drake.errors import HydrolekError
+from hydrolek_drake.errors import InputError
 from hydrolek_drake.files import write_whole
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.wizard.making import written_rig
@@ -89,7 +88,7 @@ def main() -> None:
             continue
         try:
             seconds = run(case, folder, given.cores)
-        except HydrolekError as error:
+        except InputError as error:
             print(f"{case.name}: {error}", flush=True)
             continue
         write_whole(folder / SECONDS, json.dumps(seconds))
@@ -104,4 +103,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -126,8 +126,24 @@ def _valve(sheet: Sheet) -> list[str]:
             f"  {entry(f'area_gradient_{edge}', 1e3 * gradient, 'mm', source)}"
             for edge, gradient in sheet.gradients.items()
         ),
-        f"  {asked(sheet, 'flow_coefficient', 'discharge')}",
+        f"  {_discharge(sheet)}",
     ]
+
+
+def _discharge(sheet: Sheet) -> str:
+    """Flow coefficient, which stands for what is not known of a rated flow too."""
+    if "rated_flow" not in sheet.answers:
+        return asked(sheet, "flow_coefficient", "discharge")
+    value, spread = sheet["flow_coefficient"], fixed("rated_flow_factor")
+    source = f"{SHEET}: with the edges' areas it gives the rated flow; {spread['source']}"
+    return entry("discharge", value, "1", source, (value / spread["value"], value * spread["value"]))
+
+
+def _mass_place(name: str, value: float) -> str:
+    """A distance of the mass where nobody has said how it is spread."""
+    spread = fixed("mass_place_factor")
+    limits = (value / spread["value"], value * spread["value"])
+    return entry(name, value, "m", f"assumed: spread evenly over the length; {spread['source']}", limits)
 
 
 def _cylinder(sheet: Sheet) -> list[str]:
@@ -206,8 +222,8 @@ def _link(sheet: Sheet) -> list[str]:
     rim = 0.1 * (upper - lower)
     along, across = sheet.answers.get("centre", (0.5 * sheet["length"], 0.0))
     weighs = entry("gravity", 0.0, "m/s^2", SHEET) if sheet["upright"] == "yes" else kept("gravity")
-    even = "assumed: spread evenly over the length"
-    place = f"{SHEET}: place" if "centre" in sheet.answers else even
+    even, place = "assumed: spread evenly over the length", f"{SHEET}: place"
+    told = "centre" in sheet.answers
     stops = _beyond(lower, upper, "deg", "rad")
     return [
         "linkage:",
@@ -220,9 +236,9 @@ def _link(sheet: Sheet) -> list[str]:
         "load:",
         "  variant: link",
         f"  {asked(sheet, 'mass')}  # inertia and gravity follow from it and its place",
-        f"  {entry('centre_along', along, 'm', place)}",
-        f"  {entry('centre_across', across, 'm', place)}",
-        f"  {entry('gyration_radius', sheet['length'] / math.sqrt(12.0), 'm', even)}",
+        f"  {entry('centre_along', along, 'm', place) if told else _mass_place('centre_along', along)}",
+        f"  {entry('centre_across', across, 'm', place if told else even)}",
+        f"  {_mass_place('gyration_radius', sheet['length'] / math.sqrt(12.0))}",
         f"  {weighs}",
         f"  {asked(sheet, 'bearing_damping', 'damping')}",
         f"  {kept('friction_velocity', 'bearing_friction_velocity')}",
