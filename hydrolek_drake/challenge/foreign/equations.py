@@ -1,7 +1,8 @@
 """A hydraulic axis in a formulation of its own: chambers by the mass of their oil, edges by their flow number.
 
 Nothing here is shared with the physics that diagnoses it. Oil is kept by mass, its pressure follows from how densely
-it is packed (exponential for the liquid, polytropic for bubbles); edges are rounded and turn laminar with their flow
+it is packed (exponential for the liquid, polytropic for bubbles); what flows through an edge is told by volume at the
+chamber, as most simulators do, since what yields in a chamber is hose and tube as much as oil; edges are rounded and turn laminar with their flow
 number (tanh law, Borutzky, Barnard, Thoma 2002); end stops and the sides of a play are Hunt and Crossley's (1975);
 dry friction is that of bristles (LuGre; Canudas de Wit et al. 1995); the cylinder's lever is a cross product of
 points in the plane. One classic Runge-Kutta method of fourth order runs all of it.
@@ -111,10 +112,8 @@ def _rates(g: Plant, y: np.ndarray, volts: float, t: float, out: np.ndarray) -> 
     from_a = edge_flow(g, g.width[2], -x - g.overlap, p_a - g.tank) + g.null_leak * (p_a - g.tank)
     from_b = edge_flow(g, g.width[3], x - g.overlap, p_b - g.tank) + g.null_leak * (p_b - g.tank)
     past = g.leak * (p_a - p_b)
-    rho_a, rho_b, rho_s = packed_at(g, p_a), packed_at(g, p_b), packed_at(g, supply)
-    rho_past = rho_a if past > 0.0 else rho_b
-    out[2] = (rho_s if to_a > 0.0 else rho_a) * to_a - rho_a * from_a - rho_past * past
-    out[3] = (rho_s if to_b > 0.0 else rho_b) * to_b - rho_b * from_b + rho_past * past
+    out[2] = packed_at(g, p_a) * (to_a - from_a - past)
+    out[3] = packed_at(g, p_b) * (to_b - from_b + past)
 
     drawn = to_a + to_b
     out[6] = out[7] = 0.0
