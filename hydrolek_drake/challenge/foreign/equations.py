@@ -2,10 +2,10 @@
 
 Nothing here is shared with the physics that diagnoses it. Oil is kept by mass, its pressure follows from how densely
 it is packed (exponential for the liquid, polytropic for bubbles); what flows through an edge is told by volume at the
-chamber, as most simulators do, since what yields in a chamber is hose and tube as much as oil; edges are rounded and turn laminar with their flow
-number (tanh law, Borutzky, Barnard, Thoma 2002); end stops and the sides of a play are Hunt and Crossley's (1975);
-dry friction is that of bristles (LuGre; Canudas de Wit et al. 1995); the cylinder's lever is a cross product of
-points in the plane. One classic Runge-Kutta method of fourth order runs all of it.
+chamber, as most simulators do, since what yields in a chamber is hose and tube as much as oil; edges are rounded and
+turn laminar with their flow number (tanh law, Borutzky, Barnard, Thoma 2002); end stops and the sides of a play are
+Hunt and Crossley's (1975); dry friction is that of bristles (LuGre; Canudas de Wit et al. 1995); the cylinder's lever
+is a cross product of points in the plane. One classic Runge-Kutta method of fourth order runs all of it.
 """
 
 import math
