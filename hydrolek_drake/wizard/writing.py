@@ -153,7 +153,7 @@ def _cylinder(sheet: Sheet) -> list[str]:
         f"  {entry('area_a', 1e6 * sheet.area_a, 'mm^2', f'{SHEET}: bore')}",
         f"  {entry('area_b', 1e6 * sheet.area_b, 'mm^2', f'{SHEET}: bore and rod')}",
         f"  {asked(sheet, 'dead_volume', 'dead_volume_a')}",
-        "  dead_volume_b: {same_as: dead_volume_a}",
+        f"  {asked(sheet, 'dead_volume', 'dead_volume_b')}",
         f"  {_end(sheet, 'stroke', sheet['stroke'], SHEET)}",
         *(f"  {line}" for line in _stops(sheet)),
         f"  {_column(sheet)}",
@@ -240,6 +240,7 @@ def _link(sheet: Sheet) -> list[str]:
         f"  {entry('centre_across', across, 'm', place if told else even)}",
         f"  {_mass_place('gyration_radius', sheet['length'] / math.sqrt(12.0))}",
         f"  {weighs}",
+        *(f"  {line}" for line in _carried(sheet)),
         f"  {asked(sheet, 'bearing_damping', 'damping')}",
         f"  {kept('friction_velocity', 'bearing_friction_velocity')}",
         *(f"  {line}" for line in stops),
@@ -251,6 +252,17 @@ def _link(sheet: Sheet) -> list[str]:
         f"  {asked(sheet, 'angle_noise', 'noise')}",
         '  resolution: {value: 0, unit: deg, source: "told by the recording"}',
         f"  {asked(sheet, 'pressure_noise')}",
+    ]
+
+
+def _carried(sheet: Sheet) -> list[str]:
+    """What a kilogram does that is picked up: at the end of the link."""
+    where = "assumed: what is picked up hangs at the end of the link"
+    length = sheet["length"]
+    weight = 0.0 if sheet["upright"] == "yes" else fixed("gravity")["value"] * length
+    return [
+        entry("payload_inertia", length**2, "kg m^2/kg", where),
+        entry("payload_gravity_cos", weight, "N m/kg", where),
     ]
 
 
