@@ -26,9 +26,7 @@ EFFECT = Effect(
     ),
     size="air_fraction",
     search={
-        # less of it matters only at pressures near zero, at a fortieth of the supply's, where the model has no bubbles of
-        # cavitation either
-        "air_fraction": Search("air_fraction", 6, (0.1, 1.0), lowest=0.01),
+        "air_fraction": Search("air_fraction", 6, (0.1, 1.0)),
     },
     source="isothermal compression of free air: V_air = fraction p_atm / p, compressibility fraction p_atm / p^2",
     confused_with={
