@@ -240,7 +240,7 @@ def _astray(known: Known) -> bool:
     """
     best = known.judged[0]
     left, ahead = best.hypothesis.fit.over_noise, best.over_noise
-    if can_be_cut(known.bench):
+    if can_be_cut(known.bench) and not known.bench.together:
         if not best.explains_ahead:
             return True
         left, ahead = left_behind(known.bench, best.hypothesis, known.held_out)

@@ -111,6 +111,8 @@ def _check_triangle(rig: Checked, where: str, lower: float, upper: float) -> Non
         inner = direction * (lower if direction > 0 else upper) + offset
         shortest = math.sqrt(max(a * a + b * b - 2.0 * a * b * math.cos(inner), 0.0))
         zero = rig.value(f"{where}.linkage.zero_stroke_length")
+        if rig.value(f"{where}.cylinder.stop_stiffness") > 0.0:
+            return  # its own stop ends the stroke, before the load's do
         # a stop gives way, and may lie a little beyond zero stroke; but the piston does not pass the dead volume
         room = rig.value(f"{where}.cylinder.dead_volume_a") / rig.value(f"{where}.cylinder.area_a")
         if zero - shortest > room:

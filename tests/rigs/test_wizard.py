@@ -164,3 +164,16 @@ def test_strange_answers_give_a_rig_or_one_printable_line():
             assert str(error).isprintable()
             done[False] += 1
     assert min(done.values()) > 20
+
+
+def test_a_fit_may_move_the_load_s_stops_behind_those_of_the_cylinder():
+    """A diagnosis that ended with a small dead volume and a late zero stroke could not write its rig."""
+    _, rig = written_rig("link", LINK)
+    zero, stroke = rig.value("linkage.zero_stroke_length"), rig.value("cylinder.stroke")
+    moved = {
+        "linkage.zero_stroke_length": zero + 0.02 * stroke,
+        "cylinder.dead_volume_a": 0.3 * rig.value("cylinder.dead_volume_a"),
+    }
+    assert rig.with_values(moved).value("linkage.zero_stroke_length") > zero
+    with pytest.raises(InputError, match="lies beyond zero stroke"):
+        rig.with_values({**moved, "cylinder.stop_stiffness": 0.0})

@@ -38,8 +38,11 @@ def acts_behind(rig: Rig, path: str) -> bool:
 
 
 def behind_supply(bench: Workbench) -> Workbench | None:
-    """The machine behind the recorded pressure of its pump, without the supply's numbers; None where none is."""
-    parts = _way(bench, ()).parts()
+    """The machine behind the recorded pressure of its pump, without the supply's numbers; None where none is.
+
+    Joints that move together are rolled out with the supply that they share.
+    """
+    parts = None if bench.together else _way(bench, ()).parts()
     if parts is None:
         return None
     own = [free for free in bench.nominal if acts_behind(bench.rig, free.path)]
