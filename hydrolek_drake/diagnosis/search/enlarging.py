@@ -22,7 +22,6 @@ from hydrolek_drake.diagnosis.search.openings import Opening
 from hydrolek_drake.diagnosis.search.standing_in import standing_in
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import GAINS, NOISE, Settings
-from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, redundant, widenings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
@@ -147,11 +146,11 @@ def _lessened(
     if best is found.lessened or not best.effects:
         return
     found.lessened = best
-    entrants = [Entrant(best.without(c), _values_without(best, [c])) for c in best.effects]
+    entrants = [Entrant(best.without(c), best.values_without(c)) for c in best.effects]
     alone = zip(best.effects, tuple(entrants), strict=True)
     entrants += [each for c, without in alone for each in standing_in(bench, without, c, cores)]
     entrants += [
-        Entrant(effects, {**_values_without(best, [c]), **start})
+        Entrant(effects, {**best.values_without(c), **start})
         for c, special, effects in narrowings(best.effects, candidates)
         for start in special.starts[: settings.starts]
     ]
@@ -173,12 +172,6 @@ def _lessened(
         found.keep(each)
 
 
-def _values_without(structure: Hypothesis, additions: Sequence[Addition]) -> dict[str, float]:
-    """Values of a structure's parameters but for those of some of its additions."""
-    own = tuple(c.path + "." for c in additions)
-    return {path: value for path, value in structure.values.items() if not path.startswith(own)}
-
-
 def _named_in_place(
     structure: Hypothesis, candidates: Sequence[Candidate], settings: Settings
 ) -> list[Entrant]:
@@ -186,7 +179,7 @@ def _named_in_place(
     law = [c for c in structure.effects if isinstance(c, LawTerm)]
     places = {(c.joint, c.stage) for c in law}
     rest = tuple(c for c in structure.effects if c not in law)
-    values = _values_without(structure, law)
+    values = structure.values_without(*law)
     return [
         Entrant((*rest, candidate), {**values, **start})
         for candidate in candidates
@@ -204,7 +197,7 @@ def _across(structure: Hypothesis) -> list[Entrant]:
     if not moved or len(moved) < len(forces):
         return []
     rest = tuple(c for c in structure.effects if c not in forces)
-    values = _values_without(structure, forces)
+    values = structure.values_without(*forces)
     for _, told in moved:
         values |= told
     return [Entrant((*rest, *(term for term, _ in moved)), values)]

@@ -38,6 +38,11 @@ def fit_nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) 
         fits = race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (rung,), cores)
         for each in fits:
             found.keep(each)
+        best = found.best  # what it contains may only have been fitted in another local minimum
+        without = [Entrant(best.without(c), best.values_without(c)) for c in best.effects]
+        if without:
+            for each in race(bench, without, (replace(settings.again, keep=len(without)),), cores):
+                found.keep(each)
         if (
             found.best.effects
         ):  # where a fit to other data ended is another local minimum of it, so both are told

@@ -63,6 +63,11 @@ class Hypothesis:
         """Its effects but for one."""
         return tuple(c for c in self.effects if c is not effect)
 
+    def values_without(self, *additions: Addition) -> dict[str, float]:
+        """Its values but for those of some of its additions: full path -> value."""
+        own = tuple(c.path + "." for c in additions)
+        return {path: value for path, value in self.values.items() if not path.startswith(own)}
+
     @property
     def label(self) -> str:
         """What tells it from others in tables."""
