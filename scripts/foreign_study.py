@@ -6,6 +6,7 @@ diagnoses all of them, each once. A run that was cut off goes on.
 
 import argparse
 import json
+import math
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -21,7 +22,7 @@ from hydrolek_drake.wizard.making import written_rig
 LABELS = "labels.json"
 SECONDS = "seconds.json"
 AT_MOST_S = 240.0
-"""By the clock; a case that has not ended by then counts as wrong."""
+"""By the clock, recording included; a case that has not ended by then counts as wrong."""
 
 RIGHT_FRICTIONS = {
     "cylinder.coulomb_friction": {"load.coulomb_friction"},
@@ -40,23 +41,21 @@ def drawn(out: Path, count: int, seed: int) -> list[Foreign]:
     return cases
 
 
-def run(case: Foreign, folder: Path, cores: int) -> float:
-    """Record and diagnose one; processor time [s]."""
+def run(case: Foreign, folder: Path, cores: int) -> None:
+    """Record and diagnose one."""
     record(case, folder)
     text, _ = written_rig(f"foreign_{case.name}", case.sheet)
     rig_file = folder / "rig.yaml"
     write_whole(rig_file, text)
     rig = load_rig(str(rig_file), {})
-    started = time.process_time()
-    with ThreadPoolExecutor(cores) as pool, ended_after(AT_MOST_S):
+    with ThreadPoolExecutor(cores) as pool:
         diagnosed(rig, folder, pool, cores)
-    return time.process_time() - started
 
 
 def row(case: Foreign, folder: Path) -> tuple[str, bool]:
     """A line of the table, and whether the answer is right."""
     wanted = ", ".join(case.conceals) or "nothing"
-    wrong = max(case.wrong, key=lambda key: abs(case.wrong[key] - 1.0) * (1.0 + (case.wrong[key] < 1.0)))
+    wrong = max(case.wrong, key=lambda key: abs(math.log(case.wrong[key])))
     machine = f"{case.kind}, {case.drive}{'' if case.pressures else ', no pressures'}"
     begin = f"| {case.name} | {machine} | {wrong} | {wanted} | {case.shows:.0f} |"
     if not (folder / REPORT).exists():
@@ -90,16 +89,20 @@ def main() -> None:
         folder = given.out / case.name
         if (folder / SECONDS).exists():
             continue
-        try:
-            seconds = run(case, folder, given.cores)
-        except InputError as error:
-            print(f"{case.name}: {error}", flush=True)
-            continue
-        except KeyboardInterrupt:
-            print(f"{case.name}: not ended", flush=True)
-            continue
-        write_whole(folder / SECONDS, json.dumps(seconds))
-        print(f"{case.name}: {seconds:.0f} s", flush=True)
+        with ended_after(AT_MOST_S) as limit:
+            started = time.process_time()
+            try:
+                run(case, folder, given.cores)
+                told = "ended"
+            except InputError as error:
+                told = str(error)
+            except KeyboardInterrupt:
+                if not limit.reached:
+                    raise
+                told = "not ended"
+            seconds = time.process_time() - started
+        write_whole(folder / SECONDS, json.dumps(seconds))  # a case counts as it was first run
+        print(f"{case.name}: {told}, {seconds:.0f} s", flush=True)
     print("| case | machine | most wrong | concealed | times the noise | told | right | s |")
     print(8 * "|---" + "|")
     rows = [row(case, given.out / case.name) for case in cases]

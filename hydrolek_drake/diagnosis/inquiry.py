@@ -14,7 +14,6 @@ from hydrolek_drake.diagnosis.locating.terms_for import estimates_for, terms_for
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.lost_commands.search import lost_in
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
-from hydrolek_drake.diagnosis.search.by_parts import can_be_cut
 from hydrolek_drake.diagnosis.search.from_the_cut import left_behind, search_machine
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, NOISE, Settings
@@ -235,15 +234,17 @@ def _astray(known: Known) -> bool:
     """Whether the best structure leaves more of the held-out data than the training data lead one to expect.
 
     That is as much, to what noise is known to; where it does not explain these, what it leaves is its own discrepancy,
-    which differs between movements by more. What a pump's line does is not told for long (`Judged.rings`), but what
-    lies behind its recorded pressure is.
+    which differs between movements by more. What a pump's line does is not told for long (`Judged.explains_ahead`), but
+    what lies behind its recorded pressure is.
     """
     best = known.judged[0]
     left, ahead = best.hypothesis.fit.over_noise, best.over_noise
-    if can_be_cut(known.bench) and not known.bench.together:
-        if not best.explains_ahead:
+    behind = left_behind(known.bench, best.hypothesis, known.bench.training)
+    if behind is not None:
+        best = replace(best, left_behind_cut=left_behind(known.bench, best.hypothesis, known.held_out))
+        if best.left_behind_cut is None or not best.explains_ahead:
             return True
-        left, ahead = left_behind(known.bench, best.hypothesis, known.held_out)
+        left, ahead = behind, best.left_behind_cut
     return ahead > max(left, 1.0) * (NOISE.ahead if left <= NOISE.ahead else NOISE.explained_ahead)
 
 

@@ -28,7 +28,7 @@ def built(own: Mapping[str, Any], kind: str, rng: np.random.Generator) -> tuple[
         base[key] = spread(base[key])
     flow = spread(1.0)
     base["rated_flow_l_min"] = [flow * each for each in base["rated_flow_l_min"]]
-    base["supply_bar"] = spread(base["supply_bar"], 1.1)
+    base["supply_bar"] = spread(base["supply_bar"], own["supply_spread"])
     base["displacement_cm3"] *= flow
     for key in ("spool_damping", "delay_ms", "dead_share", "bulk_GPa", "relief_rise", "line_l"):
         base[key] = spread(common[key])
@@ -108,6 +108,7 @@ def _plant(own: Mapping[str, Any], base: Mapping[str, Any], rng: np.random.Gener
         contact=force * lever / (common["coupling_depth"] * gap * stroke / lever) ** 1.5,
         gas_exponent=common["gas_exponent"],
         tip=base["length_m"],
+        stribeck=common["stribeck_m_s"],
     )
 
 

@@ -56,7 +56,7 @@ def sized(
     """
     low, high = own["shows"]
     wanted = float(np.exp(rng.uniform(math.log(low), math.log(high))))
-    when = float(rng.uniform(10.0, 20.0))
+    when = float(rng.uniform(*own["payload_taken_s"]))
     turns = base["moves"] == "link"
     noise, pressure_noise = noises(own, turns)
 
@@ -74,11 +74,9 @@ def sized(
     scale = 1.0
     for _ in range(TRIES):
         found = shown(scale)
-        if (
-            effect == "supply.pump_loss" and found > low
-        ):  # a smaller one is within what its displacement may be
-            return _fields(own, base, plant, effect, scale, when), found
-        if CLOSE * wanted < found < wanted / CLOSE:
+        # a smaller loss would be within what a pump's displacement is known to
+        enough = effect == "supply.pump_loss" and found > low
+        if enough or CLOSE * wanted < found < wanted / CLOSE:
             return _fields(own, base, plant, effect, scale, when), found
         by = wanted / found if math.isfinite(found) and found > 0.0 else 1.0 / FARTHEST
         scale *= min(max(by, 1.0 / FARTHEST), FARTHEST)

@@ -112,7 +112,7 @@ def record(case: Foreign, folder: Path) -> None:
     plant = plant_of(case)
     noise, pressure_noise = noises(own, turns)
     for name, seconds in SIDES.items():
-        done = driven(own, case.kind, plant, case.drive, seconds, rng, noise, None)
+        done = driven(own, case.kind, plant, case.drive, seconds, rng, noise)
         n = done.volts.size
         signals = {
             "joint.command": done.volts,

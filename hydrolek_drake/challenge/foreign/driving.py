@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.challenge.foreign.building import places, start_of
-from hydrolek_drake.challenge.foreign.equations import SAMPLE_S, Closed, played
+from hydrolek_drake.challenge.foreign.equations import SAMPLE_S, STEP_S, Closed, Played, played
 from hydrolek_drake.challenge.foreign.plant import Plant
 
 
@@ -18,9 +18,20 @@ def driven(
     seconds: float,
     rng: np.random.Generator,
     noise: float,
-    step: float | None,
-) -> Any:
-    """A machine under commands that are drawn."""
+    step: float = STEP_S,
+) -> Played:
+    """A machine under commands that are drawn.
+
+    Args:
+        own: of `machines.yaml`.
+        kind: of machine.
+        plant: the machine.
+        drive: open or closed.
+        seconds: how long.
+        rng: of commands, and of the noise that a controller sees.
+        noise: standard deviation of that [rad or m].
+        step: of the integration [s].
+    """
     how, base = own["driving"], own["kinds"][kind]
     start = start_of(base)
     ends = places(plant, (0.0, 1.0))
@@ -47,5 +58,4 @@ def driven(
         high,
     )
     seen = noise * rng.standard_normal(count)
-    extra = {} if step is None else {"step": step}
-    return played(plant, np.array(series[:count]), start, driver, seen, **extra)
+    return played(plant, np.array(series[:count]), start, driver, seen, step)

@@ -51,10 +51,10 @@ class Plant(NamedTuple):
         contact: stiffness of the sides of a play.
         gas_exponent: of bubbles.
         tip: distance at which a payload hangs [m].
+        stribeck: speed over which further friction at rest fades [m/s].
         leak: past the piston [m^3/(s Pa)].
         coulomb: friction of the seals [N].
         static: further friction at rest [N].
-        stribeck: speed over which that fades [m/s].
         late_s: further dead time [s].
         droop: of a constant supply [Pa s/m^3].
         lost: share of the pump's flow that is missing.
@@ -111,10 +111,10 @@ class Plant(NamedTuple):
     contact: float
     gas_exponent: float
     tip: float
+    stribeck: float
     leak: float = 0.0
     coulomb: float = 0.0
     static: float = 0.0
-    stribeck: float = 0.02
     late_s: float = 0.0
     droop: float = 0.0
     lost: float = 0.0

@@ -33,9 +33,8 @@ def data_sheet(
     by = own["sheet"]
     known = {"supply_pressure": by["pressure_wrong_by"], "displacement": by["displacement_wrong_by"]}
     wrong = {key: float(known.get(key, by["wrong_by"]) ** rng.uniform(-1, 1)) for key in erring}
-    one = str(
-        rng.choice([key for key in erring if key not in known and key != "length"])
-    )  # a ruler tells that
+    measured = {*known, "length"}  # by a gauge, by its maker, by a ruler
+    one = str(rng.choice([key for key in erring if key not in measured]))
     wrong[one] = float(by["wrong_one"] ** rng.choice([-1.0, 1.0]))
     stroke = base["stroke_mm"]
     dead = base["dead_share"] * 0.25 * math.pi * base["bore_mm"] ** 2 * stroke / 1e3

@@ -34,9 +34,8 @@ class Judged:
         behind_error: standard error of that.
         fitted_too: times the noise that it leaves of these data beyond what it leaves of the others, fitted to both;
             None where nobody asked.
-        rings: whether the line of a pump is among what it follows. When a relief valve sticks and its line rings next
-            depends on all before it, which no model tells for long: one that explains what lies behind its recorded
-            pressure may be far off now and then, but not on the whole.
+        left_behind_cut: times the noise that it leaves of these data behind the recorded pressure of a pump
+            (`search.from_the_cut`); None where there is none, or nobody asked.
         stands: recording (`windows.recording_of`) -> additions and place in the unit cube there (`nuisance`).
     """
 
@@ -49,7 +48,7 @@ class Judged:
     behind: float = 0.0
     behind_error: float = math.nan
     fitted_too: float | None = None
-    rings: bool = False
+    left_behind_cut: float | None = None
     stands: Mapping[str, tuple[tuple[Addition, ...], np.ndarray]] = field(default_factory=dict)
 
     @property
@@ -59,11 +58,18 @@ class Judged:
 
     @property
     def explains_ahead(self) -> bool:
-        """Whether it leaves so little of the held-out data that nothing is missing that these show."""
-        left = self.over_noise if self.fitted_too is None else min(self.over_noise, self.fitted_too)
-        if self.rings:
-            return left <= NOISE.far
-        return left <= (NOISE.explained_ahead if self.hypothesis.effects else NOISE.explained)
+        """Whether it leaves so little of the held-out data that nothing is missing that these show.
+
+        When a relief valve sticks and its line rings next depends on all before it, which no model tells for long: one
+        that explains what lies behind the recorded pressure may be off in the line now and then, but not be far from
+        the noise on the whole.
+        """
+        most = NOISE.explained_ahead if self.hypothesis.effects else NOISE.explained
+        if self.fitted_too is not None and self.fitted_too <= most:
+            return True
+        if self.left_behind_cut is None:
+            return self.over_noise <= most
+        return self.left_behind_cut <= most and self.over_noise <= NOISE.far
 
     @property
     def fails_ahead_alone(self) -> bool:

@@ -22,8 +22,8 @@ from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.problems import problem_with
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
-from hydrolek_drake.diagnosis.search.by_parts import can_be_cut
 from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
+from hydrolek_drake.diagnosis.search.from_the_cut import left_behind
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
@@ -59,13 +59,7 @@ def _looked_at(
     """What hypotheses leave of the held-out data as they are fitted."""
     counted = sum(experiment.counted for experiment in held_out)
     return bench.side_by_side(
-        lambda h: Judged(
-            h,
-            bench.residuals(h, held_out, bench.step_for(h.effects)),
-            counted,
-            rings=can_be_cut(bench),
-        ),
-        hypotheses,
+        lambda h: Judged(h, bench.residuals(h, held_out, bench.step_for(h.effects)), counted), hypotheses
     )
 
 
@@ -171,14 +165,7 @@ def _predicted(
     """Structures with the density of the held-out data."""
     counted = sum(experiment.counted for experiment in held_out)
     begun = [
-        with_stands(
-            bench,
-            Judged(h, np.zeros(0), counted, rings=can_be_cut(bench)),
-            held_out,
-            settings,
-            cores,
-        )
-        for h in hypotheses
+        with_stands(bench, Judged(h, np.zeros(0), counted), held_out, settings, cores) for h in hypotheses
     ]
     places = []
     for own in begun:
@@ -263,6 +250,8 @@ def left_of(
         for j in judged
     )
     told = with_differences(told, held_out)
+    behind = left_behind(bench, told[0].hypothesis, held_out)
+    told = (replace(told[0], left_behind_cut=behind), *told[1:])
     if not told[0].fails_ahead_alone or own_of_recordings(told[0].hypothesis).any():
         return told
     [squares] = _beyond(bench, [told[0].hypothesis], held_out, settings, cores)

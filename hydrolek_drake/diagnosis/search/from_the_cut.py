@@ -90,25 +90,20 @@ def _behind_of(bench: Workbench, seeds: Sequence[Hypothesis]) -> list[Hypothesis
     return list(kept.values())
 
 
-def left_behind(
-    bench: Workbench, structure: Hypothesis, held_out: Sequence[Experiment]
-) -> tuple[float, float]:
-    """Times the noise that a structure leaves behind the cut: of the training data, and of others.
+def left_behind(bench: Workbench, structure: Hypothesis, experiments: Sequence[Experiment]) -> float | None:
+    """Times the noise that a structure leaves of recordings behind the cut; None where there is none.
 
     Args:
-        bench: data and problems of all of the machine, which can be cut.
+        bench: data and problems of all of the machine.
         structure: fitted to all of the machine.
-        held_out: of all of the machine.
+        experiments: of all of the machine.
     """
     part = behind_supply(bench)
-    assert part is not None
-    left = []
-    for experiments in (part.training, [e.with_recorded_supply() for e in held_out]):
-        weighted = weighted_by(part, structure, experiments)
-        residuals = part.residuals(structure, weighted, part.step_for(structure.effects))
-        counted = max(sum(e.counted for e in weighted), 1)
-        left.append(math.sqrt(float(residuals @ residuals) / counted))
-    return left[0], left[1]
+    if part is None:
+        return None
+    weighted = weighted_by(part, structure, [e.with_recorded_supply() for e in experiments])
+    residuals = part.residuals(structure, weighted, part.step_for(structure.effects))
+    return math.sqrt(float(residuals @ residuals) / max(sum(e.counted for e in weighted), 1))
 
 
 def _with_supply(

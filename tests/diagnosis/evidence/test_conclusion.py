@@ -73,6 +73,20 @@ def test_a_nominal_model_that_does_not_predict_is_not_called_complete() -> None:
     assert conclude(with_probabilities([_judged((), 0.99, ahead=1.2)])).verdict == "unlisted_physics"
 
 
+@pytest.mark.parametrize(
+    ("whole", "behind", "verdict"),
+    [
+        (1.4, 1.0, "none"),  # a line that rings otherwise now and then
+        (1.4, 1.3, "unlisted_physics"),  # something is missing behind its recorded pressure
+        (3.5, 1.0, "unlisted_physics"),  # the line is far off on the whole
+        (1.05, 1.3, "unlisted_physics"),
+    ],
+)
+def test_a_line_that_rings_excuses_nothing_behind_its_recorded_pressure(whole, behind, verdict) -> None:
+    judged = replace(_judged((), 0.99, ahead=whole), left_behind_cut=behind)
+    assert conclude(with_probabilities([judged])).verdict == verdict
+
+
 def test_what_does_not_predict_better_is_not_named(effect) -> None:
     """However much better it fits the training data: improvement counts on held-out data."""
     leak, gap = effect["cylinder.cross_port_leakage"], effect["linkage.backlash"]

@@ -1,5 +1,6 @@
 """A pump's line that rings: what lies behind its recorded pressure is searched first, and then all of the machine."""
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -68,14 +69,14 @@ def played(rig: Rig, planted: dict[str, str], seed: int, seconds: float = 8.0) -
     return found
 
 
-def asked(rig: Rig, planted: dict[str, str]) -> Answer:
+def asked(rig: Rig, planted: dict[str, str], say: Callable[[str], None] = lambda text: None) -> Answer:
     """What is said of a machine."""
     training, held_out = played(rig, planted, 1), played(rig, planted, 2)
     scales = natural_scales(rig, "joint", [training])
     candidates = [c for c in candidates_of(rig, "joint", scales) if c.id in FEW]
     with ThreadPoolExecutor(2) as pool:
         bench = Workbench(rig, free_parameters(rig), [training], pool)
-        inquiry = Inquiry(candidates, {}, apart=True, say=lambda text: None, cores=2)
+        inquiry = Inquiry(candidates, {}, apart=True, say=say, cores=2)
         return inquiry.answer(bench, [held_out])
 
 
@@ -134,3 +135,18 @@ def test_a_pump_that_gives_too_little_is_named_before_the_cut(rig) -> None:
 def test_a_machine_that_lacks_nothing_is_told_so(rig) -> None:
     answer = asked(rig, {})
     assert answer.conclusion.verdict == "none"
+
+
+@pytest.mark.thorough
+def test_an_interrupt_behind_the_cut_leaves_an_answer_on_all_of_the_machine(rig) -> None:
+    """What was known by then, with the supply's pressure among what it is held against."""
+
+    def interrupted(text: str) -> None:
+        if text.startswith("behind the recorded supply pressure: effects"):
+            raise KeyboardInterrupt
+
+    answer = asked(rig, {LEAK: "2e-12 m^3/(s Pa)"}, interrupted)
+    assert answer.conclusion.verdict == "interrupted"
+    assert answer.conclusion.best.hypothesis.effects == ()
+    followed = [c.model for e in answer.known.bench.training for c in e.channels]
+    assert "supply_pressure" in followed
