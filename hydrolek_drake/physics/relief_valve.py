@@ -86,10 +86,10 @@ def relieved_with_lag(
     drawn = above + now * begins - edge
     pressure, place = _followed(drawn, valve, balance, slope * moves, moves / p.relief_time)
     share = 1.0
-    if (
-        half > 0.0 and moves > 0.0 and way * (pressure - place) < 0.0
-    ):  # it stops where the pressure turns back
-        share = (drawn - valve) / ((drawn - valve) - (pressure - place))
+    back = way * (place - pressure)
+    if half > 0.0 and moves > 0.0 and back > 0.0:  # it stops where the pressure turns back
+        on = max(way * (drawn - valve), 0.0)  # rounding may leave it on the other side of the edge
+        share = on / (on + back)
     if place < 0.0:  # and on its seat
         share = min(share, valve / (valve - place))
     if share < 1.0:

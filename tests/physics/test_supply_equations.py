@@ -173,3 +173,17 @@ def test_a_line_starts_at_rest_or_as_the_rig_says(link_joint):
     assert at_start(link_joint(PUMP)) == (rest, rest)
     joint = link_joint({**PUMP, "supply.initial_pressure": 11.8e6, "supply.initial_relief": 0.25})
     assert_allclose(at_start(joint), (-2e5, 0.25 * rest), rtol=1e-12)
+
+
+def test_a_relief_valve_that_rests_at_an_edge_of_its_play_stays_there(link_joint):
+    """Rounding leaves it a hair's breadth on either side of it, with as little of a rate."""
+    joint = link_joint({**PUMP, "supply.relief_hysteresis": 2.4e5, "supply.relief_time": 5e-3})
+    rng = np.random.default_rng(4)
+    eps = np.finfo(float).eps
+    for _ in range(20_000):
+        valve, slope = rng.uniform(2e5, 4e5), -rng.uniform(50.0, 5000.0)
+        rate = -slope * valve * (1.0 + rng.integers(-3, 4) * eps)
+        above = (valve + rng.choice([-1.2e5, 1.2e5])) * (1.0 + rng.integers(-3, 4) * eps)
+        pressure, place = relieved_with_lag(above, valve, rate, slope, 2.5e-4, joint)
+        assert abs(pressure - above) < 1e-6
+        assert abs(place - valve) < 1e-6

@@ -159,7 +159,7 @@ def fit_json(diagnosis: Diagnosis) -> dict[str, Any] | None:
     sides = {}
     for name, judged in (("baseline", diagnosis.baseline), ("with_effects", diagnosis.best)):
         hypothesis = judged.hypothesis
-        train = diagnosis.bench.residuals(hypothesis, training, diagnosis.step)
+        train = diagnosis.bench.residuals(hypothesis, training, hypothesis.step)
         sides[name] = {
             "train_rms": factor * position_rms(training, train),
             "holdout_rms": factor * position_rms(held_out, judged.held_out),
