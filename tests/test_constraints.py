@@ -1,4 +1,4 @@
-"""constraints.txt can be installed on every Python that pyproject.toml allows, a distribution's first patch releases among them."""
+"""constraints.txt can be installed on every Python that pyproject.toml allows, first patch releases among them."""
 
 import importlib.metadata
 import re
