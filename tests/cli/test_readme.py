@@ -55,6 +55,6 @@ def test_python_example_of_the_readme_runs(capsys, monkeypatch):
 
 def test_versions_are_exact_and_of_registries_only():
     lines = [line for line in (ROOT / "constraints.txt").read_text().splitlines() if not line.startswith("#")]
-    pattern = re.compile(r"[A-Za-z0-9_.-]+==[A-Za-z0-9_.!+-]+( ; python_version >= \"3\.\d+\")?")
+    pattern = re.compile(r"[A-Za-z0-9_.-]+==[A-Za-z0-9_.!+-]+( ; python_(full_)?version >= \"3\.[\d.]+\")?")
     assert lines and all(pattern.fullmatch(line) for line in lines)
     assert "hydrolek" not in " ".join(lines)
