@@ -59,7 +59,7 @@ def not_told(
                 wrong=False,
             )
         )
-    hydraulic = rig.variant(joint, "cylinder") != "electric_motor"
+    hydraulic = rig.is_hydraulic(joint)
     if hydraulic and f"{joint}.pressure_a" not in recording.signals:
         found.append(
             Complaint(

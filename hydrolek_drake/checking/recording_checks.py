@@ -106,7 +106,7 @@ def _pressures(rig: Rig, recording: Recording) -> list[Complaint]:
     found = []
     supply = rig.value("supply.pressure")
     for joint in rig.joints:
-        if rig.variant(joint, "cylinder") == "electric_motor":
+        if not rig.is_hydraulic(joint):
             return []
     keys = [f"{joint}.{side}" for joint in rig.joints for side in ("pressure_a", "pressure_b")]
     for key in [k for k in (*keys, SUPPLY_KEY) if k in recording.signals]:

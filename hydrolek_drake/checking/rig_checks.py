@@ -32,7 +32,7 @@ def _plausible() -> dict[str, tuple[float, float]]:
 def implausible(rig: Rig) -> list[Complaint]:
     """Values far beyond what machines have, the unit with which each would be plausible beside it."""
     found = []
-    electric = all(rig.variant(joint, "cylinder") == "electric_motor" for joint in rig.joints)
+    electric = all(not rig.is_hydraulic(joint) for joint in rig.joints)
     for path, entry in rig.entries.items():
         stage, _, name = path.removeprefix("joints.").rpartition(".")
         limits = _plausible().get(f"{stage.rpartition('.')[2]}.{name}")

@@ -41,7 +41,7 @@ class Variable(NamedTuple):
 def variables_of(rig: Rig, joints: Sequence[str]) -> list[Variable]:
     """Variables of some joints of a rig, in the order in which a unit lists them."""
     found = [each for joint in joints for each in _of_joint(rig, joint)]
-    hydraulic = [joint for joint in joints if rig.variant(joint, "cylinder") != "electric_motor"]
+    hydraulic = [joint for joint in joints if rig.is_hydraulic(joint)]
     if hydraulic:
         found.append(
             Variable(
@@ -64,7 +64,7 @@ def _of_joint(rig: Rig, joint: str) -> list[Variable]:
         Variable(f"{joint}.true_{place}", position, OUTPUT, joint, "position", "where it is"),
         Variable(f"{joint}.{speed}", rate, OUTPUT, joint, "velocity", "how fast it moves"),
     ]
-    if rig.variant(joint, "cylinder") != "electric_motor":
+    if rig.is_hydraulic(joint):
         found += [
             Variable(f"{joint}.pressure_a", "Pa", OUTPUT, joint, "pressure_a", "pressure in chamber A"),
             Variable(f"{joint}.pressure_b", "Pa", OUTPUT, joint, "pressure_b", "pressure in chamber B"),

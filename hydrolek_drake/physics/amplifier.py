@@ -1,11 +1,13 @@
 """Proportional amplifiers A and B: voltage to coil current, equation (4.4)."""
 
+import math
 from typing import Any, NamedTuple
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.smooth import exponential
+from hydrolek_drake.physics.usual import rare
 
 STAGE = Stage(
     "amplifier",
@@ -28,9 +30,37 @@ STAGE = Stage(
             ),
         ),
         "none": (),
+        "pwm": (
+            Parameter("supply_voltage", "V", "that the transistor switches on to the coil", lowest=0.0),
+            Parameter("resistance", "ohm", "of a coil", lowest=0.0, positive=True),
+            Parameter("coil_time", "s", "inductance over resistance of a coil", lowest=0.0, positive=True),
+            Parameter("frequency", "Hz", "of the pulses", lowest=0.0, positive=True),
+            Parameter("least_duty", "1", "share of a pulse at 0 V of command", lowest=0.0, highest=1.0),
+            Parameter("most_duty", "1", "share of a pulse at full command", lowest=0.0, highest=1.0),
+            Parameter("full_voltage", "V", "command of the largest share", lowest=0.0, positive=True),
+        ),
     },
 )
 PROPORTIONAL = float(STAGE.code("proportional"))
+PWM = float(STAGE.code("pwm"))
+
+
+@njit
+def pulsed_current(duty: float, joint: Any) -> float:
+    """Root mean square of the current of a coil that pulses drive [A], which says its force, (4.5).
+
+    The mean is d U/R; around it the current goes up and down in straight lines by U d (1 - d)/(L f), a twelfth of
+    whose square is added to that of the mean (Mohan, Undeland, Robbins, Power Electronics, section 7.3). For pulses
+    that are short beside the coil's time constant; a diode carries the current between them.
+
+    Args:
+        duty: share of a pulse's time that is on, d.
+        joint: parameter record.
+    """
+    p = joint.amplifier
+    mean = duty * p.supply_voltage / p.resistance
+    ripple = p.supply_voltage * duty * (1.0 - duty) / (p.resistance * p.coil_time * p.frequency)
+    return math.sqrt(mean * mean + ripple * ripple / 12.0)
 
 
 @njit
@@ -45,6 +75,11 @@ def coil_currents(voltage: float, time: float, joint: Any) -> tuple[float, float
         joint: parameter record.
     """
     p = joint.amplifier
+    if rare(joint) and p.variant == PWM:
+        share = min(abs(voltage) / p.full_voltage, 1.0)
+        driven = pulsed_current(p.least_duty + share * (p.most_duty - p.least_duty), joint)
+        other = pulsed_current(p.least_duty, joint)
+        return (driven, other) if voltage >= 0.0 else (other, driven)
     if p.variant != PROPORTIONAL:
         return max(voltage, 0.0), max(-voltage, 0.0)
     gain = hooks.coil_gain(time, joint)
@@ -81,7 +116,8 @@ def following(
     """
     a, b = coil_currents(voltage, time, joint)
     p = joint.amplifier
-    if p.variant != PROPORTIONAL or p.coil_time + more <= 0.0:
+    slowed = p.variant == PROPORTIONAL or (rare(joint) and p.variant == PWM)
+    if not slowed or p.coil_time + more <= 0.0:
         return Currents(a, b), Currents(a, b)
     constant = p.coil_time + more
     left = exponential(-h / constant)

@@ -6,9 +6,13 @@ piston area and an angle in place of the stroke.
 
 from typing import Any
 
+import numpy as np
+
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
-from hydrolek_drake.physics.fluid import effective_bulk_modulus
+from hydrolek_drake.physics.fluid import effective_bulk_modulus, softened
+from hydrolek_drake.physics.lines import hose
+from hydrolek_drake.physics.linkages import ball_screw
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.usual import rare
 
@@ -91,12 +95,29 @@ STAGE = Stage(
         ),
         "hydraulic_motor": (*_DISPLACEMENTS, *_CHAMBERS, *_TURNING_FRICTION),
         "electric_motor": (Parameter("force_constant", "N/V", "force over command voltage", lowest=0.0),),
+        "ball_screw": ball_screw.PARAMETERS,
     },
 )
 CYLINDER = float(STAGE.code("cylinder"))
 VANE = float(STAGE.code("vane"))
 HYDRAULIC_MOTOR = float(STAGE.code("hydraulic_motor"))
 ELECTRIC_MOTOR = float(STAGE.code("electric_motor"))
+BALL_SCREW = float(STAGE.code("ball_screw"))
+ELECTRIC = ("electric_motor", "ball_screw")
+"""Variants without oil."""
+
+
+def electric(joints: np.ndarray) -> np.ndarray:
+    """Which of some records, shape (n,), have no oil."""
+    codes = [STAGE.code(variant) for variant in ELECTRIC]
+    return np.asarray(np.isin(joints["cylinder"]["variant"], codes))
+
+
+@njit
+def is_electric(joint: Any) -> bool:
+    """Whether an actuator has no oil."""
+    p = joint.cylinder
+    return p.variant == ELECTRIC_MOTOR or (rare(joint) and p.variant == BALL_SCREW)
 
 
 @njit
@@ -135,7 +156,8 @@ def pressure_rates(
 ) -> tuple[float, float, float, float]:
     """Rates of the chamber pressures [Pa/s] and the chambers' stiffness B/V [Pa/m^3], from continuity.
 
-    P_A' = B/V_A (Q_A - A_A v), P_B' = B/V_B (Q_B + A_B v); pressures do not fall below zero.
+    P_A' = B/V_A (Q_A - A_A v), P_B' = B/V_B (Q_B + A_B v); pressures do not fall below zero. A hose that widens
+    takes oil besides.
 
     Args:
         p_a: pressure on side A [Pa].
@@ -150,6 +172,9 @@ def pressure_rates(
     volume_a, volume_b = counted_volumes(stroke, joint)
     stiffness_a = effective_bulk_modulus(p_a, joint) / volume_a
     stiffness_b = effective_bulk_modulus(p_b, joint) / volume_b
+    if rare(joint) and joint.hose.variant != hose.NONE:
+        _, stiffness_a = softened(joint.hose.expansion_a, 0.0, stiffness_a)
+        _, stiffness_b = softened(joint.hose.expansion_b, 0.0, stiffness_b)
     rate_a = stiffness_a * (flow_a - p.area_a * velocity)
     rate_b = stiffness_b * (flow_b + p.area_b * velocity)
     return _floored(p_a, rate_a, joint), _floored(p_b, rate_b, joint), stiffness_a, stiffness_b
@@ -215,5 +240,7 @@ def friction_force(stroke: float, velocity: float, time: float, joint: Any) -> t
 
 @njit
 def motor_force(voltage: float, joint: Any) -> float:
-    """Force of an electric motor with its drive [N]: force constant times command."""
+    """Force of an electric motor with its drive [N]: force constant times command, or that of a ball screw."""
+    if rare(joint) and joint.cylinder.variant == BALL_SCREW:
+        return ball_screw.screw_force(voltage, joint)
     return joint.cylinder.force_constant * voltage

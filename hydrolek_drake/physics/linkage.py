@@ -1,4 +1,4 @@
-"""From joint angle to rod stroke and lever: triangle between two mounts, or directly coupled."""
+"""From joint angle to rod stroke and lever: triangle between two mounts, directly coupled, four-bar, or a table."""
 
 import math
 from typing import Any
@@ -6,7 +6,9 @@ from typing import Any
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.angle import Angle, angle
+from hydrolek_drake.physics.linkages import four_bar, lever_table
 from hydrolek_drake.physics.parameters import Parameter, Stage
+from hydrolek_drake.physics.usual import rare
 
 STAGE = Stage(
     "linkage",
@@ -69,17 +71,23 @@ STAGE = Stage(
                 highest=1.0,
             ),
         ),
+        "four_bar": four_bar.PARAMETERS,
+        "lever_table": lever_table.PARAMETERS,
     },
 )
 TRIANGLE = float(STAGE.code("triangle"))
 DIRECT = float(STAGE.code("direct"))
+FOUR_BAR = float(STAGE.code("four_bar"))
+LEVER_TABLE = float(STAGE.code("lever_table"))
 
 
 @njit
 def included_angle(position: float, joint: Any) -> float:
     """Angle between the two mounts as seen from the joint axis [rad], direction q + phi."""
     p = joint.linkage
-    return position if p.variant == DIRECT else p.direction * position + p.angle_offset
+    if p.variant == DIRECT or (rare(joint) and p.variant != TRIANGLE):
+        return position
+    return p.direction * position + p.angle_offset
 
 
 @njit
@@ -98,6 +106,10 @@ def stroke_and_lever_at(included: Angle, position: float, joint: Any) -> tuple[f
     p = joint.linkage
     if p.variant == DIRECT:
         return p.direction * (position - p.zero_stroke_position), p.direction
+    if rare(joint) and p.variant == FOUR_BAR:
+        return four_bar.stroke_and_lever_of_four_bar(position, joint)
+    if rare(joint) and p.variant == LEVER_TABLE:
+        return lever_table.stroke_and_lever_of_table(position, joint)
     a = p.distance_parent
     b = p.distance_child
     length = math.sqrt(a * a + b * b - 2.0 * a * b * included.cosine)

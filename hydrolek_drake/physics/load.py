@@ -5,7 +5,9 @@ from typing import Any
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.angle import Angle, angle
+from hydrolek_drake.physics.cylinder import BALL_SCREW
 from hydrolek_drake.physics.linkage import stroke_and_lever
+from hydrolek_drake.physics.linkages.ball_screw import screw_mass
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.usual import rare
 
@@ -185,7 +187,12 @@ def resisting_load(position: Angle, velocity: float, time: float, joint: Any) ->
 
 @njit
 def reflected_rod_inertia(joint: Any) -> float:
-    """Inertia of the moving rod at the joint [kg m^2]: M_R times the squared lever in mid-travel, (4.9)."""
+    """Inertia of the moving rod at the joint [kg m^2]: M_R times the squared lever in mid-travel, (4.9).
+
+    Of a ball screw it is the mass that its turning parts add to the nut's [kg].
+    """
+    if rare(joint) and joint.cylinder.variant == BALL_SCREW:
+        return screw_mass(joint)
     mass = joint.cylinder.rod_mass
     if not mass > 0.0:
         return 0.0

@@ -22,15 +22,17 @@ from hydrolek_drake.physics import (
 )
 from hydrolek_drake.physics.driven import DRIVEN, is_driven
 from hydrolek_drake.physics.law import LAW_RECORD
+from hydrolek_drake.physics.lines import accumulator, hose
 from hydrolek_drake.physics.parameters import Stage
 from hydrolek_drake.physics.usual import MARK, RARE, RARE_NUMBERS
+from hydrolek_drake.physics.valves import load_holding
 
-SHARED_STAGES: dict[str, Stage] = {s.STAGE.name: s.STAGE for s in (supply, fluid)}
+SHARED_STAGES: dict[str, Stage] = {s.STAGE.name: s.STAGE for s in (supply, accumulator, fluid)}
 """Stages that all joints of a rig share."""
 
 JOINT_STAGES: dict[str, Stage] = {
     s.STAGE.name: s.STAGE
-    for s in (command, amplifier, solenoid, valve, cylinder, linkage, load, base, sensor)
+    for s in (command, amplifier, solenoid, valve, load_holding, hose, cylinder, linkage, load, base, sensor)
 }
 """Stages that each joint has of its own, in the order from command to sensor."""
 

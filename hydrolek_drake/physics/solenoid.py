@@ -10,6 +10,7 @@ from typing import Any
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.parameters import Parameter, Stage
+from hydrolek_drake.physics.usual import rare
 from hydrolek_drake.physics.valve import openings
 
 STAGE = Stage(
@@ -49,6 +50,7 @@ STAGE = Stage(
             Parameter("full_stroke", "m", "spool stroke at rated voltage", lowest=0.0),
             Parameter("bandwidth", "rad/s", "natural frequency of the spool's position loop", lowest=0.0),
             Parameter("damping_ratio", "1", "damping ratio of the spool's position loop", lowest=0.0),
+            Parameter("slew_rate", "m/s", "highest speed of the spool; 0 for any", neutral=0.0, lowest=0.0),
         ),
         "none": (),
     },
@@ -199,6 +201,8 @@ def _step(
     closing_b: float,
 ) -> tuple[float, float]:
     """One Rosenbrock-W step of the spool."""
+    if rare(joint) and joint.solenoid.variant == SERVO_VALVE and joint.solenoid.slew_rate > 0.0:
+        return _slewing(x, v, drive_a, drive_b, dt, joint)
     acceleration, slope = spool_acceleration(x, v, drive_a, drive_b, joint, closing_a, closing_b)
     scale = 1.0 / (1.0 - GAMMA * dt * slope)
     x1, v1 = v, acceleration * scale
@@ -207,3 +211,26 @@ def _step(
     )
     x2, v2 = v + dt * v1 - 2.0 * x1, (acceleration - 2.0 * v1) * scale
     return x + dt * (1.5 * x1 + 0.5 * x2), v + dt * (1.5 * v1 + 0.5 * v2)
+
+
+@njit
+def _slewing(
+    x: float, v: float, drive_a: float, drive_b: float, dt: float, joint: Any
+) -> tuple[float, float]:
+    """One step of a servo valve's spool whose speed is limited, by what its first stage gives or drives.
+
+    Below the limit it is the position loop of `spool_acceleration`; at the limit the speed stays until the loop brakes
+    (Merritt, Hydraulic Control Systems, 1967, section 7.4: a first stage's flow is limited). The loop is solved in two
+    stages as by `_step`, and the speed cut after each.
+    """
+    most = joint.solenoid.slew_rate
+    v = min(max(v, -most), most)
+    acceleration, slope = spool_acceleration(x, v, drive_a, drive_b, joint)
+    scale = 1.0 / (1.0 - GAMMA * dt * slope)
+    x1, v1 = v, acceleration * scale
+    ahead = min(max(v + dt * v1, -most), most)
+    v1 = (ahead - v) / dt
+    acceleration, _ = spool_acceleration(x + dt * x1, ahead, drive_a, drive_b, joint)
+    x2, v2 = ahead - 2.0 * x1, (acceleration - 2.0 * v1) * scale
+    reached = min(max(v + dt * (1.5 * v1 + 0.5 * v2), -most), most)
+    return x + dt * (1.5 * x1 + 0.5 * x2), reached

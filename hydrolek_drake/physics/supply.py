@@ -5,7 +5,8 @@ from typing import Any
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
-from hydrolek_drake.physics.fluid import effective_bulk_modulus
+from hydrolek_drake.physics.fluid import effective_bulk_modulus, softened
+from hydrolek_drake.physics.lines import accumulator
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.relief_valve import relieved_by_valve
 from hydrolek_drake.physics.usual import rare
@@ -113,7 +114,7 @@ def rate_of_change(remembered: float, relief: float, drawn: float, joint: Any) -
     p_0 + b that it would have without hysteresis (Merritt, Hydraulic Control Systems, 1967, section 9.2: static
     characteristic with the gain 1/R), and through the same opening, which is an orifice,
     Q_relief = b/R sqrt((p - p_T)/(p_0 + b - p_T)) at another one. What b/R takes is left to `relieved_by_valve`: the
-    slope is -B/(V R).
+    slope is -B/(V R). An accumulator's gas takes oil besides, `accumulator.gas_capacity`.
 
     Args:
         remembered: see `supply_pressure`.
@@ -125,6 +126,8 @@ def rate_of_change(remembered: float, relief: float, drawn: float, joint: Any) -
     if rare(joint) and p.variant == PUMP:
         pressure, opened = p.pressure + remembered, max(relief, 0.0)
         stiffness = effective_bulk_modulus(max(pressure, 0.0), joint) / p.line_volume
+        if joint.accumulator.variant != accumulator.NONE:
+            _, stiffness = softened(accumulator.gas_capacity(pressure, joint), 0.0, stiffness)
         slope = -stiffness / p.relief_slope
         rate = stiffness * (pumped(pressure, joint) - drawn)
         drop = max(pressure - p.tank_pressure, 0.0)

@@ -13,12 +13,23 @@ from numba.extending import intrinsic
 MARK = "usual"
 """Field that tells the two types of records apart; it lies upon the first number."""
 
-RARE: dict[str, tuple[str, ...]] = {"supply": ("pump",), "valve": ("four_edges",), "load": ("link",)}
+RARE: dict[str, tuple[str, ...]] = {
+    "supply": ("pump",),
+    "accumulator": ("gas",),
+    "amplifier": ("pwm",),
+    "valve": ("four_edges", "flow_map", "pump_controlled"),
+    "holding": ("counterbalance", "pilot_check"),
+    "hose": ("hose",),
+    "cylinder": ("ball_screw",),
+    "linkage": ("four_bar", "lever_table"),
+    "load": ("link",),
+}
 """Stage -> its variants that stand behind `rare`."""
 
 RARE_NUMBERS: tuple[tuple[str, str], ...] = (
     ("cylinder", "stop_stiffness"),
     ("cylinder", "column_compliance"),
+    ("solenoid", "slew_rate"),
 )
 """Stages and their parameters that stand behind it where they are above zero."""
 

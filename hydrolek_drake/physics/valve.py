@@ -6,8 +6,10 @@ from typing import Any, NamedTuple
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.fluid import orifice_conductance
+from hydrolek_drake.physics.lines import hose
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.usual import rare
+from hydrolek_drake.physics.valves import flow_map, load_holding, opening_table, pump_controlled
 
 EDGES = ("pa", "at", "pb", "bt")
 """P-A and B-T open towards A, P-B and A-T towards B."""
@@ -80,13 +82,22 @@ STAGE = Stage(
                 for edge, way in _WAYS.items()
             ),
             Parameter("discharge", "1", "contraction coefficient C_q in (4.7)", lowest=0.0),
+            *opening_table.parameters(_WAYS),
         ),
+        "flow_map": (
+            Parameter("overlap_a", "m", "spool travel before P opens to A", lowest=0.0),
+            Parameter("overlap_b", "m", "spool travel before P opens to B", lowest=0.0),
+            *flow_map.PARAMETERS,
+        ),
+        "pump_controlled": pump_controlled.PARAMETERS,
     },
 )
 PLAIN = float(STAGE.code("plain"))
 PRESSURE_COMPENSATED = float(STAGE.code("pressure_compensated"))
 NO_VALVE = float(STAGE.code("none"))
 FOUR_EDGES = float(STAGE.code("four_edges"))
+FLOW_MAP = float(STAGE.code("flow_map"))
+PUMP_CONTROLLED = float(STAGE.code("pump_controlled"))
 
 
 class Openings(NamedTuple):
@@ -107,12 +118,40 @@ def openings(x: float, joint: Any) -> Openings:
     """
     p = joint.valve
     shift = hooks.land_shift(joint)
+    if rare(joint) and p.variant == PUMP_CONTROLLED:
+        towards_a, towards_b = max(x - shift, 0.0), max(shift - x, 0.0)
+        towards_a, towards_b = min(towards_a / p.full_travel, 1.0), min(towards_b / p.full_travel, 1.0)
+        return Openings(towards_a, towards_b, towards_b, towards_a)
+    if rare(joint) and p.variant == FLOW_MAP:
+        towards_a = _opened(x - (p.overlap_a + shift), p.full_travel - p.overlap_a)
+        towards_b = _opened(-x - (p.overlap_b - shift), p.full_travel - p.overlap_b)
+        return Openings(towards_a, towards_b, towards_b, towards_a)
     if rare(joint) and p.variant == FOUR_EDGES:
         return Openings(
-            _opened(x - (p.overlap_pa + shift), p.full_opening - p.overlap_pa),
-            _opened(-x - (p.overlap_at - shift), p.full_opening - p.overlap_at),
-            _opened(-x - (p.overlap_pb - shift), p.full_opening - p.overlap_pb),
-            _opened(x - (p.overlap_bt + shift), p.full_opening - p.overlap_bt),
+            opening_table.tabled(
+                _opened(x - (p.overlap_pa + shift), p.full_opening - p.overlap_pa),
+                p.share_pa_quarter,
+                p.share_pa_half,
+                p.share_pa_three_quarters,
+            ),
+            opening_table.tabled(
+                _opened(-x - (p.overlap_at - shift), p.full_opening - p.overlap_at),
+                p.share_at_quarter,
+                p.share_at_half,
+                p.share_at_three_quarters,
+            ),
+            opening_table.tabled(
+                _opened(-x - (p.overlap_pb - shift), p.full_opening - p.overlap_pb),
+                p.share_pb_quarter,
+                p.share_pb_half,
+                p.share_pb_three_quarters,
+            ),
+            opening_table.tabled(
+                _opened(x - (p.overlap_bt + shift), p.full_opening - p.overlap_bt),
+                p.share_bt_quarter,
+                p.share_bt_half,
+                p.share_bt_three_quarters,
+            ),
         )
     towards_a = _opened(x - (p.overlap_a + shift), p.full_opening_a - p.overlap_a)
     towards_b = _opened(-x - (p.overlap_b - shift), p.full_opening_b - p.overlap_b)
@@ -214,6 +253,20 @@ def edge_conductances(
         if opened.at > 0.0:
             area = _choked(opened.at, choke) * p.area_gradient_at * (p.full_opening - p.overlap_at)
             at += orifice_conductance(area, p_a - p_tank, coefficient, joint)
+    elif rare(joint) and p.variant == FLOW_MAP:
+        if opened.pa > 0.0:
+            pa += gain * flow_map.mapped_conductance(True, opened.pa, p_supply - p_a, joint)
+            bt += gain * flow_map.mapped_conductance(True, opened.bt, p_b - p_tank, joint)
+        if opened.pb > 0.0:
+            pb += gain * flow_map.mapped_conductance(False, opened.pb, p_supply - p_b, joint)
+            at += gain * flow_map.mapped_conductance(False, opened.at, p_a - p_tank, joint)
+    if rare(joint) and joint.holding.variant != load_holding.NONE:
+        fed_a, fed_b = opened.pa > 0.0, opened.pb > 0.0
+        pa, at, pb, bt = load_holding.with_load_held(
+            (pa, at, pb, bt), fed_a, fed_b, p_supply, p_a, p_b, joint
+        )
+    if rare(joint) and joint.hose.variant != hose.NONE:
+        pa, at, pb, bt = hose.through_hoses((pa, at, pb, bt), p_supply, p_a, p_b, joint)
     return pa, at, pb, bt
 
 
@@ -246,6 +299,10 @@ def chamber_flows(
     pressure settle, for the integrator.
     """
     p_tank = joint.supply.tank_pressure
+    if rare(joint) and joint.valve.variant == PUMP_CONTROLLED:
+        return pump_controlled.pumped_flows(
+            opened.pa - opened.pb, p_a, p_b, time, hooks.cross_conductance(joint), joint
+        )
     pa, at, pb, bt = edge_conductances(opened, p_supply, p_a, p_b, time, joint)
     at *= max(1.0 + back_a, 0.0)
     bt *= max(1.0 + back_b, 0.0)

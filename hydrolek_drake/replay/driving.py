@@ -62,7 +62,7 @@ def moved(
         elsewhere: joint without a command -> reading where it rests, if that is known [rad or m].
         recorded: joint -> what was recorded in place of a part of it, from the first of `times` on.
     """
-    hydraulic = [one for one in driven if rig.variant(one.joint, "cylinder") != "electric_motor"]
+    hydraulic = [one for one in driven if rig.is_hydraulic(one.joint)]
     given = recorded or {}
     together = _together(rig, hydraulic, times, elsewhere, given) if len(hydraulic) > 1 else {}
     return {

@@ -75,7 +75,7 @@ def pairs_of_joint(rig: Rig, joint: str, recording: Recording, signals: Signals)
     key = position_key(rig, joint)
     unit = "m" if key.endswith(".position") else "rad"
     pairs = [Pair(key, unit, joint, measured_position(rig, joint, recording), signals.reading)]
-    if rig.variant(joint, "cylinder") != "electric_motor":
+    if rig.is_hydraulic(joint):
         for quantity in ("pressure_a", "pressure_b"):
             key = f"{joint}.{quantity}"
             if key in recording.signals and key not in rig.driven_by:
@@ -88,7 +88,7 @@ def supply_pair(rig: Rig, recording: Recording, by_joint: dict[str, Signals]) ->
 
     The joints that do have one in common.
     """
-    drawing = [joint for joint in by_joint if rig.variant(joint, "cylinder") != "electric_motor"]
+    drawing = [joint for joint in by_joint if rig.is_hydraulic(joint)]
     if SUPPLY_KEY not in recording.signals or SUPPLY_KEY in rig.driven_by or not drawing:
         return None
     model = by_joint[drawing[0]].supply_pressure

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.physics.cylinder import ELECTRIC
 from hydrolek_drake.physics.driven import CHAMBERS_ONLY, UPSTREAM
 
 SUPPLY = "supply.pressure"
@@ -35,7 +36,7 @@ def read_driven_by(raw: Any, joints: Sequence[str], variants: dict[str, str], pa
         if key not in choices:
             raise InputError(f"{where}: '{key}' drives nothing; choose {', '.join(choices)}")
         joint = key.partition(".")[0]
-        if key != SUPPLY and variants[f"joints.{joint}.cylinder"] == "electric_motor":
+        if key != SUPPLY and variants[f"joints.{joint}.cylinder"] in ELECTRIC:
             raise InputError(f"{where}: {key}: {joint} has an electric motor, which has no oil")
         if key == f"{joint}.{SPOOL}" and variants[f"joints.{joint}.solenoid"] == "none":
             raise InputError(f"{where}: {key}: {joint} has no spool")

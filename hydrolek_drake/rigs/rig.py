@@ -13,6 +13,7 @@ from hydrolek_drake.effects.catalogue import EFFECTS
 from hydrolek_drake.effects.effect import Effect
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import supply
+from hydrolek_drake.physics.cylinder import ELECTRIC
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.records import JOINT, JOINT_STAGES, SHARED_STAGES
 from hydrolek_drake.rigs import geometry
@@ -96,6 +97,10 @@ class Rig:
     def variant(self, joint: str, stage: str) -> str:
         """The chosen variant of a stage."""
         return self.variants[stage if stage in SHARED_STAGES else f"joints.{joint}.{stage}"]
+
+    def is_hydraulic(self, joint: str) -> bool:
+        """Whether oil moves a joint."""
+        return self.variant(joint, "cylinder") not in ELECTRIC
 
     def with_values(self, values: Mapping[str, float]) -> "Rig":
         """A copy with other values (SI); a parameter that followed another one no longer does."""

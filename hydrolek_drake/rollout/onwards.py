@@ -220,7 +220,7 @@ def onwards(
     Raises:
         InputError: the rig cannot be rolled out.
     """
-    hydraulic = [joint for joint in joints if rig.variant(joint, "cylinder") != "electric_motor"]
+    hydraulic = [joint for joint in joints if rig.is_hydraulic(joint)]
     alone = [joint for joint in joints if joint not in hydraulic or len(hydraulic) == 1]
     found: list[JointOnwards | JointsOnwards] = [
         JointOnwards(rig, joint, time, positions.get(joint)) for joint in alone

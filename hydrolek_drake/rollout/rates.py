@@ -114,7 +114,7 @@ def felt_at(probe: Probe, law: np.ndarray | None, time: float, s: State, x: floa
         s, x = as_recorded(s, x, probe, joint)
     q, w = _rod_side(s, joint)
     stroke = lever = 0.0
-    if joint.cylinder.variant != cylinder.ELECTRIC_MOTOR:
+    if not cylinder.is_electric(joint):
         stroke, lever = linkage.stroke_and_lever(q, joint)
     return felt(probe, law, lever, Seen(time, s.q, s.w, stroke, lever * w, s.p_a, s.p_b, x))[0]
 
@@ -150,7 +150,7 @@ def rates(
     """
     rocking = hooks.base_stiffness(joint) > 0.0
     playing = hooks.linkage_gap(joint) > 0.0
-    oil = joint.cylinder.variant != cylinder.ELECTRIC_MOTOR
+    oil = not cylinder.is_electric(joint)
     if rare(joint):
         s, x = as_recorded(s, x, outside, joint)
     side_q, side_w = _rod_side(s, joint)

@@ -81,7 +81,7 @@ def _rest(
     state[6], state[16] = supply.at_start(joint)
     state[12] = time
     state[14], state[15] = amplifier.coil_currents(0.0, time, joint)
-    if joint.cylinder.variant == cylinder.ELECTRIC_MOTOR:
+    if cylinder.is_electric(joint):
         state[9] = q
         return
     if by_itself:

@@ -107,7 +107,7 @@ def _stiffness(part: float, slope: Slopes, joint: Any) -> float:
 def _areas(joint: Any) -> tuple[float, float]:
     """Areas on which the oil acts; none of an electric motor."""
     c = joint.cylinder
-    return (0.0, 0.0) if c.variant == cylinder.ELECTRIC_MOTOR else (c.area_a, c.area_b)
+    return (0.0, 0.0) if cylinder.is_electric(joint) else (c.area_a, c.area_b)
 
 
 @njit(forceinline=True)

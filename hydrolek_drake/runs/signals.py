@@ -3,6 +3,7 @@
 import numpy as np
 
 from hydrolek_drake.physics.command import calibrated_voltages
+from hydrolek_drake.physics.cylinder import ELECTRIC
 from hydrolek_drake.runs.running import ScenarioRun, held_at
 
 
@@ -46,7 +47,7 @@ def named_signals(done: ScenarioRun) -> tuple[dict[str, np.ndarray], dict[str, s
         for quantity, unit in (("pressure_a", "Pa"), ("pressure_b", "Pa"), ("spool", "m")):
             if quantity in run.signals:
                 keep(f"{joint}.{quantity}", run.signals[quantity][:, i], unit)
-        by_rod = rig.variant(joint, "cylinder") in ("cylinder", "electric_motor")
+        by_rod = rig.variant(joint, "cylinder") in ("cylinder", *ELECTRIC)
         if by_rod:
             keep(f"{joint}.force", run.signals["force"][:, i], "N")
     if "supply_pressure" in run.signals:

@@ -78,7 +78,7 @@ def initial_context(station: Station, positions: np.ndarray | None = None) -> Co
     tilts, leads = np.zeros(len(q)), q.copy()
     for i, joint_record in enumerate(joints):
         tilts[i], leads[i] = rest_tilt_and_lead(joint_record, q[i], needed[i])
-    if "actuator" in station.systems and not (joints["cylinder"]["variant"] == cylinder.ELECTRIC_MOTOR).any():
+    if "actuator" in station.systems and not cylinder.electric(joints).any():
         pressures = np.array(
             [rest_pressures(record, leads[i] - tilts[i], needed[i]) for i, record in enumerate(joints)]
         )

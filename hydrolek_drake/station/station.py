@@ -99,7 +99,7 @@ def make_station(
     delay = add(TransportDelay(joints, sizes.step))
     _wire_command(builder, add, joints, delay, command, operator)
     parts = wire_mechanics(builder, add, rig, joints, body, sizes)
-    electric = joints["cylinder"]["variant"] == cylinder.ELECTRIC_MOTOR
+    electric = cylinder.electric(joints)
     if electric.all():
         motor = add(ElectricMotor(joints))
         builder.Connect(_behind_the_ramp(builder, add, joints, sizes, delay.voltage), motor.voltage)

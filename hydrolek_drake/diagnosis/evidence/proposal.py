@@ -83,7 +83,7 @@ def propose(
     template = bench.training[0]
     amplitude = float(np.abs(template.command).max())
     options: list[tuple[str, Experiment]] = []
-    hydraulic = bench.rig.variant(template.joint, "cylinder") != "electric_motor"
+    hydraulic = bench.rig.is_hydraulic(template.joint)
     unrecorded = hydraulic and len(template.channels) == 1
     if unrecorded:
         options.append(

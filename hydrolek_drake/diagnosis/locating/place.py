@@ -58,7 +58,7 @@ def conditions_for(rig: Rig, experiment: Experiment, signals: Signals) -> dict[s
     fastest = float(speed.max()) or 1.0
     holds["while the joint is slow"] = (speed < SLOW * fastest) & ~holds["at rest"]
     holds["at high flow demand"] = speed > HIGH_FLOW * fastest
-    if rig.variant(experiment.joint, "cylinder") != "electric_motor":
+    if rig.is_hydraulic(experiment.joint):
         bound = LOW_PRESSURE * rig.value("supply.pressure")
         holds["at low pressure on the bore side"] = signals.pressure_a < bound
         holds["at low pressure on the rod side"] = signals.pressure_b < bound

@@ -32,7 +32,7 @@ def natural_scales(rig: Rig, joint: str, experiments: Sequence[Experiment]) -> S
     travel = max(high - low, 10.0 * max(experiment.channels[0].noise for experiment in own))
     duration = max(float(np.ptp(experiment.time)) for experiment in own)
     record = rig.records()[rig.joints.index(joint)]
-    if rig.variant(joint, "cylinder") == "electric_motor":
+    if not rig.is_hydraulic(joint):
         force = float(record["cylinder"]["force_constant"] * record["command"]["limit"])
         speed = max(_fastest(experiment) for experiment in own)
         return motor_scales(force, speed, float(record["load"]["inertia"]), travel, duration)

@@ -78,7 +78,7 @@ def effects_of_others(
         Joint -> spacing [s] and rows of `probes.PROBES`, from the joint's first sample on; empty if fewer than two
         joints move or the joints are driven by motors of their own.
     """
-    hydraulic = [j for j in measured if rig.variant(j, "cylinder") != "electric_motor"]
+    hydraulic = [j for j in measured if rig.is_hydraulic(j)]
     if len(hydraulic) < 2:
         return {}
     records = dict(zip(rig.joints, rig.records(), strict=True))

@@ -72,7 +72,7 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
         unit = "m" if place.endswith(".position") else "rad"
         noise = _noise(position, rig, joint, "noise")
         channels.append(Channel(place, unit, "reading", position, noise))
-    if rig.variant(joint, "cylinder") != "electric_motor":
+    if rig.is_hydraulic(joint):
         for quantity in ("pressure_a", "pressure_b"):
             name = f"{joint}.{quantity}"
             if quantity in wanted and name in recording.signals and name not in rig.driven_by:

@@ -63,7 +63,11 @@ def behind_hose(conductance: float, drop: float, resistance: float, loss: float)
     if conductance <= 0.0 or resistance + loss <= 0.0:
         return conductance
     along = resistance * conductance
-    return 2.0 * conductance / (along + math.sqrt(along * along + 4.0 * (1.0 + loss * conductance**2 * abs(drop))))
+    return (
+        2.0
+        * conductance
+        / (along + math.sqrt(along * along + 4.0 * (1.0 + loss * conductance**2 * abs(drop))))
+    )
 
 
 @njit

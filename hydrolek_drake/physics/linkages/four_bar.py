@@ -14,7 +14,9 @@ PARAMETERS = (
         "crank_arm", "m", "crank's axis G to the coupler's pin on the crank", lowest=0.0, positive=True
     ),
     Parameter("link_angle", "rad", "from O-G to the link's arm at joint angle zero"),
-    Parameter("direction", "1", "1 if the joint angle turns the link's arm on, else -1", lowest=-1.0, highest=1.0),
+    Parameter(
+        "direction", "1", "1 if the joint angle turns the link's arm on, else -1", lowest=-1.0, highest=1.0
+    ),
     Parameter("assembly", "1", "1 if the crank's pin lies left of the way from G to the link's pin, else -1"),
     Parameter("cylinder_arm", "m", "crank's axis G to the cylinder's pin", lowest=0.0, positive=True),
     Parameter("cylinder_angle", "rad", "from the crank's arm to the arm of the cylinder's pin"),
@@ -60,9 +62,7 @@ def stroke_and_lever_of_four_bar(position: float, joint: Any) -> tuple[float, fl
     return length - p.zero_stroke_length, lever
 
 
-def closes(
-    link_arm: float, ground: float, coupler: float, crank_arm: float, turned: float
-) -> bool:
+def closes(link_arm: float, ground: float, coupler: float, crank_arm: float, turned: float) -> bool:
     """Whether the mechanism can be put together with the link's arm `turned` from O-G [rad]; lengths in m."""
     far = math.sqrt(link_arm**2 + ground**2 - 2.0 * link_arm * ground * math.cos(turned))
     return abs(crank_arm - coupler) < far < crank_arm + coupler

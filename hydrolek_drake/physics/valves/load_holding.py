@@ -28,7 +28,9 @@ STAGE = Stage(
         ),
         "pilot_check": (
             *_AREA,
-            Parameter("cracking", "Pa", "pilot beyond the balance of its seat at which it cracks", lowest=0.0),
+            Parameter(
+                "cracking", "Pa", "pilot beyond the balance of its seat at which it cracks", lowest=0.0
+            ),
         ),
     },
     default="none",

@@ -32,7 +32,7 @@ PARAMETERS = (
 
 @njit
 def pumped_flows(
-    x: float, p_a: float, p_b: float, time: float, cross: float, joint: Any
+    given: float, p_a: float, p_b: float, time: float, cross: float, joint: Any
 ) -> tuple[float, float, float, float, float]:
     """Oil flowing into A, into B and drawn from the supply [m^3/s], and each chamber's total conductance.
 
@@ -41,7 +41,7 @@ def pumped_flows(
     valves connect the lower side with the charge line, which gives and takes what the rod makes the sides differ by.
 
     Args:
-        x: place of the control piston [m], positive feeds A.
+        given: flow over the full one, positive feeds A.
         p_a: in chamber A [Pa].
         p_b: in chamber B [Pa].
         time: since switching on [s].
@@ -49,8 +49,7 @@ def pumped_flows(
         joint: parameter record.
     """
     p = joint.valve
-    share = min(max(x / p.full_travel, -1.0), 1.0) * hooks.flow_gain(time, joint)
-    given = share * p.full_flow
+    given = given * p.full_flow * hooks.flow_gain(time, joint)
     lower_b = min(max(0.5 + (p_a - p_b) / p.switching_difference, 0.0), 1.0)
     to_a, to_b = p.charge_conductance * (1.0 - lower_b), p.charge_conductance * lower_b
     p_tank = joint.supply.tank_pressure

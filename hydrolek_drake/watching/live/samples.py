@@ -79,7 +79,7 @@ def by_joint(rig: Rig, joints: Sequence[str], samples: Samples) -> np.ndarray:
         found[:, place, 1] = measured_position(rig, joint, recording)[:count]
         for column, quantity in enumerate(PULLED[1:], start=2):
             name = f"{joint}.{quantity}"
-            if name in recording.signals and rig.variant(joint, "cylinder") != "electric_motor":
+            if name in recording.signals and rig.is_hydraulic(joint):
                 found[:, place, column] = recording.signal(name)[:count]
     found[~np.isfinite(found)] = np.nan
     return found
