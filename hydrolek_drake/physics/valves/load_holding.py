@@ -43,8 +43,8 @@ COUNTERBALANCE = float(STAGE.code("counterbalance"))
 def opened_share(load: float, back: float, pilot: float, joint: Any) -> float:
     """How far a holding valve is open towards the directional valve, 0 to 1.
 
-    A counterbalance valve cracks where the load's pressure and the pilot's times its ratio reach the setting,
-    p_load + R p_pilot = p_set; a pilot-operated check where the pilot lifts it off its seat, R p_pilot = p_load - p_back +
+    A counterbalance valve cracks where the load's pressure and the pilot's times its ratio reach the setting, p_load +
+    R p_pilot = p_set; a pilot-operated check where the pilot lifts it off its seat, R p_pilot = p_load - p_back +
     p_crack (Vickers, Mobile Hydraulics Manual, chapters on pressure controls and check valves). Both open in
     proportion beyond that.
 
