@@ -113,6 +113,12 @@ def motor_scales(force: float, speed: float, inertia: float, travel: float, dura
     )
 
 
+def _first(section: Any, *names: str, or_else: float = math.nan) -> float:
+    """The first of some numbers of a stage that its variant has."""
+    values = (float(section[name]) for name in names)
+    return next((value for value in values if not math.isnan(value)), or_else)
+
+
 def hydraulic_scales(
     joint: Any,
     full_flow: float,
@@ -136,9 +142,9 @@ def hydraulic_scales(
     pressure = float(joint["supply"]["pressure"] - joint["supply"]["tank_pressure"])
     area = float(joint["cylinder"]["area_a"])
     valve, solenoid = joint["valve"], joint["solenoid"]
-    alike = not math.isnan(float(valve["overlap_a"]))  # else each of its edges has an overlap of its own
-    full_opening = float(valve["full_opening_a" if alike else "full_opening"])
-    overlap = abs(float(valve["overlap_a" if alike else "overlap_pa"])) or full_opening
+    # each variant has its own name for these; what a record lacks is NaN
+    full_opening = _first(valve, "full_opening_a", "full_opening", "full_travel")
+    overlap = abs(_first(valve, "overlap_a", "overlap_pa", or_else=0.0)) or full_opening
     spring = float(solenoid["spring"])
     load = joint["load"]
     inertia = float(load["inertia"])

@@ -9,6 +9,7 @@ from typing import Any
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.files import is_file, named_file
+from hydrolek_drake.physics.records import SHARED_STAGES
 from hydrolek_drake.rigs.parts import with_parts
 from hydrolek_drake.rigs.reading import rig_from_tree
 from hydrolek_drake.rigs.rig import Rig
@@ -16,7 +17,7 @@ from hydrolek_drake.yaml_files import read_yaml
 
 _TOP_KEYS = (
     "schema", "name", "title", "source", "based_on", "keep",
-    "supply", "fluid", "joints", "effects", "recording", "integration",
+    *SHARED_STAGES, "joints", "effects", "recording", "integration",
 )  # fmt: skip
 
 SCHEMA = 1
@@ -27,7 +28,7 @@ _MOST_FILES = 16  # that are based on each other
 
 def built_in_rigs() -> dict[str, Path]:
     """Name and file of every built-in rig."""
-    folder = Path(str(resources.files("hydrolek_drake.rigs")))
+    folder = Path(str(resources.files("hydrolek_drake.rigs"))) / "machines"
     return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
 
 

@@ -29,7 +29,7 @@ EFFECT = Effect(
         "valve.null_leakage": "leakage lets the joint creep at zero command",
         "load.payload": "a load acts on pressures at rest as well",
     },
-    needs={"valve": ("plain", "pressure_compensated", "four_edges")},
+    needs={"valve": ("plain", "pressure_compensated", "four_edges", "flow_map")},
 )
 
 

@@ -37,7 +37,7 @@ EFFECT = Effect(
         "cylinder.cross_port_leakage": "a leaking piston lets the load sink; leaking lands also push both "
         "chambers to half the supply",
     },
-    needs={"valve": ("plain", "pressure_compensated", "four_edges")},
+    needs={"valve": ("plain", "pressure_compensated", "four_edges", "flow_map")},
 )
 
 
