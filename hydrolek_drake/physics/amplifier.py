@@ -47,7 +47,7 @@ PWM = float(STAGE.code("pwm"))
 
 @njit
 def pulsed_current(duty: float, joint: Any) -> float:
-    """Root mean square of the current of a coil that pulses drive [A], which says its force, (4.5).
+    """Root mean square of the current of a coil that pulses drive [A], which says its force.
 
     The mean is d U/R; around it the current goes up and down in straight lines by U d (1 - d)/(L f), a twelfth of
     whose square is added to that of the mean (Mohan, Undeland, Robbins, Power Electronics, section 7.3). For pulses

@@ -44,7 +44,7 @@ def _refusal(tmp_path, text):
     ("place", "value", "says"),
     [
         ("supply/presure", {}, ["supply.presure", "did you mean pressure?"]),
-        ("suply", {}, ["'suply'", "supply, fluid, joints"]),
+        ("suply", {}, ["'suply'", "supply, accumulator, fluid, joints"]),
         ("schema", 7, ["schema", "7", "1"]),
         ("supply/pressure/unit", "kg", ["supply.pressure", "'kg'", "Pa"]),
         ("supply/pressure/unit", "MegaPascalish", ["supply.pressure", "'MegaPascalish'", "Pa"]),
