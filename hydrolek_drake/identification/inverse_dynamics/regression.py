@@ -9,6 +9,7 @@ Brunot, Data set and reference models of EMPS, 2019). Unlike a fit of the simula
 the model lacks, but it needs the drive's force and a position fine enough to be differentiated twice.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -18,6 +19,8 @@ from scipy.stats import norm
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.command import drive_voltage
+from hydrolek_drake.physics.cylinder import ELECTRIC, motor_force
+from hydrolek_drake.physics.load import reflected_rod_inertia
 from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.replay.readings import measured_position
 from hydrolek_drake.rigs import Rig
@@ -26,6 +29,9 @@ ORDER = 4
 """Of the Butterworth low-pass."""
 
 CONFIDENCE = 0.95
+
+AT_REST = 3.0
+"""Below so many standard deviations of its noise a speed is none."""
 
 ROUNDING = 1e-3
 """Of a sample: a command that is set this little after an instant is in force at it."""
@@ -80,10 +86,10 @@ def motor_joint(rig: Rig) -> str:
         )
     (joint,) = rig.joints
     drive = rig.variant(joint, "cylinder")
-    if drive != "electric_motor":
+    if drive not in ELECTRIC:
         raise InputError(
-            f"rig {rig.name}: {joint} is driven by a '{drive}'; the force is known of an 'electric_motor' alone, "
-            "so use hydrolek fit"
+            f"rig {rig.name}: {joint} is driven by a '{drive}'; the force is known of an 'electric_motor' or a "
+            "'ball_screw' alone, so use hydrolek fit"
         )
     return joint
 
@@ -94,7 +100,7 @@ def inverse_dynamics(
     """Regress the drive's force.
 
     Args:
-        rig: of one motor-driven joint; its force constant is taken as known.
+        rig: of one motor-driven joint; what its drive makes of a command is taken as known.
         recordings: with command and position, regressed together.
         cutoff_Hz: of the low-pass on the position.
         decimation: samples to one equation.
@@ -177,11 +183,13 @@ def _equations(
     held = np.maximum(np.searchsorted(recording.time, times - delay + ROUNDING * step, side="right") - 1, 0)
     volts = np.array([drive_voltage(float(u), record) for u in recording.signal(key)[held]])
     direction = rig.value(f"joints.{joint}.linkage.direction")
-    force = direction * rig.value(f"joints.{joint}.cylinder.force_constant") * volts
+    force = direction * np.array([motor_force(float(u), record) for u in volts])
     # forwards and backwards, so that position, speed and acceleration are not delayed
     smooth = filtfilt(*butter(ORDER, 2.0 * cutoff_Hz * step), q)
     speed = np.gradient(smooth, step)
-    columns = [np.gradient(speed, step), speed, np.sign(speed)]
+    acceleration = np.gradient(speed, step)
+    force = force - reflected_rod_inertia(record) * acceleration  # what the motor's own parts take
+    columns = [acceleration, speed, np.sign(speed)]
     if rig.variant(joint, "load") == "sliding":
         force = force - rig.value(f"joints.{joint}.load.gravity_cos")
         columns.append(np.ones_like(speed))
@@ -195,10 +203,18 @@ def _equations(
     load = f"joints.{joint}.load"
     at = smooth[::decimation]
     inside = (at > rig.value(f"{load}.lower_stop")) & (at < rig.value(f"{load}.upper_stop"))
+    # at rest dry friction is whatever holds, and the noise of the position says which way it moves
+    noise = rig.value(f"joints.{joint}.sensor.noise")
+    inside &= np.abs(speed[::decimation]) > AT_REST * _noise_of_speed(noise, cutoff_Hz, step)
     inside &= (
         times >= recording.time[0] + delay
     )  # before that, what drives was commanded before the recording
     return times[inside], np.stack(columns, axis=1)[inside], force[inside]
+
+
+def _noise_of_speed(noise: float, cutoff_Hz: float, step: float) -> float:
+    """Standard deviation of a speed from a position with white noise, low-passed: sqrt(2 h int (2 pi f)^2 df) noise."""
+    return noise * 2.0 * math.pi * math.sqrt(2.0 * step * cutoff_Hz**3 / 3.0)
 
 
 def _neighbours(residuals: Sequence[np.ndarray]) -> float:
