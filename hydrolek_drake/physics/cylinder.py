@@ -14,6 +14,7 @@ from hydrolek_drake.physics.fluid import effective_bulk_modulus, softened
 from hydrolek_drake.physics.lines import hose
 from hydrolek_drake.physics.linkages import ball_screw
 from hydrolek_drake.physics.parameters import Parameter, Stage
+from hydrolek_drake.physics.smooth import exponential, logarithm
 from hydrolek_drake.physics.usual import rare
 
 _CHAMBERS = (
@@ -73,6 +74,21 @@ STAGE = Stage(
             ),
             Parameter("stop_damping", "N s/m", "damping of these stops", neutral=0.0, lowest=0.0),
             Parameter(
+                "stop_exponent",
+                "1",
+                "of these stops' force over how deep they are pressed in: 1 for a spring, 1.5 for a round contact",
+                neutral=1.0,
+                lowest=1.0,
+                highest=3.0,
+            ),
+            Parameter(
+                "stop_dissipation",
+                "s/m",
+                "by which share for each m/s these stops press harder inwards than outwards",
+                neutral=0.0,
+                lowest=0.0,
+            ),
+            Parameter(
                 "column_compliance",
                 "m/N",
                 "below this compliance the oil column of a chamber is not counted, 0 for any",
@@ -111,6 +127,10 @@ def electric(joints: np.ndarray) -> np.ndarray:
     """Which of some records, shape (n,), have no oil."""
     codes = [STAGE.code(variant) for variant in ELECTRIC]
     return np.asarray(np.isin(joints["cylinder"]["variant"], codes))
+
+
+STOP_DEPTH = 1e-3
+"""How deep a stop is pressed in where its stiffness counts as the rig has it, whatever its exponent [m]."""
 
 
 @njit
@@ -207,8 +227,9 @@ def hard_stop_force(stroke: float, velocity: float, joint: Any) -> float:
 def elastic_stop(stroke: float, velocity: float, joint: Any) -> tuple[float, float]:
     """Force of the piston's elastic stops against the rod [N], and its slope over velocity [N s/m].
 
-    Spring and damper beyond each end of the stroke, k s + d v (Hunt and Crossley, J. Applied Mechanics 42 (1975) 440,
-    without their weighting); they push back and never pull.
+    Beyond each end of the stroke k s (s/s_0)^(n - 1) (1 + c v) + d v, a spring that hardens, loses energy with its force
+    (Hunt and Crossley, J. Applied Mechanics 42 (1975) 440, 3/2 of whose damping coefficient is c) and by a damper; they
+    push back and never pull. At s_0 = 1 mm the force is the spring's.
     """
     p = joint.cylinder
     if not (rare(joint) and p.variant == CYLINDER and p.stop_stiffness > 0.0):
@@ -216,10 +237,14 @@ def elastic_stop(stroke: float, velocity: float, joint: Any) -> tuple[float, flo
     over = max(stroke - p.stroke, 0.0) + min(stroke, 0.0)
     if over == 0.0:
         return 0.0, 0.0
-    force = p.stop_stiffness * over + p.stop_damping * velocity
+    spring = p.stop_stiffness * over
+    if p.stop_exponent > 1.0:
+        spring *= exponential((p.stop_exponent - 1.0) * logarithm(abs(over) / STOP_DEPTH))
+    further = abs(spring) * p.stop_dissipation
+    force = spring + (further + p.stop_damping) * velocity
     if force * over <= 0.0:
         return 0.0, 0.0
-    return force, p.stop_damping
+    return force, further + p.stop_damping
 
 
 @njit
