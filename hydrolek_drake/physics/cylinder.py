@@ -227,9 +227,9 @@ def hard_stop_force(stroke: float, velocity: float, joint: Any) -> float:
 def elastic_stop(stroke: float, velocity: float, joint: Any) -> tuple[float, float]:
     """Force of the piston's elastic stops against the rod [N], and its slope over velocity [N s/m].
 
-    Beyond each end of the stroke k s (s/s_0)^(n - 1) (1 + c v) + d v, a spring that hardens, loses energy with its force
-    (Hunt and Crossley, J. Applied Mechanics 42 (1975) 440, 3/2 of whose damping coefficient is c) and by a damper; they
-    push back and never pull. At s_0 = 1 mm the force is the spring's.
+    Beyond each end of the stroke k s (s/s_0)^(n - 1) (1 + c v) + d v, a spring that hardens and loses energy with its
+    force (Hunt and Crossley, J. Applied Mechanics 42 (1975) 440; c is 3/2 of their alpha), and a damper; they push back
+    and never pull. At s_0 = 1 mm the force is k s_0.
     """
     p = joint.cylinder
     if not (rare(joint) and p.variant == CYLINDER and p.stop_stiffness > 0.0):

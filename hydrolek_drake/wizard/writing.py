@@ -185,9 +185,17 @@ def _stops(sheet: Sheet) -> list[str]:
             damping,
             "N s/m",
             f"assumed: half of critical with the mass; {fixed('stop_depth_factor')['source']}",
-            (damping / spread, damping * spread),
+            (damping / spread**2, damping * spread),
         ),
+        *(_known_within(name) for name in ("stop_exponent", "stop_dissipation")),
     ]
+
+
+def _known_within(name: str) -> str:
+    """A number of `questions.yaml` with its range."""
+    known = fixed(name)
+    low, high = known["range"]
+    return entry(name, known["value"], known["unit"], known["source"], (low, high), log=False)
 
 
 def _column(sheet: Sheet) -> str:

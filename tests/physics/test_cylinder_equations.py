@@ -111,9 +111,45 @@ def test_a_piston_s_stops_push_back_beyond_its_stroke_and_never_pull(link_joint,
             "cylinder.stroke": 0.2,
             "cylinder.stop_stiffness": 5e6,
             "cylinder.stop_damping": 3e3,
+            "cylinder.stop_exponent": 1.0,
+            "cylinder.stop_dissipation": 0.0,
             "cylinder.viscous_friction": 0.0,
         }
     )
     found, slope = cylinder.friction_force(stroke, velocity, 0.0, joint)
     assert_allclose(found, force, rtol=1e-12, atol=1e-9)
     assert slope == (3e3 if force else 0.0)
+
+
+@pytest.mark.parametrize("depth", [0.2e-3, 1e-3, 3e-3])
+@pytest.mark.parametrize("speed", [0.05, 0.0, -0.05])
+def test_a_stop_that_hardens_is_hunt_and_crossley_s(link_joint, depth, speed):
+    """F = K d^n (1 + 3/2 alpha v) with K = k/(1 mm)^(n - 1) and c = 3/2 alpha."""
+    joint = link_joint(
+        {
+            "cylinder.stroke": 0.2, "cylinder.stop_stiffness": 5e6, "cylinder.stop_damping": 0.0,
+            "cylinder.stop_exponent": 1.5, "cylinder.stop_dissipation": 6.0, "cylinder.viscous_friction": 0.0,
+        }
+    )  # fmt: skip
+    expected = 5e6 / 1e-3**0.5 * depth**1.5 * (1.0 + 6.0 * speed)
+    found, slope = cylinder.friction_force(0.2 + depth, speed, 0.0, joint)
+    assert_allclose(found, expected, rtol=1e-12)
+    assert_allclose(slope, 5e6 / 1e-3**0.5 * depth**1.5 * 6.0, rtol=1e-12)
+    assert_allclose(cylinder.friction_force(-depth, -speed, 0.0, joint)[0], -expected, rtol=1e-12)
+
+
+def test_what_hits_a_stop_of_hunt_and_crossley_loses_the_more_the_faster_it_comes(link_joint):
+    """Slow impacts rebound with 1 - alpha v of their speed (Hunt and Crossley 1975), to first order in alpha v."""
+    joint = link_joint(
+        {
+            "cylinder.stroke": 0.2, "cylinder.stop_stiffness": 5e6, "cylinder.stop_damping": 0.0,
+            "cylinder.stop_exponent": 1.5, "cylinder.stop_dissipation": 1.5, "cylinder.viscous_friction": 0.0,
+        }
+    )  # fmt: skip
+    for came in (0.02, 0.05):
+        x, v, h, mass = 0.0, came, 1e-6, 50.0
+        while x >= 0.0:
+            force = cylinder.friction_force(0.2 + x, v, 0.0, joint)[0]
+            v -= h * force / mass
+            x += h * v
+        assert_allclose(-v / came, 1.0 - came, atol=2.0 * came**2)
