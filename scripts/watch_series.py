@@ -175,7 +175,10 @@ def record(build, label, folder, days, seconds):
         done, rng = played(build, healthy, label, day, seconds)
         reading = done.reading + build.noise * rng.standard_normal(done.reading.size)
         name = f"reference_{day + REFERENCES}.csv" if day < 0 else f"run_2026-03-{day + 1:02d}.csv"
-        signals = {f"{joint}.command": done.volts, f"{joint}.angle": np.round(reading / resolution) * resolution}
+        signals = {
+            f"{joint}.command": done.volts,
+            f"{joint}.angle": np.round(reading / resolution) * resolution,
+        }
         units = {f"{joint}.command": "V", f"{joint}.angle": "rad"}
         write_signals(folder / name, np.arange(done.volts.size) * SAMPLE_S, signals, units)
 
@@ -185,7 +188,9 @@ def watched_rig(name, folder):
     if name != BENCH:
         return load_rig(name)
     path = folder / "bench.yaml"
-    friction = f"{{value: 3000, unit: N s/m, source: 'the bench, warm or cold', range: {BENCH_RANGE}, scale: log}}"
+    friction = (
+        f"{{value: 3000, unit: N s/m, source: 'the bench, warm or cold', range: {BENCH_RANGE}, scale: log}}"
+    )
     text = f"schema: 1\nname: bench\nbased_on: {BENCH}\njoints:\n  joint:\n    cylinder:\n      viscous_friction: {friction}\n"
     write_whole(path, text)
     return load_rig(str(path))
@@ -224,7 +229,9 @@ def row_of(label, watched, seconds, wall):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--machines", type=int, default=10)
     parser.add_argument("--recordings", type=int, default=30)

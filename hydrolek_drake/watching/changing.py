@@ -22,9 +22,6 @@ from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet, free_of_joints
 from hydrolek_drake.rigs import Rig
 
-MIDDLE = 0.5
-"""Of a range: the mean where it alone is known."""
-
 
 @dataclass(frozen=True)
 class Changing:
@@ -76,8 +73,8 @@ def changing_of(
                     entries[free.path] = replace(entry, range=None)
                     continue
                 ends, scale = (free.lower, free.upper), "log" if free.log else "linear"
-                middle = free.from_unit(MIDDLE)
-                entries[free.path] = replace(entry, value=middle, range=ends, scale=scale)
+                begin = candidate.starts[0][free.path]
+                entries[free.path] = replace(entry, value=begin, range=ends, scale=scale)
                 paths.append(free.path)
     return Changing(replace(rig, entries=entries), tuple(dict.fromkeys(paths)))
 
@@ -121,9 +118,7 @@ class PerRecording(ParameterSet):
         for _, origin, recording in copied:
             rows, columns = now[origin][0]
             at = range(count) if recording is None else [recordings.index(recording)]
-            self._places.append(
-                (np.concatenate([rows + k * joints for k in at]), np.tile(columns, len(at)))
-            )
+            self._places.append((np.concatenate([rows + k * joints for k in at]), np.tile(columns, len(at))))
         self._base = np.tile(self._base, count)
 
     @property
@@ -171,9 +166,7 @@ class ReferenceBench(Workbench):
         names = list(dict.fromkeys(e.name for e in training))
         joints = len(rig.joints)
         placed = [replace(e, index=e.index % joints + names.index(e.name) * joints) for e in training]
-        super().__init__(
-            rig, [each for each, _, _ in copies_of(free, changing, names)], placed, pool, cores
-        )
+        super().__init__(rig, [each for each, _, _ in copies_of(free, changing, names)], placed, pool, cores)
         self._free, self._changing = tuple(free), tuple(changing)
         self._parameters = PerRecording(rig, free, changing, names, {})
 
@@ -190,23 +183,24 @@ class ReferenceBench(Workbench):
 
 
 def kept_of(
-    free: Sequence[Free], changing: Sequence[str], unit: np.ndarray, information: np.ndarray
+    parameters: ParameterSet, changing: Sequence[str], unit: np.ndarray, information: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """What a fit of `ReferenceBench` says of a later recording's numbers: mean and information in the rig's order.
 
-    Of those that change nothing but their ranges is known; the others are told by the marginal of the fit.
+    Of those that change no more is known than where the rig has them and their ranges, as in any fit (`SPREAD`); the
+    others are told by the marginal of the fit.
 
     Args:
-        free: parameters of the rig. # (n,)
+        parameters: of the rig, n of them.
         changing: paths of those that change.
         unit: where the fit ended, shared parameters first. # (m,)
         information: of that. # (m, m)
     """
-    stays = np.array([f.path not in changing for f in free])
+    stays = np.array([f.path not in changing for f in parameters.free])
     count = int(stays.sum())
     across = information[:count, count:]
     marginal = information[:count, :count] - across @ np.linalg.solve(information[count:, count:], across.T)
-    mean, whole = np.full(stays.size, MIDDLE), np.eye(stays.size) / SPREAD**2
+    mean, whole = parameters.unit(), np.eye(stays.size) / SPREAD**2
     mean[stays] = unit[:count]
     whole[np.ix_(stays, stays)] = 0.5 * (marginal + marginal.T)
     return mean, whole

@@ -9,7 +9,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.search.nominal import as_weighed
-from hydrolek_drake.diagnosis.settings import Settings
+from hydrolek_drake.diagnosis.settings import NOISE, Settings
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.errors import InputError
@@ -72,9 +72,7 @@ class Reference:
             pool: threads.
             cores: that roll out at the same time.
         """
-        return Session(
-            self.rig, self.training, pool, cores, self.drift, self.posterior, changes=self.changes
-        )
+        return Session(self.rig, self.training, pool, cores, self.drift, self.posterior, changes=self.changes)
 
 
 class Session:
@@ -174,7 +172,7 @@ class Session:
         prior = best.fit.prior_jacobian
         mean, information = best.fit.unit, slopes.T @ slopes + prior.T @ prior
         if self.changing:
-            mean, information = kept_of(self.bench.nominal, self.changing, mean, information)
+            mean, information = kept_of(self.bench.parameters(()), self.changing, mean, information)
         return Posterior(mean, information, best.fit.over_noise)
 
     def problem(
@@ -193,7 +191,16 @@ def _fitted(bench: Workbench, cores: int) -> Hypothesis:
     """The nominal model, the data weighed by it."""
     settings = Settings()
     first = race(bench, [Entrant((), {})], (*settings.free, *settings.ended), cores)[0]
-    return as_weighed(bench, first, settings, cores)
+    best = as_weighed(bench, first, settings, cores)
+    if (
+        isinstance(bench, ReferenceBench) and best.fit.over_noise > NOISE.at
+    ):  # there are more local minima then
+        middle = {free.path: free.from_unit(0.5) for free in bench.nominal}
+        begun = [Entrant((), {}), Entrant((), middle), Entrant((), best.values)]
+        led = race(bench, begun, (*settings.long, settings.ended[-1]), cores)[0]
+        led = as_weighed(bench, led, settings, cores)
+        best = min(best, led, key=lambda each: each.fit.objective)
+    return best
 
 
 def _drifts(paths: Sequence[str], drift: Mapping[str, float]) -> np.ndarray:
