@@ -188,10 +188,10 @@ def watched_rig(name, folder):
     if name != BENCH:
         return load_rig(name)
     path = folder / "bench.yaml"
-    friction = (
-        f"{{value: 3000, unit: N s/m, source: 'the bench, warm or cold', range: {BENCH_RANGE}, scale: log}}"
+    text = (
+        f"schema: 1\nname: bench\nbased_on: {BENCH}\njoints:\n  joint:\n    cylinder:\n      viscous_friction: "
+        f"{{value: 3000, unit: N s/m, source: 'the bench, warm or cold', range: {BENCH_RANGE}, scale: log}}\n"
     )
-    text = f"schema: 1\nname: bench\nbased_on: {BENCH}\njoints:\n  joint:\n    cylinder:\n      viscous_friction: {friction}\n"
     write_whole(path, text)
     return load_rig(str(path))
 

@@ -92,7 +92,8 @@ class Store:
         kept = folder / REFERENCE
         if kept.exists() and read_kept(kept, "the reference of a watch", ("key",))["key"] != key:
             raise InputError(
-                f"--out {folder} holds a watch with another rig, reference, drift or changes; choose or make another folder"
+                f"--out {folder} holds a watch with another rig, reference, drift or changes; "
+                "choose or make another folder"
             )
 
     def reference(self) -> tuple[Posterior, list[Seen]] | None:

@@ -105,6 +105,8 @@ def watch(
         folder: where results are kept; None to keep none.
         drift: path, section or part of one -> standard deviation by which these own numbers may differ from one
             recording to another, in ranges; "" for all others, `settings.DRIFT` without.
+        changes: effects and own numbers that change between recordings of a healthy machine, such as its load: each
+            recording is fitted with its own (`changing`).
         rule: of the alarm.
         cores: that roll out at the same time; all by default.
         pool: threads, or a cluster's; threads of its own by default.
