@@ -265,7 +265,8 @@ def named(out, pace, minutes, leakage):
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     live = ["--live", f"tcp://127.0.0.1:{port}", "--port", "0", "--idle", "20", "--workers", "1"]
-    command = [sys.executable, "-m", "hydrolek_drake.cli.app", "watch", "joint_bench"]
+    start = "import sys; from hydrolek_drake.cli.app import main; sys.exit(main())"
+    command = [sys.executable, "-c", start, "watch", "joint_bench"]
     told = subprocess.Popen([*command, *map(str, references(out)), *live, "--out", str(out / "named")])
     sender, until = None, time.monotonic() + 120.0
     while sender is None:
