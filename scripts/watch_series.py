@@ -23,6 +23,7 @@ from hydrolek_drake.challenge.build import ARM_JOINTS, BENCH, build_of
 from hydrolek_drake.challenge.cases import driven, with_concealed
 from hydrolek_drake.challenge.drawing import INDIVIDUAL, SHOWS, SIZING_STEP_S
 from hydrolek_drake.challenge.driving import SAMPLE_S
+from hydrolek_drake.diagnosis.intervals.curvature import NORMAL
 from hydrolek_drake.files import write_whole
 from hydrolek_drake.recordings import write_signals
 from hydrolek_drake.rigs import load_rig
@@ -196,6 +197,21 @@ def watched_rig(name, folder):
     return load_rig(str(path))
 
 
+def visible_sizes(label, watched):
+    """Sizes that would bring just the gain which an effect needs, by how surely recordings tell the planted one.
+
+    That is the smallest size which the machine's own numbers, and what changes, leave visible (as
+    `diagnosis.intervals.visible`), in each recording since the onset that holds the effect apart from nothing.
+    """
+    found = []
+    for answer in watched.answers[label["onset"] :]:
+        told = next((e for e in answer.effects if e.effect == label["effect"]), None)
+        if told is not None and told.low * told.high > 0.0:
+            deviation = (told.high - told.low) / (2.0 * NORMAL)
+            found.append(float(np.sqrt(answer.needed)) * deviation)
+    return found
+
+
 def row_of(label, watched, seconds, wall):
     """How a machine was told."""
     alarm = watched.alarm
@@ -221,6 +237,11 @@ def row_of(label, watched, seconds, wall):
         row["size_raised_over_visible"] = AT_LAST * label["sizes"][alarm.raised]
     if alarm and alarm.effect == label["effect"] and alarm.joint:
         [size, *_] = label["at_last"].values()
+        told = visible_sizes(label, watched)
+        if told:
+            row["smallest_visible_told"] = float(np.median(told))
+            at = abs(size) * label["sizes"][alarm.raised]
+            row["size_raised_over_visible_told"] = at / row["smallest_visible_told"]
         trend = watched.trend(alarm.effect, alarm.joint)
         if trend.last is not None:
             days = len(label["sizes"]) - label["onset"]
