@@ -21,7 +21,7 @@ import numpy as np
 
 from hydrolek_drake.challenge.build import ARM_JOINTS, BENCH, build_of
 from hydrolek_drake.challenge.cases import driven, with_concealed
-from hydrolek_drake.challenge.drawing import INDIVIDUAL, SHOWS, SIZING_STEP_S
+from hydrolek_drake.challenge.drawing import INDIVIDUAL, LARGEST_SCALING, SHOWS, SIZING_STEP_S
 from hydrolek_drake.challenge.driving import SAMPLE_S
 from hydrolek_drake.diagnosis.intervals.curvature import NORMAL
 from hydrolek_drake.files import write_whole
@@ -120,6 +120,19 @@ def shown(build, healthy, label, share, seconds, days=(0, 1, 2)):
     return float(np.sqrt(np.mean(squares))) / build.noise
 
 
+def visible_of(build, healthy, label, seconds):
+    """The smallest visible size; as in the challenge within a factor of sizes.yaml.
+
+    A play shows something, however small its gap is, by what moves within it: its size then says nothing.
+    """
+    factor = 1.0
+    for _ in range(4):
+        at = {**label, "at_last": {p: v * factor for p, v in label["at_last"].items()}}
+        factor *= VISIBLE / max(shown(build, healthy, at, 1.0, seconds), 1e-3)
+        factor = min(max(factor, 1.0 / LARGEST_SCALING), LARGEST_SCALING)
+    return {p: v * factor for p, v in label["at_last"].items()}
+
+
 def labels(machines, days, seconds, seed):
     """What is concealed in each machine and what changes about it, drawn at random."""
     rng = np.random.default_rng(seed)
@@ -159,9 +172,7 @@ def labels(machines, days, seconds, seed):
             "seed": int(rng.integers(2**31)),
         }
         healthy = build.nominal._replace(**own)
-        for _ in range(4 if effect else 0):  # to the size at which it is just visible
-            factor = VISIBLE / max(shown(build, healthy, label, 1.0, seconds), 1e-3)
-            label["at_last"] = {p: v * factor for p, v in label["at_last"].items()}
+        label["at_last"] = visible_of(build, healthy, label, seconds) if effect else {}
         label["at_last"] = {p: v * AT_LAST for p, v in label["at_last"].items()}
         found.append(label)
     return found
