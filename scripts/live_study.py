@@ -4,6 +4,8 @@ python scripts/live_study.py share                     # ten joints at 100 Hz, p
 python scripts/live_study.py prepare --out out/live    # three references of the bench, fitted
 python scripts/live_study.py stream --out out/live     # two hours, 5 % each lost, doubled and late, as fast as it goes
 python scripts/live_study.py faults --out out/live     # leakages that begin after a minute
+python scripts/live_study.py pump                      # a leakage in one of ten joints that share a pump
+python scripts/live_study.py named --out out/live      # a leakage over TCP, named by windows
 
 The bench is the challenge's (equations and an integrator of its own), so that the fitted model is not the machine.
 """
@@ -11,6 +13,9 @@ The bench is the challenge's (equations and an integrator of its own), so that t
 import argparse
 import json
 import resource
+import socket
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -154,17 +159,25 @@ def faults(out):
         print(f"leakage {leakage:g} m^3/(s Pa): alarmed after {after}; {events}", flush=True)
 
 
-def share(seconds):
-    """Ten joints of both arms that move at once."""
-    rig = load_rig("hydrolek")
-    joints = tuple(j for j in rig.joints if j[-2:] in ("j1", "j2", "j3", "j4", "j5"))
+def random_signals(rig, joint, count, rng):
+    """Voltages of signals up to half of the largest, (4.2) and (4.3), held for a second each."""
+    least_a, most_a, least_b, most_b = (
+        rig.value(f"joints.{joint}.command.calibration_{name}") for name in "abcd"
+    )
+    signals = rng.uniform(-0.5, 0.5, count // 100 + 1)
+    ahead = least_a + signals * (most_a - least_a)
+    back = -least_b + signals * (most_b - least_b)
+    return np.repeat(np.where(signals > 0.0, ahead, back), 100)[:count]
+
+
+def ten_joints(rig, seconds, seed):
+    """Signals of ten joints of both arms that move at once, of the model itself, and the joints that are stepped."""
     from hydrolek_drake.rollout.onwards import onwards
 
-    rng = np.random.default_rng(3)
+    joints = tuple(j for j in rig.joints if j[-2:] in ("j1", "j2", "j3", "j4", "j5"))
+    rng = np.random.default_rng(seed)
     time_s = np.arange(0.0, seconds, 0.01)
-    volts = np.repeat(rng.uniform(-0.5, 0.5, (time_s.size // 100 + 1, len(joints))), 100, axis=0)[
-        : time_s.size
-    ]
+    volts = np.stack([random_signals(rig, joint, time_s.size, rng) for joint in joints], axis=1)
     (machine,) = onwards(rig, joints, 0.0, {})
     places = [machine.joints.index(joint) for joint in joints]
     neutral = np.array([rig.value(f"joints.{joint}.command.neutral") for joint in machine.joints])
@@ -183,33 +196,115 @@ def share(seconds):
         signals[f"{joint}.command"], signals[f"{joint}.angle"] = volts[:, place], measured[:, place, 0]
         signals[f"{joint}.pressure_a"] = measured[:, place, 1]
         signals[f"{joint}.pressure_b"] = measured[:, place, 2]
-    half = time_s.size // 2
-    recording = Recording("made", time_s[:half], {k: v[:half] for k, v in signals.items()}, Path("made.csv"))
-    healthy = healthy_of(rig, joints, [recording])
-    follower = Follower(rig, healthy, FALSE_ALARMS)
-    rest = {key: values[half:] for key, values in signals.items()}
-    spent, count = time.process_time(), time_s.size - half
-    for first in range(0, count, 5):
-        part = {key: values[first : first + 5] for key, values in rest.items()}
-        follower.take(Samples(time_s[half + first : half + first + 5], part), 0.0, time.time())
+    return time_s, joints, signals, len(machine.joints)
+
+
+def ten_healthy(rig, seconds):
+    """What innovations of ten healthy joints are like, by three recordings."""
+    recordings = []
+    for seed in (3, 13, 23):
+        time_s, joints, signals, _ = ten_joints(rig, seconds, seed)
+        recordings.append(Recording(f"made {seed}", time_s, signals, Path("made.csv")))
+    return healthy_of(rig, joints, recordings)
+
+
+def followed(follower, begin, time_s, signals):
+    """Hand ten joints' samples on, five at a time."""
+    for first in range(0, time_s.size, 5):
+        part = {key: values[first : first + 5] for key, values in signals.items()}
+        follower.take(Samples(begin + time_s[first : first + 5], part), None, time.time())
+
+
+def share(seconds):
+    """Ten joints of both arms that move at once."""
+    rig = load_rig("hydrolek")
+    follower = Follower(rig, ten_healthy(rig, seconds), FALSE_ALARMS)
+    time_s, joints, signals, stepped = ten_joints(rig, seconds, 4)
+    spent = time.process_time()
+    followed(follower, 0.0, time_s, signals)
     spent = time.process_time() - spent
-    print(
-        f"{len(joints)} joints ({len(machine.joints)} stepped): {100 * spent / (count * 0.01):.1f} % of a core"
-    )
-    print(f"alarm: {follower.alarm_text!r}; scale {np.round(healthy.scale[:, 0] / noise, 2)} of the noise")
+    print(f"{len(joints)} joints ({stepped} stepped): {100 * spent / time_s[-1]:.1f} % of a core")
+    print(f"alarm: {follower.alarm_text!r}")
+
+
+def pump(seconds):
+    """A leakage in one of ten joints that share a pump: which of them are alarmed?"""
+    rig = load_rig("hydrolek")
+    healthy = ten_healthy(rig, seconds)
+    for leakage in (0.0, 2e-13, 1e-12, 5e-12):
+        follower = Follower(rig, healthy, FALSE_ALARMS)
+        begin = 0.0
+        for size, seed in ((0.0, 4), (leakage, 5)):
+            worn = rig.with_values(
+                {f"joints.right_j2.effects.{LEAKAGE}.conductance_m3_per_s_Pa": size} if size else {}
+            )
+            time_s, joints, signals, _ = ten_joints(worn, seconds, seed)
+            followed(follower, begin, time_s, signals)
+            onset, begin = begin, begin + float(time_s[-1]) + 60.0
+        told = np.nanmax(follower.detector.evidence, axis=(0, 2))
+        beyond = [j for j, e in zip(joints, told, strict=True) if e >= follower.detector.threshold]
+        when = follower.detector.alarmed
+        after = "never" if when is None else f"after {when - onset:.1f} s: {follower.alarm_text}"
+        print(
+            f"right_j2 leaks {leakage:g} m^3/(s Pa): alarmed {after}; beyond at the end: {beyond}", flush=True
+        )
+        others = max(e for j, e in zip(joints, told, strict=True) if j != "right_j2")
+        print(f"  largest evidence of another joint {others:.1f} of {follower.detector.threshold:.1f}")
+
+
+def named(out, pace, minutes, leakage):
+    """A leakage over TCP, so many times as fast as the machine: alarmed by windows, by name? By `hydrolek watch`."""
+    parts, begin = [], 0.0
+    for seconds, size, seed in ((120.0, 0.0, 31), (60.0 * minutes, leakage, 32)):
+        volts, angle = played(*bench(size), seconds, seed)
+        time_s = begin + np.arange(volts.size) * SAMPLE_S
+        parts.append(np.stack([time_s, volts, angle], axis=1))
+        begin = float(time_s[-1]) + 60.0
+    rows = np.concatenate(parts)
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    live = ["--live", f"tcp://127.0.0.1:{port}", "--port", "0", "--idle", "20", "--workers", "1"]
+    start = "import sys; from hydrolek_drake.cli.app import main; sys.exit(main())"
+    command = [sys.executable, "-c", start, "watch", "joint_bench"]
+    told = subprocess.Popen([*command, *map(str, references(out)), *live, "--out", str(out / "named")])
+    sender, until = None, time.monotonic() + 120.0
+    while sender is None:
+        try:
+            sender = socket.create_connection(("127.0.0.1", port))
+        except OSError:
+            if time.monotonic() > until or told.poll() is not None:
+                raise
+            time.sleep(0.2)
+    sender.sendall(b"time_s,joint.command_V,joint.angle_rad\n")
+    begun = time.monotonic()
+    for row in rows:
+        sender.sendall(f"{row[0]:.3f},{row[1]:.6f},{row[2]:.6f}\n".encode())
+        ahead = row[0] / pace - (time.monotonic() - begun)
+        if ahead > 0.01:
+            time.sleep(ahead)
+    sender.close()
+    print("exit status", told.wait())
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("what", choices=("share", "prepare", "stream", "faults"))
+    parser.add_argument("what", choices=("share", "prepare", "stream", "faults", "pump", "named"))
     parser.add_argument("--out", type=Path, default=Path("out/live"))
     parser.add_argument("--hours", type=float, default=2.0)
     parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--pace", type=float, default=8.0)
+    parser.add_argument("--minutes", type=float, default=8.0)
+    parser.add_argument("--leakage", type=float, default=4e-13)
     given = parser.parse_args()
     if given.what == "share":
         share(given.seconds)
+    elif given.what == "pump":
+        pump(given.seconds)
+    elif given.what == "named":
+        named(given.out, given.pace, given.minutes, given.leakage)
     elif given.what == "prepare":
         print(prepared(given.out)[1])
     elif given.what == "stream":

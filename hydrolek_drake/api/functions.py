@@ -171,6 +171,7 @@ def watch(
     *,
     out: str | Path | None = None,
     drift: float | Mapping[str, float] | None = None,
+    changes: Sequence[str] = (),
     limits: Mapping[str, float | str] | None = None,
     false_alarms: float = FALSE_ALARMS,
     persistence: int = PERSISTENCE,
@@ -186,6 +187,7 @@ def watch(
         out: folder in which what was seen is kept, so that it is not asked again; nothing is kept without.
         drift: standard deviation by which the machine's own numbers may drift between recordings, in ranges: one for
             all, or by name with "" for all others.
+        changes: effects and own numbers that change between recordings of the healthy machine, such as its load.
         limits: effect -> size that it must not reach, in SI or as text with a unit.
         false_alarms: probability of any false alarm in the whole series.
         persistence: recordings in a row beyond the threshold that are an alarm.
@@ -212,6 +214,7 @@ def watch(
             listed(given, references),
             folder=folder,
             drift=drifts,
+            changes=changes,
             rule=AlarmRule(false_alarms, persistence),
             cores=workers,
             say=tell,

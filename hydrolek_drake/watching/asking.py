@@ -15,13 +15,14 @@ from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.replay.display import display_unit
+from hydrolek_drake.watching.beginning import nominal_on
 from hydrolek_drake.watching.curves import curves_of
 from hydrolek_drake.watching.effect_fits import fits_of_effects, fitted_on
 from hydrolek_drake.watching.knowledge import Knowledge
 from hydrolek_drake.watching.likelihood import SizeTold, of_branches, of_fit
 from hydrolek_drake.watching.reference import Session
 from hydrolek_drake.watching.scanning import Scan, scanned, size_of, strength, strengths
-from hydrolek_drake.watching.settings import NOMINAL, TRIED
+from hydrolek_drake.watching.settings import TRIED
 
 OWN_NUMBERS = "machine.own_numbers"
 """Stands for: no effect, but the machine's own numbers changed by more than they were said to drift."""
@@ -98,9 +99,7 @@ def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge 
     bench, cores = session.bench, session.cores
     knowledge = known or session.knowledge
     weighted = weighted_by(bench, session.hypothesis, experiments)
-    problem = session.problem((), weighted, knowledge)
-    moving = np.ones(knowledge.mean.size, dtype=bool)
-    nominal = fitted_on([Place(problem, moving, knowledge.mean)], session, NOMINAL)[0]
+    nominal = nominal_on(session, weighted, knowledge)
     [nominal] = with_slopes([nominal], bench.pool, cores)
     scans = scanned(session, nominal, weighted, knowledge)
     fitted = fits_of_effects(session, nominal, scans, weighted, knowledge)
@@ -114,7 +113,7 @@ def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge 
         ranked = _with_beside(session, ranked, best, weighted, knowledge)
     return Answer(
         effects=(*ranked, own),
-        own=problem.parameters.values(nominal.unit),
+        own=nominal.problem.parameters.values(nominal.unit),
         left=fit.over_noise,
         counted=fit.counted,
         needed=gain_needed(fit),

@@ -72,7 +72,7 @@ def fits_of_effects(
     first = sorted(better, key=lambda path: better[path].objective)[:EXACT]
     again = [replace(better[path], slopes=None, ended=False, exact=False) for path in first]
     better |= dict(zip(first, fitted_on(again, session), strict=True))
-    led = _by_observers(session, better, scans, experiments, known)
+    led = _by_observers(session, nominal, better, scans, experiments, known)
     better, first = better | led, [*first, *led]
     renewed = [_renewed(place, path in first, nominal.unit.size) for path, place in better.items()]
     known_there = with_slopes(renewed, session.bench.pool, session.cores)
@@ -81,6 +81,7 @@ def fits_of_effects(
 
 def _by_observers(
     session: Session,
+    nominal: Place,
     fits: dict[str, Place],
     scans: list[Scan],
     experiments: Sequence[Experiment],
@@ -90,11 +91,14 @@ def _by_observers(
 
     An effect that has grown large bends the nominal model's own numbers: beside these another one promises more, and
     its own fit ends in a local minimum. So all are fitted from the reference's numbers, through observers that forget
-    (Ljung, System Identification, 1999, chapter 7), fewer with each of them.
+    (Ljung, System Identification, 1999, chapter 7), fewer with each of them. What changes between recordings begins
+    where the nominal model has it, since the reference says nothing of it.
     """
     least = min((fit_of(place).over_noise for place in fits.values()), default=0.0)
     if least <= NOISE.above * math.sqrt(session.posterior.scale):
         return {}
+    changes = np.array([path in session.changing for path in nominal.problem.parameters.paths])
+    own_begin = np.where(changes, nominal.unit, known.mean)
     places: list[tuple[Candidate, Place]] = []
     for scan in scans:
         candidate = scan.candidate
@@ -107,7 +111,7 @@ def _by_observers(
         for values in begun:
             own = {free.path: values[free.path] for free in candidate.free if free.path in values}
             unit = problem.parameters.unit(own)
-            unit[: known.mean.size] = known.mean
+            unit[: known.mean.size] = own_begin
             places.append((candidate, Place(problem, moving, np.clip(unit, 1e-6, 1.0 - 1e-6))))
     for seconds, (steps, keep) in zip(FITS.observers_s, OBSERVED, strict=True):
         pulled = [place.at(place.problem.pulled(seconds)) for _, place in places]

@@ -9,7 +9,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.search.nominal import as_weighed
-from hydrolek_drake.diagnosis.settings import Settings
+from hydrolek_drake.diagnosis.settings import NOISE, Settings
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.errors import InputError
@@ -19,6 +19,7 @@ from hydrolek_drake.identification.least_squares.lockstep import descend
 from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.identification.parameter_set import free_of_joints
 from hydrolek_drake.rigs import Rig
+from hydrolek_drake.watching.changing import ReferenceBench, changing_of, contains, kept_of
 from hydrolek_drake.watching.knowledge import Knowledge, KnownProblem, KnownTogether, with_drift
 
 
@@ -55,12 +56,14 @@ class Reference:
         training: the reference recordings.
         drift: path or beginning or section of one -> drift in ranges; "" for all others.
         posterior: of the machine's own numbers.
+        changes: names of what changes between recordings of a healthy machine.
     """
 
     rig: Rig
     training: tuple[Experiment, ...]
     drift: Mapping[str, float]
     posterior: Posterior
+    changes: tuple[str, ...] = ()
 
     def session(self, pool: Executor, cores: int) -> "Session":
         """The session, on this computer.
@@ -69,14 +72,15 @@ class Reference:
             pool: threads.
             cores: that roll out at the same time.
         """
-        return Session(self.rig, self.training, pool, cores, self.drift, self.posterior)
+        return Session(self.rig, self.training, pool, cores, self.drift, self.posterior, changes=self.changes)
 
 
 class Session:
     """A rig with its reference: what every question about a later recording needs.
 
     Attributes:
-        rig: the machine.
+        rig: the machine; what changes between recordings is part of it.
+        changing: paths of its numbers that change between recordings.
         bench: the reference recordings and problems of any structure.
         candidates: effects that are asked for.
         posterior: of the machine's own numbers.
@@ -94,6 +98,7 @@ class Session:
         drift: Mapping[str, float],
         kept: Posterior | None = None,
         say: Callable[[str], None] = lambda text: None,
+        changes: Sequence[str] = (),
     ) -> None:
         """Fit the reference, or take what was found before.
 
@@ -105,37 +110,44 @@ class Session:
             drift: path or beginning or section of one -> drift in ranges; "" for all others.
             kept: of the same reference, found before.
             say: told what is being done.
+            changes: names of what changes between recordings of a healthy machine, see `changing`.
 
         Raises:
-            InputError: the rig has nothing to fit, or no parameter has a name that the drift names.
+            InputError: the rig has nothing to fit, or nothing has a name that drift or changes name.
         """
         joints = list(dict.fromkeys(e.joint for e in training))
-        self.rig, self.cores = rig, cores
-        self._training, self._drift = tuple(training), dict(drift)
-        self.joints = tuple(joints)
-        nominal = free_of_joints(rig, set(joints))
-        self.bench = Workbench(rig, nominal, training, pool, cores)
-        self.drift = _drifts([free.path for free in nominal], drift)
-        self._indices = {e.joint: e.index for e in training}
+        self._given, self._training, self._drift = rig, tuple(training), dict(drift)
+        self._changes, self.cores, self.joints = tuple(changes), cores, tuple(joints)
         scales = {joint: natural_scales(rig, joint, training) for joint in joints}
-        found = {c.size_path: c for joint in joints for c in candidates_of(rig, joint, scales[joint])}
+        together = any(e.others is not None for e in training)
+        changing = changing_of(rig, changes, scales, together)
+        self.rig, self.changing = changing.rig, changing.paths
+        nominal = free_of_joints(self.rig, set(joints))
+        self.bench = Workbench(self.rig, nominal, training, pool, cores)
+        self.drift = _drifts([free.path for free in nominal], drift)
+        found = {c.size_path: c for joint in joints for c in candidates_of(self.rig, joint, scales[joint])}
         self.candidates: tuple[Candidate, ...] = tuple(found.values())
+        self._reference = self.bench
+        if self.changing:
+            self._reference = ReferenceBench(self.rig, nominal, self.changing, training, pool, cores)
         if kept is None:
             say("fitting the nominal model to the reference")
-            self.hypothesis, self.posterior = _fitted(self.bench, cores)
+            self._fit = _fitted(self._reference, cores)
+            self.posterior = self._posterior(self._reference, self._fit)
+            fit = self._fit.fit
         else:
             self.posterior = kept
             problem = self.bench.problem((), self.bench.fine)
             moving = np.ones(kept.mean.size, dtype=bool)
             [place] = descend([Place(problem, moving, kept.mean)], 0, pool, cores)
-            self.hypothesis = Hypothesis(
-                (), problem.parameters.values(kept.mean), fit_of(place), self.bench.fine
-            )
+            fit = fit_of(place)
+        values = self.bench.parameters(()).values(self.posterior.mean)
+        self.hypothesis = Hypothesis((), values, fit, self.bench.fine)
 
     @property
     def reference(self) -> Reference:
         """The same for another computer."""
-        return Reference(self.rig, self._training, self._drift, self.posterior)
+        return Reference(self._given, self._training, self._drift, self.posterior, self._changes)
 
     @property
     def knowledge(self) -> Knowledge:
@@ -148,10 +160,20 @@ class Session:
         Args:
             name: of the recording that is left out.
         """
-        others = [e for e in self.bench.training if e.name != name]
-        bench = self.bench.with_training(others)
-        again = race(bench, [Entrant((), self.hypothesis.values)], (Settings().again,), self.cores)[0]
-        return _posterior(bench, again).known(self.drift)
+        others = [e for e in self._reference.training if e.name != name]
+        bench = self._reference.with_training(others)
+        again = race(bench, [Entrant((), self._fit.values)], (Settings().again,), self.cores)[0]
+        return self._posterior(bench, again).known(self.drift)
+
+    def _posterior(self, bench: Workbench, best: Hypothesis) -> Posterior:
+        """What a fit of reference recordings says."""
+        problem = bench.problem((), bench.fine)
+        slopes = problem.jacobian_without_jumps(best.fit.unit, best.fit.residuals)
+        prior = best.fit.prior_jacobian
+        mean, information = best.fit.unit, slopes.T @ slopes + prior.T @ prior
+        if self.changing:
+            mean, information = kept_of(self.bench.parameters(()), self.changing, mean, information)
+        return Posterior(mean, information, best.fit.over_noise)
 
     def problem(
         self, effects: tuple[Candidate, ...], experiments: Sequence[Experiment], known: Knowledge
@@ -165,35 +187,30 @@ class Session:
         return problem
 
 
-def _fitted(bench: Workbench, cores: int) -> tuple[Hypothesis, Posterior]:
-    """The nominal model, the data weighed by it, and its posterior."""
+def _fitted(bench: Workbench, cores: int) -> Hypothesis:
+    """The nominal model, the data weighed by it."""
     settings = Settings()
     first = race(bench, [Entrant((), {})], (*settings.free, *settings.ended), cores)[0]
     best = as_weighed(bench, first, settings, cores)
-    return best, _posterior(bench, best)
-
-
-def _posterior(bench: Workbench, best: Hypothesis) -> Posterior:
-    problem = bench.problem((), bench.fine)
-    slopes = problem.jacobian_without_jumps(best.fit.unit, best.fit.residuals)
-    prior = best.fit.prior_jacobian
-    return Posterior(best.fit.unit, slopes.T @ slopes + prior.T @ prior, best.fit.over_noise)
+    if (
+        isinstance(bench, ReferenceBench) and best.fit.over_noise > NOISE.at
+    ):  # there are more local minima then
+        middle = {free.path: free.from_unit(0.5) for free in bench.nominal}
+        begun = [Entrant((), {}), Entrant((), middle), Entrant((), best.values)]
+        led = race(bench, begun, (*settings.long, settings.ended[-1]), cores)[0]
+        led = as_weighed(bench, led, settings, cores)
+        best = min(best, led, key=lambda each: each.fit.objective)
+    return best
 
 
 def _drifts(paths: Sequence[str], drift: Mapping[str, float]) -> np.ndarray:
     """Drift of each parameter: that of the longest name which is its path, or a part of that. # (n,)."""
     found = np.full(len(paths), drift.get("", 0.0))
     for name in sorted((n for n in drift if n), key=len):
-        parts = name.split(".")
-        hit = [i for i, path in enumerate(paths) if _contains(path.split("."), parts)]
+        hit = [i for i, path in enumerate(paths) if contains(path, name)]
         if not hit:
             raise InputError(
                 f"--drift {name}={drift[name]:g}: no free parameter of that name; {', '.join(paths)}"
             )
         found[hit] = drift[name]
     return found
-
-
-def _contains(path: list[str], parts: list[str]) -> bool:
-    """Whether some consecutive parts of a path are these."""
-    return any(path[i : i + len(parts)] == parts for i in range(len(path) - len(parts) + 1))

@@ -13,6 +13,17 @@ FALSE_ALARMS = 0.01
 NOMINAL = 12
 """Marquardt steps of the nominal model's fit at most: it begins where the reference ended, and mostly ends sooner."""
 
+CHANGED_LOG2 = 6
+"""The ranges of what changes between recordings are filled with two to this power places: with two numbers an eighth of
+a range apart."""
+
+CHANGED_KEPT = 4
+"""So many of them are fitted."""
+
+CHANGED = 40
+"""Marquardt steps of these at most: from elsewhere in the range of a load, twelve were not enough (bench, three of four
+recordings)."""
+
 ROUNDS = 5
 """Marquardt steps of the best effects at most, which go on from other fits."""
 

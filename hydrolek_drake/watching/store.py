@@ -65,9 +65,9 @@ def digest_of(path: Path) -> str:
     return whole.hexdigest()
 
 
-def key_of(rig: Rig, reference: Sequence[str], drift: dict[str, float]) -> str:
-    """What a watch's results belong to: rig, reference recordings, drift and method."""
-    told = [METHOD, rig.as_tree(), sorted(reference), sorted(drift.items())]
+def key_of(rig: Rig, reference: Sequence[str], drift: dict[str, float], changes: Sequence[str] = ()) -> str:
+    """What a watch's results belong to: rig, reference recordings, drift, what changes, and method."""
+    told = [METHOD, rig.as_tree(), sorted(reference), sorted(drift.items()), *sorted(changes)]
     return hashlib.sha256(json.dumps(told, sort_keys=True, default=str).encode()).hexdigest()
 
 
@@ -92,7 +92,8 @@ class Store:
         kept = folder / REFERENCE
         if kept.exists() and read_kept(kept, "the reference of a watch", ("key",))["key"] != key:
             raise InputError(
-                f"--out {folder} holds a watch with another rig, reference or drift; choose or make another folder"
+                f"--out {folder} holds a watch with another rig, reference, drift or changes; "
+                "choose or make another folder"
             )
 
     def reference(self) -> tuple[Posterior, list[Seen]] | None:

@@ -89,6 +89,7 @@ def watch(
     *,
     folder: Path | None = None,
     drift: Mapping[str, float] | None = None,
+    changes: Sequence[str] = (),
     rule: AlarmRule | None = None,
     cores: int | None = None,
     pool: Executor | None = None,
@@ -104,6 +105,8 @@ def watch(
         folder: where results are kept; None to keep none.
         drift: path, section or part of one -> standard deviation by which these own numbers may differ from one
             recording to another, in ranges; "" for all others, `settings.DRIFT` without.
+        changes: effects and own numbers that change between recordings of a healthy machine, such as its load: each
+            recording is fitted with its own (`changing`).
         rule: of the alarm.
         cores: that roll out at the same time; all by default.
         pool: threads, or a cluster's; threads of its own by default.
@@ -118,7 +121,7 @@ def watch(
     if not reference:
         raise InputError("a watch needs one reference recording of the healthy machine at least")
     training = training_of(rig, reference)
-    store = Store(folder, key_of_all(rig, training, drifts))
+    store = Store(folder, key_of_all(rig, training, drifts, changes))
     own = None if pool is not None else ThreadPoolExecutor(count)
     try:
         with threadpool_limits(limits=1, user_api="blas"):
@@ -128,6 +131,7 @@ def watch(
                 recordings,
                 store,
                 drifts,
+                tuple(changes),
                 rule or AlarmRule(),
                 count,
                 pool or own,
@@ -182,9 +186,11 @@ def training_of(rig: Rig, reference: Sequence[Path]) -> list[Trained]:
     return training
 
 
-def key_of_all(rig: Rig, training: Sequence[Trained], drifts: Mapping[str, float]) -> str:
+def key_of_all(
+    rig: Rig, training: Sequence[Trained], drifts: Mapping[str, float], changes: Sequence[str] = ()
+) -> str:
     """What a watch's results belong to."""
-    return key_of(rig, [each.digest for each in training], dict(drifts))
+    return key_of(rig, [each.digest for each in training], dict(drifts), changes)
 
 
 def _watched(
@@ -193,6 +199,7 @@ def _watched(
     recordings: Sequence[Path],
     store: Store,
     drifts: Mapping[str, float],
+    changes: Sequence[str],
     rule: AlarmRule,
     cores: int,
     pool: Executor | None,
@@ -203,7 +210,7 @@ def _watched(
     assert pool is not None
     kept = store.reference()
     experiments = [e for each in training for e in each.experiments]
-    session = Session(rig, experiments, pool, cores, drifts, None if kept is None else kept[0], say)
+    session = Session(rig, experiments, pool, cores, drifts, None if kept is None else kept[0], say, changes)
     if kept is None:
         told = []
         for each in training[:LEFT_OUT]:

@@ -82,3 +82,16 @@ def test_an_interrupt_loses_no_score_of_an_earlier_run(tmp_path, monkeypatch) ->
     with pytest.raises(KeyboardInterrupt):
         challenge(cases=2, seed=3, kind="healthy", earlier=tmp_path / "summary.json", out=tmp_path)
     assert json.loads((tmp_path / "summary.json").read_text())["cases"] == [second]
+
+
+@pytest.mark.long("two diagnoses on a cluster: minutes")
+def test_cases_are_diagnosed_and_scored_over_a_cluster(cluster, tmp_path) -> None:
+    address = cluster.scheduler_address
+    challenge(cases=2, seed=3, kind="healthy", cluster=address, out=tmp_path)
+    told = json.loads((tmp_path / "summary.json").read_text())
+    labels = labels_of(draw_cases([load_rig(BENCH, {})], 2, 3, (("healthy", 1.0),)))
+    assert told["labels_sha256"] == digest(labels)
+    assert [case["name"] for case in told["cases"]] == ["case_001", "case_002"]
+    assert all(case["verdict"] == "none" and case["right"] for case in told["cases"])
+    folders = [path for path in tmp_path.iterdir() if path.is_dir() and path.name.startswith("case_")]
+    assert len(folders) == 2 and all((path / "train.csv").exists() for path in folders)

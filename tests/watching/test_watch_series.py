@@ -1,7 +1,11 @@
 """Series of recordings: what is alarmed, what not, how fast it grows, and what stays the same after an interruption."""
 
 import json
+import os
 import shutil
+import signal
+import threading
+import time
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -133,13 +137,26 @@ def test_kept_recordings_are_whole_json(leaking, planted):
     assert len(kept) == len(planted) and len({each["seen"]["digest"] for each in kept}) == len(planted)
 
 
+def _kill_once_seen(victim, seen):
+    until = time.monotonic() + 120.0
+    while not list(seen.glob("*.json")) and time.monotonic() < until:
+        time.sleep(0.05)
+    os.kill(victim, signal.SIGKILL)
+
+
 @pytest.mark.long("a cluster's workers load the model: a minute")
 def test_over_a_cluster_the_table_is_the_same(machine_days, references, leaking, cluster, tmp_path):
+    """Also where a worker dies with the first recording that is kept."""
     _, whole = leaking
+    victim = next(iter(cluster.workers.values())).pid
+    killed = threading.Thread(target=_kill_once_seen, args=(victim, tmp_path / "seen"))
+    killed.start()
     files = [str(machine_days / "leaking")]
     arguments = [*map(str, references), "--recordings", *files, "--out", str(tmp_path)]
     status = run(["watch", "joint_bench", *arguments, "--cluster", cluster.scheduler_address])
+    killed.join()
     assert status == 3
+    assert next(iter(cluster.workers.values())).pid != victim
     one, other = (pq.read_table(folder / "watch.parquet").to_pylist() for folder in (whole, tmp_path))
     assert len(one) == len(other)
     for row, there in zip(one, other, strict=True):

@@ -75,6 +75,14 @@ def watch(
             "0.02 for all, load=0.1 for some (repeatable)",
         ),
     ] = None,
+    changes: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="what changes between recordings of the healthy machine and is fitted to each anew: an effect such as "
+            "load.payload, or a number with a range such as cylinder.viscous_friction (repeatable)",
+        ),
+    ] = None,
     limit: Annotated[
         list[str] | None,
         typer.Option(
@@ -122,6 +130,8 @@ def watch(
         raise InputError(
             "--cluster is for --recordings on other computers: no --live, no --workers beside it"
         )
+    if live is not None and changes:
+        raise InputError("--changes is for --recordings: a stream's innovations are judged as they come")
     given = {"--port": port, "--foxglove": foxglove, "--idle": idle}
     for name, value in given.items():
         if live is None and value is not None:
@@ -164,6 +174,7 @@ def watch(
             files,
             folder=out,
             drift=drifts,
+            changes=tuple(changes or ()),
             rule=AlarmRule(false_alarms, persistence),
             cores=workers,
             cluster=jobs,

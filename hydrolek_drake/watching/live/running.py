@@ -130,6 +130,7 @@ def run_live(
         if server is not None:
             tell(f"Foxglove: ws://127.0.0.1:{server.port}")
         tell(f"following {source.link().name}; Ctrl-C ends it")
+        say("following")
         try:
             loop.run(page)
         except KeyboardInterrupt:
