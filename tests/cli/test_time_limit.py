@@ -43,3 +43,15 @@ def test_a_limit_that_tells_nothing_is_refused_in_one_line(minutes, told, capsys
     given = ["diagnose", "joint_bench", str(PAIR / "train.csv"), "--at-most", minutes]
     assert run(given) == 2
     assert told in capsys.readouterr().err
+
+
+def test_a_fit_that_its_limit_ends_gives_the_best_so_far(tmp_path, capsys) -> None:
+    given = ["fit", "joint_bench", str(PAIR / "train.csv"), "--at-most", "0.02", "--no-confirm"]
+    assert run([*given, "--out", str(tmp_path)]) == 0
+    assert "ended after 0.02 min, with the best so far" in capsys.readouterr().out
+    assert (tmp_path / "rig_fitted.yaml").exists()
+
+
+def test_a_fit_of_no_time_is_refused_in_one_line(capsys) -> None:
+    assert run(["fit", "joint_bench", str(PAIR / "train.csv"), "--at-most", "0"]) == 2
+    assert "must be more than 0" in capsys.readouterr().err

@@ -1,5 +1,6 @@
 """`hydrolek fit`: a rig's free parameters from recordings."""
 
+import math
 from pathlib import Path
 from typing import Annotated
 
@@ -7,6 +8,7 @@ import typer
 
 from hydrolek_drake.cli.inputs import chosen, refuse_twice, rig_and_recordings, tell_what_looks_wrong
 from hydrolek_drake.cli.settings import ConfirmOption, SetOption
+from hydrolek_drake.errors import InputError
 
 
 def fit(
@@ -34,6 +36,9 @@ def fit(
     ] = None,
     overdue: Annotated[
         float | None, typer.Option(metavar="SECONDS", help="an evaluation that takes longer has failed")
+    ] = None,
+    at_most: Annotated[
+        float | None, typer.Option(metavar="MINUTES", help="end the search then, with the best so far")
     ] = None,
     profile: Annotated[
         list[str] | None,
@@ -64,6 +69,8 @@ def fit(
     chosen("norm", norm, ("1", "2", "inf"))
     chosen("loss", loss, LOSSES)
     chosen("plant", plant, PLANTS)
+    if at_most is not None and not 0.0 < at_most < math.inf:
+        raise InputError(f"--at-most {at_most:g}: minutes must be more than 0")
     refuse_twice([*recordings, *(holdout or [])])
     loaded, (read, held) = rig_and_recordings(rig, set_, recordings, holdout)
 
@@ -72,6 +79,7 @@ def fit(
     from hydrolek_drake.identification.fit.report import sentences, write_fit
     from hydrolek_drake.identification.fit.standing import Standing
     from hydrolek_drake.identification.parameter_set import parameters_off
+    from hydrolek_drake.runs.time_limit import ended_after
 
     output = console()
     with progress("checking"):
@@ -79,24 +87,32 @@ def fit(
     profiled = check_profiled(loaded, profile or [], [f.path for f in searched(loaded, read, parameter)])
     with progress(f"fitting by {method} ...") as tell:
         standing = Standing(None if method == "least-squares" else budget, tell.more)
-        fitted = fit_rig(
-            loaded,
-            read,
-            method,
-            paths=parameter,
-            holdout=held,
-            budget=budget,
-            p=float(norm),
-            segments=segments,
-            loss=loss,
-            plant=plant,
-            seed=seed,
-            workers=workers,
-            cluster=cluster,
-            overdue=overdue,
-            checkpoint=None if out is None else out / f"checkpoint_{method}",
-            progress=standing.told,
-        )
+        with ended_after(None if at_most is None else 60.0 * at_most) as limit:
+            try:
+                fitted = fit_rig(
+                    loaded,
+                    read,
+                    method,
+                    paths=parameter,
+                    holdout=held,
+                    budget=budget,
+                    p=float(norm),
+                    segments=segments,
+                    loss=loss,
+                    plant=plant,
+                    seed=seed,
+                    workers=workers,
+                    cluster=cluster,
+                    overdue=overdue,
+                    checkpoint=None if out is None else out / f"checkpoint_{method}",
+                    progress=standing.told,
+                )
+            except KeyboardInterrupt:
+                if not limit.reached:
+                    raise
+                raise InputError(
+                    f"--at-most {at_most:g}: ended before anything was fitted; give it longer"
+                ) from None
     table = Table("parameter", "value", "95 % interval", "unit")
     for name, (value, low, high) in fitted.intervals().items():
         table.add_row(name, f"{value:.6g}", f"{low:.6g} to {high:.6g}", loaded.entries[name].unit)
@@ -110,9 +126,11 @@ def fit(
     if out is not None:
         for file in write_fit(fitted, out):
             output.print(f"wrote {file}", markup=False, soft_wrap=True)
-    if fitted.interrupted:
+    if limit.reached:
+        output.print(f"ended after {at_most:g} min, with the best so far", markup=False)
+    elif fitted.interrupted:
         raise KeyboardInterrupt
-    if confirm:
+    if confirm and not limit.reached:
         from hydrolek_drake.replay.confirmation import confirm as run_confirmation
 
         with progress("Drake diagram") as tell:
@@ -121,7 +139,7 @@ def fit(
             output.print(each.sentence(), markup=False, soft_wrap=True)
         if out is not None:
             write_fit(fitted, out, confirmed)
-    if profiled:
+    if profiled and not limit.reached:
         with progress("profile likelihood ...") as tell:
             profiles = profiles_of(fitted, read, profiled, tell.more)
         for one in profiles:
