@@ -157,17 +157,30 @@ def alarm_of(answers: Sequence[Answer], judgements: Sequence[Judgement], rule: A
     since = raised - rule.persistence + 1
     later = [i for i in range(since, len(answers)) if judgements[i].beyond]
     unlisted = all(UNLISTED in judgements[i].beyond for i in later[-rule.persistence :])
-    totals: dict[tuple[str, str], float] = {}
-    for i in later:
-        for told in answers[i].effects:
-            worth = told.gain - told.parameters * float(np.log(max(answers[i].counted, 2)))
-            totals[name_of(told)] = totals.get(name_of(told), 0.0) + worth
+    totals = _behind_the_best([answers[i] for i in later])
     best = max(totals, key=lambda name: totals[name])
     explained = any(best[0] in judgements[i].beyond for i in later)
     if not explained:
         return Alarm(UNLISTED, "", since, raised, (), True)
     near = [name[0] for name in totals if name != best and totals[best] - totals[name] < TOGETHER]
     return Alarm(best[0], best[1], since, raised, tuple(near), unlisted)
+
+
+def _behind_the_best(answers: Sequence[Answer]) -> dict[tuple[str, str], float]:
+    """What recordings together say against each effect, as squares beside each recording's best one; none above zero.
+
+    A recording's gains are what their fits have reached, and a fit may have ended in another local minimum. So no
+    single recording says more against an effect than `TOGETHER` (bounded influence; Huber, Robust Statistics, 1981).
+    """
+    names = dict.fromkeys(name_of(told) for answer in answers for told in answer.effects)
+    totals = dict.fromkeys(names, 0.0)
+    for answer in answers:
+        penalty = float(np.log(max(answer.counted, 2)))
+        worths = {name_of(told): told.gain - told.parameters * penalty for told in answer.effects}
+        most = max(worths.values())
+        for name in names:
+            totals[name] -= min(most - worths.get(name, -np.inf), TOGETHER)
+    return totals
 
 
 def is_effect(name: str) -> bool:

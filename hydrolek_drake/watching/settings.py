@@ -71,8 +71,18 @@ POINTS = 240
 FEWEST = 3
 """Points from which a trend and its uncertainty can be told: two numbers, and one degree of freedom."""
 
+REWEIGHTED = 30
+"""Rounds in which the points of a trend get their weights; a round is a fit of two numbers."""
+
+HUBER = 1.345
+"""With normal errors Huber's weights lose 5 % of the precision with this constant (Huber 1981)."""
+
+NORMAL_MEDIAN = 0.6745
+"""Median of the absolute value of a standard normal number."""
+
 PERSISTENCE = 2
 """Recordings in a row that must be beyond the threshold before it is an alarm: one alone may be a mishap."""
 
 TOGETHER = 12.0
-"""Effects whose total gains differ by less than so many squares are not told apart, see `search.gains.GAIN_NEEDED`."""
+"""Effects whose total gains differ by less than so many squares are not told apart, see `search.gains.GAIN_NEEDED`; and
+one recording says no more, over what the scatter allows, for a name or a change point."""

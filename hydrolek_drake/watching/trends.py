@@ -18,7 +18,7 @@ from scipy.stats import t as student
 
 from hydrolek_drake.diagnosis.intervals.curvature import NORMAL
 from hydrolek_drake.diagnosis.settings import EVIDENCE
-from hydrolek_drake.watching.settings import FEWEST
+from hydrolek_drake.watching.settings import FEWEST, HUBER, NORMAL_MEDIAN, REWEIGHTED, TOGETHER
 
 PER_PIECE = 3
 """Numbers that a further piece has: where it begins, level and slope."""
@@ -33,14 +33,14 @@ class Line:
         level: there.
         slope: change a second.
         covariance: of level and slope. # (2, 2)
-        freedom: points less two.
+        freedom: points, each by its weight, less two; 1 at least.
     """
 
     origin: float
     level: float
     slope: float
     covariance: np.ndarray
-    freedom: int
+    freedom: float
 
     @property
     def quantile(self) -> float:
@@ -100,10 +100,18 @@ class Trend:
 
 
 class _Lines(BaseCost):
-    """Weighted squares that a straight line leaves of a piece, for `ruptures`; columns: time, value, deviation."""
+    """What a straight line leaves of a piece, for `ruptures`; columns: time, value, deviation.
 
-    model = "weighted_line"
+    No single point costs more than `TOGETHER` squares, so that one recording alone makes no change point (bounded loss;
+    Fearnhead and Rigaill, Journal of the American Statistical Association 114, 2019).
+    """
+
+    model = "bounded_line"
     min_size = FEWEST
+
+    def __init__(self, scatter: float) -> None:
+        """Take by how much the squares are larger than deviations allow."""
+        self.scatter = scatter
 
     def fit(self, signal: np.ndarray) -> "_Lines":
         """Take the series. # (n, 3)."""
@@ -111,12 +119,10 @@ class _Lines(BaseCost):
         return self
 
     def error(self, start: int, end: int) -> float:
-        """Squares of the piece [start, end)."""
+        """Cost of the piece [start, end)."""
         time, value, deviation = self.signal[start:end].T
-        columns = np.stack([np.ones_like(time), time - time[0]], axis=1) / deviation[:, None]
-        return float(
-            np.sum((value / deviation - columns @ np.linalg.lstsq(columns, value / deviation)[0]) ** 2)
-        )
+        off, *_ = _fitted(time - time[0], value / deviation, deviation)
+        return float(np.sum(np.minimum(off**2, TOGETHER * self.scatter)))
 
 
 def trend_of(
@@ -147,7 +153,7 @@ def trend_of(
     penalty = scatter * float(chi2.isf(error_rate / time.size, PER_PIECE))
     pieces = [time.size]
     if time.size >= 2 * FEWEST:
-        pieces = Pelt(custom_cost=_Lines(), min_size=FEWEST, jump=1).fit(series).predict(pen=penalty)
+        pieces = Pelt(custom_cost=_Lines(scatter), min_size=FEWEST, jump=1).fit(series).predict(pen=penalty)
     first = pieces[-2] if len(pieces) > 1 else 0
     line = _line(time[first:], size[first:], deviation[first:])
     return Trend(tuple(float(time[end]) for end in pieces[:-1]), line, float(time[first]))
@@ -167,17 +173,35 @@ def _scatter(series: np.ndarray) -> float:
     return max(1.0, float(np.median(off**2 / variance) / chi2.ppf(0.5, 1)))
 
 
+def _fitted(
+    time: np.ndarray, value: np.ndarray, deviation: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Residuals, level and slope, covariance and weights of a line; values are over their deviations.
+
+    Where there are enough points, those far off count less: a recording whose own numbers took a part of the effect has
+    a size with too narrow an interval. Weights min(1, k s/|r|) with the scatter s by the median of |r| (Huber, Robust
+    Statistics, 1981, chapter 7), found by repetition.
+    """
+    columns = np.stack([np.ones_like(time), time], axis=1) / deviation[:, None]
+    weight = np.ones_like(time)
+    for _ in range(REWEIGHTED):
+        covariance = np.linalg.pinv(columns.T @ (weight[:, None] * columns))
+        found = covariance @ columns.T @ (weight * value)
+        off, used = value - columns @ found, weight
+        scatter = max(1.0, float(np.median(np.abs(off))) / NORMAL_MEDIAN)
+        weight = 1.0 / np.maximum(1.0, np.abs(off) / (HUBER * scatter))
+        if time.size < 2 * FEWEST or np.array_equal(weight, used):
+            break
+    return off, found, covariance, used
+
+
 def _line(time: np.ndarray, size: np.ndarray, deviation: np.ndarray) -> Line:
-    """Weighted least squares; the covariance grows where the points lie farther off than their deviations say."""
+    """A line by `_fitted`; the covariance grows where the points lie farther off than their deviations say."""
     origin = float(time[-1])
-    columns = np.stack([np.ones_like(time), time - origin], axis=1) / deviation[:, None]
     span = max(float(np.ptp(time)), 1e-9)  # so that both columns are of the same order
-    scaled = columns * np.array([1.0, 1.0 / span])
-    covariance = np.linalg.pinv(scaled.T @ scaled)
-    found = covariance @ scaled.T @ (size / deviation)
-    left = float(np.sum((size / deviation - scaled @ found) ** 2))
-    freedom = max(time.size - 2, 1)
-    covariance = covariance * max(1.0, left / freedom)
+    off, found, covariance, weight = _fitted((time - origin) / span, size / deviation, deviation)
+    freedom = max(float(weight.sum()) - 2.0, 1.0)
+    covariance = covariance * max(1.0, float(np.sum(weight * off**2)) / freedom)
     back = np.diag([1.0, 1.0 / span])
     return Line(origin, float(found[0]), float(found[1] / span), back @ covariance @ back, freedom)
 

@@ -54,6 +54,14 @@ def test_drift_widens_what_is_known():
     assert np.sqrt(np.diag(np.linalg.inv(known.information))) == pytest.approx([0.01 * np.sqrt(2.0), 1e-3])
 
 
+def _answer_of(gains):
+    """An answer with these effects and gains."""
+    effects = [
+        EffectTold(name, "joint", 1.0, 0.9, 1.1, "1", gain, 1, 1.0, {}) for name, gain in gains.items()
+    ]
+    return Answer(tuple(effects), {}, 1.0, 4000, 0.0, {})
+
+
 def _answer(rng, gain=0.0):
     """An answer of a machine in which nothing changed, but for one effect's gain."""
     effects = [
@@ -138,3 +146,24 @@ def test_time_stamps(name, moment, source, tmp_path):
     path.write_text("")
     os.utime(path, (datetime(2020, 1, 1, tzinfo=timezone.utc).timestamp(),) * 2)
     assert (stamp_of(path).seconds, stamp_of(path).source) == (moment.timestamp(), source)
+
+
+def test_one_recording_with_too_narrow_an_interval_does_not_bend_a_trend():
+    days, deviation = np.arange(20) * 86400.0, 0.05
+    sizes = 1.0 + 0.1 * np.arange(20) + np.random.default_rng(3).normal(scale=deviation, size=20)
+    sizes[17] = 0.0  # its own numbers took the effect, and the interval does not say so
+    low, high = sizes - 1.96 * deviation, sizes + 1.96 * deviation
+    line = trend_of(days, sizes, low, high, 0.01).last
+    assert line is not None
+    assert line.slope_interval[0] * 86400 < 0.1 < line.slope_interval[1] * 86400
+    assert abs(line.slope * 86400 - 0.1) < 0.005
+
+
+def test_a_fit_that_failed_in_one_recording_does_not_name_another_effect():
+    """Backlash explains eleven of twelve recordings a little better; in one its fit ended in a local minimum."""
+    rule, healthy = AlarmRule(), Healthy()
+    answers = [_answer_of({"linkage.backlash": 400.0, "fluid.entrained_air": 370.0}) for _ in range(11)]
+    answers.append(_answer_of({"linkage.backlash": 5.0, "fluid.entrained_air": 4000.0}))
+    judgements = [judged(answer, n + 1, rule, healthy) for n, answer in enumerate(answers)]
+    alarm = alarm_of(answers, judgements, rule)
+    assert alarm is not None and alarm.effect == "linkage.backlash"

@@ -1,11 +1,11 @@
 """The live watch measured: processor share, two hours with a bad link, gaps and jumps, and faults that begin.
 
-python scripts/live_study.py share                     # ten joints at 100 Hz, processor time a second
-python scripts/live_study.py prepare --out out/live    # three references of the bench, fitted
-python scripts/live_study.py stream --out out/live     # two hours, 5 % each lost, doubled and late, as fast as it goes
-python scripts/live_study.py faults --out out/live     # leakages that begin after a minute
-python scripts/live_study.py pump                      # a leakage in one of ten joints that share a pump
-python scripts/live_study.py named --out out/live      # a leakage over TCP, named by windows
+python scripts/watching/live_study.py share                     # ten joints at 100 Hz, processor time a second
+python scripts/watching/live_study.py prepare --out out/live    # three references of the bench, fitted
+python scripts/watching/live_study.py stream --out out/live     # two hours, 5 % each lost, doubled and late, as fast as it goes
+python scripts/watching/live_study.py faults --out out/live     # leakages that begin after a minute
+python scripts/watching/live_study.py pump                      # a leakage in one of ten joints that share a pump
+python scripts/watching/live_study.py named --out out/live      # a leakage over TCP, named by windows
 
 The bench is the challenge's (equations and an integrator of its own), so that the fitted model is not the machine.
 """

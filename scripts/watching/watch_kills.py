@@ -1,6 +1,6 @@
 """A watch that is killed again and again must end with the table of one that was not.
 
-python scripts/watch_kills.py --out out/kills
+python scripts/watching/watch_kills.py --out out/kills
 
 Sixty short recordings of a bench whose piston leaks more and more, watched once without a break, and once by commands
 of which each is killed (SIGKILL, with its whole process group) after a random time, until the last one may end.

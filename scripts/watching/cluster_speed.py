@@ -1,6 +1,6 @@
 """Recordings a minute of a watch over Dask clusters of one, two and four workers on this computer.
 
-python scripts/cluster_speed.py RUNS REFERENCE [REFERENCE ...] --kept out/watch --out out/cluster
+python scripts/watching/cluster_speed.py RUNS REFERENCE [REFERENCE ...] --kept out/watch --out out/cluster
 
 Each cluster asks the same recordings of a bench, against a reference that a watch before has fitted and kept. Workers
 load the model and its machine code with a few recordings of their own before the clock starts.

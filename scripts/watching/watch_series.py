@@ -1,6 +1,6 @@
 """Concealed machines watched while load, oil temperature and operator change from recording to recording.
 
-python scripts/watch_series.py --seed 71 --out out/watch_series
+python scripts/watching/watch_series.py --seed 71 --out out/watch_series
 
 Ten machines of the challenge (equations and an integrator of their own), the bench and joints of the arms: five healthy
 ones, and five in each of which one effect grows from nothing to ten times the smallest visible size, by the same every
