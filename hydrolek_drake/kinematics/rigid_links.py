@@ -7,7 +7,8 @@ from pydrake.multibody.plant import MultibodyPlant
 from pydrake.multibody.tree import RigidBody
 
 from hydrolek_drake.kinematics.arms import arm_joint, arm_joint_names, make_arms_plant
-from hydrolek_drake.physics.serial_arm import ROOT, link
+from hydrolek_drake.physics.bodies.mass_matrix import ROOT
+from hydrolek_drake.physics.bodies.serial_arm import link
 
 
 def rigid_links(joints: Sequence[str], held: Mapping[str, float]) -> np.ndarray:

@@ -18,7 +18,6 @@ from hydrolek_drake.physics import (
     sensor,
     solenoid,
     supply,
-    valve,
 )
 from hydrolek_drake.physics.driven import DRIVEN, is_driven
 from hydrolek_drake.physics.law import LAW_RECORD
@@ -26,6 +25,7 @@ from hydrolek_drake.physics.lines import accumulator, hose
 from hydrolek_drake.physics.parameters import Stage
 from hydrolek_drake.physics.usual import MARK, RARE, RARE_NUMBERS
 from hydrolek_drake.physics.valves import load_holding
+from hydrolek_drake.physics.valves import variants as valve
 
 SHARED_STAGES: dict[str, Stage] = {s.STAGE.name: s.STAGE for s in (supply, accumulator, fluid)}
 """Stages that all joints of a rig share."""

@@ -1,8 +1,8 @@
 """Checks of a rig's valves."""
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.physics.valve import EDGES
 from hydrolek_drake.physics.valves import flow_map
+from hydrolek_drake.physics.valves.variants import EDGES
 from hydrolek_drake.rigs.checked import Checked
 
 

@@ -13,8 +13,8 @@ import numpy as np
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import command
+from hydrolek_drake.physics.bodies.serial_arm import scratch
 from hydrolek_drake.physics.records import as_usual
-from hydrolek_drake.physics.serial_arm import scratch
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.kernel import SIGNALS, pulled
 from hydrolek_drake.rollout.rest import rest_state

@@ -15,13 +15,14 @@ class TimeLimit:
 
 
 @contextmanager
-def ended_after(seconds: float | None) -> Iterator[TimeLimit]:
+def ended_after(seconds: float | None, *, worked: bool = False) -> Iterator[TimeLimit]:
     """Interrupt the main thread after so many seconds, once; None for never.
 
     Only in the main thread, which alone receives signals.
 
     Args:
         seconds: of the wall clock, more than 0.
+        worked: seconds of the process's own time instead, of all its threads.
     """
     limit = TimeLimit()
     if seconds is None:
@@ -32,10 +33,11 @@ def ended_after(seconds: float | None) -> Iterator[TimeLimit]:
         limit.reached = True
         raise KeyboardInterrupt
 
-    before = signal.signal(signal.SIGALRM, end)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    which, timer = (signal.SIGPROF, signal.ITIMER_PROF) if worked else (signal.SIGALRM, signal.ITIMER_REAL)
+    before = signal.signal(which, end)
+    signal.setitimer(timer, seconds)
     try:
         yield limit
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)
+        signal.setitimer(timer, 0.0)
+        signal.signal(which, before)

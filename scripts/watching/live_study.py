@@ -2,7 +2,7 @@
 
 python scripts/watching/live_study.py share                     # ten joints at 100 Hz, processor time a second
 python scripts/watching/live_study.py prepare --out out/live    # three references of the bench, fitted
-python scripts/watching/live_study.py stream --out out/live     # two hours, 5 % each lost, doubled and late, as fast as it goes
+python scripts/watching/live_study.py stream --out out/live     # two hours, 5 % each lost, doubled, late, at full pace
 python scripts/watching/live_study.py faults --out out/live     # leakages that begin after a minute
 python scripts/watching/live_study.py pump                      # a leakage in one of ten joints that share a pump
 python scripts/watching/live_study.py named --out out/live      # a leakage over TCP, named by windows

@@ -6,7 +6,7 @@ import pytest
 from hydrolek_drake.identification.mechanical.arm_bodies import JOINTS, arm_bodies
 from hydrolek_drake.identification.mechanical.arm_dynamics import simulate_joints
 from hydrolek_drake.kinematics.arms import arm_joint, make_arms_plant
-from hydrolek_drake.physics.serial_arm import moments_along, motion_equation, scratch
+from hydrolek_drake.physics.bodies.serial_arm import moments_along, motion_equation, scratch
 
 GRAVITY = 9.81
 

@@ -15,7 +15,8 @@ from hydrolek_drake.kinematics.arms import (
     make_arms_plant,
 )
 from hydrolek_drake.kinematics.rigid_links import rigid_links
-from hydrolek_drake.physics.serial_arm import LINK_SIZE, PARENT, ROOT, accelerations, moments_along
+from hydrolek_drake.physics.bodies.mass_matrix import PARENT, ROOT, accelerations
+from hydrolek_drake.physics.bodies.serial_arm import LINK_SIZE, moments_along
 
 BOTH = arm_joint_names()
 SOME = ("right_j2", "right_j3", "right_j5", "left_j1", "left_j4")

@@ -14,8 +14,8 @@ import numpy as np
 from numba import njit
 
 from hydrolek_drake.physics import load
+from hydrolek_drake.physics.bodies.serial_arm import moments_along
 from hydrolek_drake.physics.probes import PROBES
-from hydrolek_drake.physics.serial_arm import moments_along
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.one_point import stroke_and_lever
 from hydrolek_drake.rollout.together.arms import arm_links, carriers_of, payloads

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.physics.serial_arm import link
+from hydrolek_drake.physics.bodies.serial_arm import link
 
 JOINTS = 6
 

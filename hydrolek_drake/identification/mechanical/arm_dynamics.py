@@ -4,7 +4,8 @@ import numpy as np
 from numba import njit
 
 from hydrolek_drake.compiled import use_cache_for_this_source
-from hydrolek_drake.physics.serial_arm import accelerations, motion_equation, scratch
+from hydrolek_drake.physics.bodies.mass_matrix import accelerations
+from hydrolek_drake.physics.bodies.serial_arm import motion_equation, scratch
 
 use_cache_for_this_source()
 

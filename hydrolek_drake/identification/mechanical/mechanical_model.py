@@ -16,7 +16,7 @@ import numpy as np
 
 from hydrolek_drake.identification.mechanical.arm_bodies import JOINTS, arm_bodies
 from hydrolek_drake.identification.mechanical.arm_dynamics import simulate_joints
-from hydrolek_drake.physics.serial_arm import moments_along
+from hydrolek_drake.physics.bodies.serial_arm import moments_along
 from hydrolek_drake.units import si_factor
 from hydrolek_drake.yaml_files import package_yaml
 

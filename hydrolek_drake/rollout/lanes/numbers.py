@@ -1,8 +1,8 @@
 """A number of every lane at once, as an element of arrays in compiled code.
 
 Functions of plain numbers whose way does not depend on those (sums, products, quotients, roots over loops of known
-length, as in `physics.serial_arm`) are compiled for it as they are, and are vector instructions then; each lane is what
-it would be alone, to the last bit, since these operations round alike.
+length, as in `physics.bodies.serial_arm`) are compiled for it as they are, and are vector instructions then; each lane
+is what it would be alone, to the last bit, since these operations round alike.
 """
 
 import math

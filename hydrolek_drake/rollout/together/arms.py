@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
-from hydrolek_drake.physics.serial_arm import LINK_SIZE
+from hydrolek_drake.physics.bodies.serial_arm import LINK_SIZE
 from hydrolek_drake.rigs import Rig
 
 NO_LINKS = np.zeros((0, LINK_SIZE))

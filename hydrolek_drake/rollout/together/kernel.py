@@ -10,9 +10,9 @@ import numpy as np
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import command, hooks, load
+from hydrolek_drake.physics.bodies.serial_arm import CARRIES
 from hydrolek_drake.physics.driven import driven_by
 from hydrolek_drake.physics.probes import probe_at
-from hydrolek_drake.physics.serial_arm import CARRIES
 from hydrolek_drake.physics.solenoid import steps_needed
 from hydrolek_drake.rollout.drive import acts_early
 from hydrolek_drake.rollout.kernel import SIGNALS, arrived, inertia_at, out_of_bounds, written

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from hydrolek_drake.physics.bodies.serial_arm import scratch
 from hydrolek_drake.physics.law import LAW, MOST_TERMS
 from hydrolek_drake.physics.probes import SUPPLY
 from hydrolek_drake.physics.records import flat
-from hydrolek_drake.physics.serial_arm import scratch
 from hydrolek_drake.rollout.lanes.compiling import compiled, ready
 from hydrolek_drake.rollout.lanes.kinds import kind_of
 from hydrolek_drake.rollout.lanes.lanes import FEW, OFF, SWITCH

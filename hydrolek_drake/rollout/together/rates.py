@@ -9,8 +9,9 @@ the stiffness of the oil in the chambers (`rosenbrock.through_oil`).
 import numpy as np
 
 from hydrolek_drake.compiling import njit
+from hydrolek_drake.physics.bodies.mass_matrix import accelerations, factored, moments_of, solved
+from hydrolek_drake.physics.bodies.serial_arm import motion_equation
 from hydrolek_drake.physics.probes import SUPPLY, Probe, added, no_probe
-from hydrolek_drake.physics.serial_arm import accelerations, factored, moments_of, motion_equation, solved
 from hydrolek_drake.physics.solenoid import GAMMA
 from hydrolek_drake.rollout.rates import felt_at
 from hydrolek_drake.rollout.together.joint_rows import (

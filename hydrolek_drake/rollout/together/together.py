@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.compiled import read_only
+from hydrolek_drake.physics.bodies.serial_arm import moments_along, scratch
 from hydrolek_drake.physics.law import LAW, law_of
 from hydrolek_drake.physics.records import as_usual
-from hydrolek_drake.physics.serial_arm import moments_along, scratch
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.kernel import SIGNALS
 from hydrolek_drake.rollout.rest import rest_state

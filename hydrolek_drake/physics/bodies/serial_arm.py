@@ -5,12 +5,11 @@ against the other. Everything is told in the axes of the base about its origin, 
 wrenches of several bodies are simply added (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 2, 5 and 6).
 """
 
-import math
-
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics.vectors import (
+from hydrolek_drake.physics.bodies.mass_matrix import ROOT, moments_of, parent_of
+from hydrolek_drake.physics.bodies.vectors import (
     Matrix,
     Vector,
     cross,
@@ -28,11 +27,8 @@ from hydrolek_drake.physics.vectors import (
 Body = tuple[float, float, float, float, float, float, float, float, float, float]
 """Mass, first moment, and inertia xx xy xz yy yz zz about the origin."""
 
-ROOT = -1
-"""Parent of a link that turns on the base."""
-
-PARENT, TURN, OFFSET, AXIS, MASS, MOMENT, INERTIA, CARRIES, TOOL, GRAVITY = (
-    0, 1, 10, 13, 16, 17, 20, 29, 30, 33,
+TURN, OFFSET, AXIS, MASS, MOMENT, INERTIA, CARRIES, TOOL, GRAVITY = (
+    1, 10, 13, 16, 17, 20, 29, 30, 33,
 )  # fmt: skip
 """Where a link's numbers begin in its row, see `link`."""
 
@@ -117,17 +113,11 @@ def motion_equation(
         while j != ROOT:
             matrix[j, k] = dot(vector_at(s, j, _SCREW_W), turning) + dot(vector_at(s, j, _SCREW_V), moving)
             matrix[k, j] = matrix[j, k]
-            j = _parent(links, j)
-        p = _parent(links, k)
+            j = parent_of(links, j)
+        p = parent_of(links, k)
         if p != ROOT:
             for r in range(_BODY, _SCRATCH_SIZE):
                 s[p, r] += s[k, r]
-
-
-@njit
-def _parent(links: np.ndarray, k: int) -> int:
-    """Row of the link on which one turns, or `ROOT`."""
-    return int(links[k, PARENT])
 
 
 @njit
@@ -135,7 +125,7 @@ def _put_link(
     links: np.ndarray, k: int, sine: float, cosine: float, speed: float, hanging: float, s: np.ndarray
 ) -> None:
     """Place, motion, inertia and wrench of one link, from those of the link on which it turns."""
-    p = _parent(links, k)
+    p = parent_of(links, k)
     turn: Matrix = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
     place = w = v = a_w = (0.0, 0.0, 0.0)
     a_v = scaled(-1.0, vector_at(links, k, GRAVITY))  # as if the base were accelerated upwards
@@ -268,83 +258,3 @@ def _moments_along(
         moments_of(links, matrix, a[k], needed[k])
         for i in range(n):
             needed[k, i] += bias[i]
-
-
-@njit
-def factored(links: np.ndarray, matrix: np.ndarray) -> None:
-    """M = L' L in place, of which only entries between a link and those that carry it are not zero.
-
-    Those of L stand below the diagonal, and one over its own on it (Featherstone, table 6.3).
-
-    Args:
-        links: what turns, rows of `link`. # (n, 36)
-        matrix: M; overwritten. # (n, n)
-    """
-    for k in range(len(links) - 1, -1, -1):
-        matrix[k, k] = 1.0 / math.sqrt(matrix[k, k])
-        i = _parent(links, k)
-        while i != ROOT:
-            matrix[k, i] *= matrix[k, k]
-            i = _parent(links, i)
-        i = _parent(links, k)
-        while i != ROOT:
-            j = i
-            while j != ROOT:
-                matrix[i, j] -= matrix[k, i] * matrix[k, j]
-                j = _parent(links, j)
-            i = _parent(links, i)
-
-
-@njit
-def solved(links: np.ndarray, factor: np.ndarray, torque: np.ndarray) -> None:
-    """Solve M q'' = tau in place (Featherstone, table 6.5).
-
-    Args:
-        links: what turns, rows of `link`. # (n, 36)
-        factor: of M, see `factored`. # (n, n)
-        torque: tau; receives q''. # (n,)
-    """
-    for i in range(len(links) - 1, -1, -1):
-        torque[i] *= factor[i, i]
-        j = _parent(links, i)
-        while j != ROOT:
-            torque[j] -= factor[i, j] * torque[i]
-            j = _parent(links, j)
-    for i in range(len(links)):
-        j = _parent(links, i)
-        while j != ROOT:
-            torque[i] -= factor[i, j] * torque[j]
-            j = _parent(links, j)
-        torque[i] *= factor[i, i]
-
-
-@njit
-def accelerations(links: np.ndarray, matrix: np.ndarray, torque: np.ndarray) -> None:
-    """Solve M q'' = tau in place.
-
-    Args:
-        links: what turns, rows of `link`. # (n, 36)
-        matrix: M; overwritten. # (n, n)
-        torque: tau; receives q''. # (n,)
-    """
-    factored(links, matrix)
-    solved(links, matrix, torque)
-
-
-@njit
-def moments_of(links: np.ndarray, matrix: np.ndarray, acceleration: np.ndarray, moments: np.ndarray) -> None:
-    """M q''.
-
-    Args:
-        links: what turns, rows of `link`. # (n, 36)
-        matrix: M. # (n, n)
-        acceleration: q''. # (n,)
-        moments: receives them. # (n,)
-    """
-    for i in range(len(links)):
-        moments[i] = matrix[i, i] * acceleration[i]
-        j = _parent(links, i)
-        while j != ROOT:
-            moments[i] += matrix[i, j] * acceleration[j]
-            moments[j] += matrix[i, j] * acceleration[i]
-            j = _parent(links, j)
