@@ -64,6 +64,7 @@ def asked(sheet: Sheet, key: str, name: str = "") -> str:
 
 
 def kept(name: str, key: str = "") -> str:
-    """The entry of a number that no data sheet has, as `questions.yaml` has it."""
+    """The entry of a number that no data sheet has, as `questions.yaml` has it, with its range if it has one."""
     known = fixed(key or name)
-    return entry(name, known["value"], known["unit"], known["source"])
+    limits = tuple(known["range"]) if "range" in known else None
+    return entry(name, known["value"], known["unit"], known["source"], limits, log=False)

@@ -70,7 +70,10 @@ class Question:
     def applies(self, answers: Mapping[str, Any]) -> bool:
         """Whether it is asked of a machine with these answers."""
         wanted = self.what.get("for")
-        return wanted is None or wanted in (answers.get("moves"), answers.get("supply"))
+        holding = answers.get("holding", "none")
+        if wanted == "holding":
+            return bool(holding != "none")
+        return wanted is None or wanted in (answers.get("moves"), answers.get("supply"), holding)
 
 
 @cache

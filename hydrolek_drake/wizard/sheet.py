@@ -65,7 +65,7 @@ class Sheet:
             return float(self["spool_travel"])
         if key == "pump_leakage":
             return self["displacement"] * self["pump_speed"]
-        if key in ("relief_rise", "relief_hysteresis"):
+        if key in ("relief_rise", "relief_hysteresis", "accumulator_precharge", "holding_setting"):
             return float(self["supply_pressure"])
         if key == "bearing_damping":
             return self.force * self.lever * self.lever / self.speed

@@ -3,6 +3,7 @@
 import math
 
 from hydrolek_drake.units import si_factor
+from hydrolek_drake.wizard.components import accumulator, holding, hose, slew_rate
 from hydrolek_drake.wizard.entries import SHEET, asked, entry, kept
 from hydrolek_drake.wizard.questions import fixed, questions
 from hydrolek_drake.wizard.sheet import EDGES, Sheet
@@ -38,6 +39,7 @@ def rig_text(name: str, sheet: Sheet, step: float) -> str:
         f"  {asked(sheet, 'tank_pressure')}",
         *(f"  {line}" for line in pump),
         "",
+        *accumulator(sheet),
         "fluid:",
         f"  {asked(sheet, 'oil_density', 'density')}",
         f"  {asked(sheet, 'bulk_modulus')}",
@@ -57,7 +59,9 @@ def rig_text(name: str, sheet: Sheet, step: float) -> str:
         f"      {asked(sheet, 'spool_travel', 'full_stroke')}",
         f"      {asked(sheet, 'bandwidth')}",
         f"      {asked(sheet, 'spool_damping', 'damping_ratio')}",
+        *(f"      {line}" for line in slew_rate(sheet)),
         *(f"    {line}" for line in _valve(sheet)),
+        *(f"    {line}" for line in (*holding(sheet), *hose(sheet))),
         *(f"    {line}" for line in _cylinder(sheet)),
         *(f"    {line}" for line in (_link(sheet) if sheet.turns else _slide(sheet))),
         "",
@@ -187,15 +191,8 @@ def _stops(sheet: Sheet) -> list[str]:
             f"assumed: half of critical with the mass; {fixed('stop_depth_factor')['source']}",
             (damping / spread**2, damping * spread),
         ),
-        *(_known_within(name) for name in ("stop_exponent", "stop_dissipation")),
+        *(kept(name) for name in ("stop_exponent", "stop_dissipation")),
     ]
-
-
-def _known_within(name: str) -> str:
-    """A number of `questions.yaml` with its range."""
-    known = fixed(name)
-    low, high = known["range"]
-    return entry(name, known["value"], known["unit"], known["source"], (low, high), log=False)
 
 
 def _column(sheet: Sheet) -> str:

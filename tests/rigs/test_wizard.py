@@ -177,3 +177,46 @@ def test_a_fit_may_move_the_load_s_stops_behind_those_of_the_cylinder():
     assert rig.with_values(moved).value("linkage.zero_stroke_length") > zero
     with pytest.raises(InputError, match="lies beyond zero stroke"):
         rig.with_values({**moved, "cylinder.stop_stiffness": 0.0})
+
+
+def test_an_accumulator_hoses_and_a_holding_valve_follow_from_the_sheet():
+    text, rig = written_rig(
+        "crane",
+        LINK | {
+            "accumulator_volume": "2.5 l", "accumulator_precharge": "90 bar", "hose_length": "4 m",
+            "hose_bore": "12 mm",
+            "holding": "counterbalance", "holding_setting": "210 bar", "holding_ratio": "4.5", "holding_at": "both",
+            "slew_time": "40 ms",
+        },
+    )  # fmt: skip
+    assert rig.value("accumulator.volume") == pytest.approx(2.5e-3)
+    assert rig.value("accumulator.precharge") == pytest.approx(9e6)
+    assert rig.value("hose.resistance_b") == pytest.approx(
+        128 * 46e-6 * 870 * 4 / (np.pi * 0.012**4), rel=1e-3
+    )
+    assert rig.value("hose.expansion_a") == pytest.approx(np.pi / 4 * 0.012**2 * 4 / 0.7e9, rel=1e-3)
+    assert (rig.value("holding.setting"), rig.value("holding.pilot_ratio")) == pytest.approx((21e6, 4.5))
+    assert (rig.value("holding.at_a"), rig.value("holding.at_b")) == (1.0, 1.0)
+    assert rig.value("solenoid.slew_rate") == pytest.approx(1e-3 / 40e-3)
+    assert "assumed: between slow (1) and fast changes" in text
+
+
+def test_a_pilot_check_valve_is_at_port_a_unless_something_else_is_said():
+    rig = written_rig("axis", SLIDE | {"holding": "pilot_check"})[1]
+    assert rig.variant("joint", "holding") == "pilot_check"
+    assert (rig.value("holding.at_a"), rig.value("holding.at_b")) == (1.0, 0.0)
+    assert rig.entries["joints.joint.holding.pilot_ratio"].source.startswith("assumed")
+
+
+@pytest.mark.parametrize(
+    ("sheet", "change", "says"),
+    [
+        (SLIDE, {"accumulator_volume": "1 l"}, "needs --supply pump"),
+        (LINK, {"hose_length": "3 m"}, "give --hose-bore too"),
+        (LINK, {"hose_bore": "12 mm"}, "give --hose-length too"),
+        (LINK, {"holding": "check"}, "choose none or counterbalance or pilot_check"),
+    ],
+)
+def test_half_a_component_is_refused(sheet, change, says):
+    with pytest.raises(InputError, match=says):
+        written_rig("axis", sheet | change)
