@@ -81,13 +81,13 @@ def check_rig(rig: Rig) -> list[Complaint]:
 
 
 def _pump_and_valve(rig: Rig, joint: str) -> list[Complaint]:
-    if rig.variants["supply"] != "pump" or rig.variant(joint, "valve") == "none":
+    if rig.variants["supply"] != "pump" or rig.variant(joint, "valve") in ("none", "pump_controlled"):
         return []
     record = rig.records()[rig.joints.index(joint)]
     pressure = rig.value("supply.pressure")
     takes = inlet_conductance(pressure, 0.0, 0.0, record) * pressure
     gives = rig.value("supply.displacement") * rig.value("supply.speed")
-    if len(rig.joints) > 1 or gives <= MORE_THAN_ALL * takes:
+    if len(rig.joints) > 1 or not takes > 0.0 or gives <= MORE_THAN_ALL * takes:
         return []
     litres = 6.0e4
     per_turn = gives / PER_TURN <= MORE_THAN_ALL * takes
@@ -125,6 +125,16 @@ def _stroke_and_stops(rig: Rig, joint: str) -> list[Complaint]:
                 f"{where}.load",
                 f"at its stops the joint asks for {max(strokes):.4g} m of stroke, the cylinder has {stroke:.4g} m",
                 f"cylinder: {{stroke: {{value: {max(strokes):.4g}, unit: m, ...}}}}",
+            )
+        )
+    behind = rig.value(f"{where}.cylinder.dead_volume_a") / rig.value(f"{where}.cylinder.area_a")
+    if min(strokes) < -behind:
+        found.append(
+            Complaint(
+                f"{where}.linkage",
+                f"between its stops the joint asks for strokes down to {min(strokes):.4g} m, {-min(strokes):.4g} m "
+                "behind the piston's end",
+                "",
             )
         )
     if min(levers) < 0.0 < max(levers):

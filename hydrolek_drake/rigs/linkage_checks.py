@@ -24,7 +24,7 @@ def check(rig: Checked, where: str, lower: float, upper: float) -> None:
     if variant == "four_bar":
         _check_four_bar(rig, where, lower, upper)
     elif variant == "lever_table":
-        _check_table(rig, where)
+        _check_table(rig, where, lower, upper)
     elif variant == "triangle":
         _check_triangle(rig, where, lower, upper)
 
@@ -34,21 +34,34 @@ def _check_four_bar(rig: Checked, where: str, lower: float, upper: float) -> Non
         rig.value(f"{where}.linkage.{name}")
         for name in ("link_arm", "ground", "coupler", "crank_arm", "link_angle", "direction")
     )
-    for name, position in (("lower_stop", lower), ("upper_stop", upper)):
-        if not four_bar.closes(link, ground, coupler, crank, way * position + angle):
+    first, last = sorted((way * max(lower, -math.pi) + angle, way * min(upper, math.pi) + angle))
+    # the link's pin is nearest to the crank's axis at 0 and farthest at 180 deg from it
+    between = [k * math.pi for k in range(math.ceil(first / math.pi), math.floor(last / math.pi) + 1)]
+    for turned in (first, last, *between):
+        if not four_bar.closes(link, ground, coupler, crank, turned):
+            position = way * (turned - angle)
             raise InputError(
-                f"{rig.path}: {where}.linkage: impossible mechanism, at {name} ({math.degrees(position):.1f} deg) the "
+                f"{rig.path}: {where}.linkage: impossible mechanism, at {math.degrees(position):.1f} deg the "
                 f"coupler of {coupler:g} m and the crank of {crank:g} m do not reach the link's pin; check lengths and "
                 "link_angle"
             )
 
 
-def _check_table(rig: Checked, where: str) -> None:
+def _check_table(rig: Checked, where: str, lower: float, upper: float) -> None:
     first, last = (rig.value(f"{where}.linkage.{name}_position") for name in ("first", "last"))
     if not first < last:
         raise InputError(
             f"{rig.path}: {where}.linkage: first_position {first:g} must lie below last_position {last:g}"
         )
+    for name, stop, outside in (
+        ("lower_stop", lower, lower < first),
+        ("upper_stop", upper, upper > last),
+    ):
+        if outside:
+            raise InputError(
+                f"{rig.path}: {where}.linkage: the table goes from {first:g} to {last:g} rad, {name} is at {stop:g}; "
+                "give levers for all of the way"
+            )
     levers = [rig.value(f"{where}.linkage.lever_{knot}") for knot in range(lever_table.KNOTS)]
     if not (min(levers) > 0.0 or max(levers) < 0.0):
         raise InputError(

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import linkage, load, valve
+from hydrolek_drake.physics import cylinder, linkage, load, valve
 from hydrolek_drake.physics.law import Seen, law_value
+from hydrolek_drake.physics.valves.variants import PUMP_CONTROLLED
 
 
 @njit(cache=True)
@@ -19,6 +20,26 @@ def inlet_conductance(p_supply: float, p_a: float, p_b: float, joint: Any) -> fl
         valve.Openings(1.0, 0.0, 0.0, 1.0), p_supply, p_a, p_b, 0.0, joint
     )
     return inlet
+
+
+@njit(cache=True)
+def full_flow(p_supply: float, drop: float, joint: Any) -> float:
+    """Flow into side A of a valve that is wide open, at a pressure drop; of a pump all it gives [m^3/s]."""
+    if joint.valve.variant == PUMP_CONTROLLED:
+        return joint.valve.full_flow
+    return inlet_conductance(p_supply, p_supply - drop, p_supply - drop, joint) * drop
+
+
+@njit(cache=True)
+def drive_force(command: float, joint: Any) -> float:
+    """Force of an electric drive [N] at a command [V]; see `cylinder.motor_force`."""
+    return cylinder.motor_force(command, joint)
+
+
+@njit(cache=True)
+def driven_inertia(joint: Any) -> float:
+    """Inertia of a joint's load with what its drive adds [kg m^2 or kg]."""
+    return load.own_inertia(joint) + load.reflected_rod_inertia(joint)
 
 
 @njit(cache=True)

@@ -11,6 +11,7 @@ import numpy as np
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import amplifier, cylinder, hooks, linkage, load, sensor, supply
+from hydrolek_drake.physics.valves.variants import PUMP_CONTROLLED
 from hydrolek_drake.rollout.rates import State
 
 STATE_SIZE = 2 + len(State._fields) + 3 + len(amplifier.Currents._fields)
@@ -121,6 +122,8 @@ def rest_pressures(joint: Any, side: float, needed: float) -> tuple[float, float
     p = joint.cylinder
     _, lever = linkage.stroke_and_lever(side, joint)
     p_b = p.initial_pressure_b
+    if joint.valve.variant == PUMP_CONTROLLED:  # the charge line holds the lower side
+        p_b = joint.valve.charge_pressure
     p_a = _quotient(_quotient(needed, lever) + p.area_b * p_b, p.area_a)
     if p_a < 0.0:  # the load pulls the rod out: side B carries it
         p_a = joint.supply.tank_pressure

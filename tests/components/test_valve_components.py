@@ -95,7 +95,9 @@ def test_a_load_sinks_through_a_leaking_spool_unless_it_is_held(with_component, 
     times = np.arange(0.0, 10.0, 0.01)
     ends = {}
     for held in (1.0, 0.0):
-        rig = with_component(name).with_values({**leak, "holding.at_a": held, "supply.pressure": 0.5e6})
+        rig = with_component(name).with_values(
+            {**leak, "holding.at_a": held, "holding.at_b": 1.0 - held, "supply.pressure": 0.5e6}
+        )
         signals = roll_out(rig.records(), times, np.zeros(times.size), times, longest_step=8e-4).signals
         ends[held] = math.degrees(signals.position[-1] - signals.position[0])
     assert ends[0.0] < -1.0
@@ -125,6 +127,30 @@ def test_flows_of_a_pump_balance_with_its_charge_line_and_leakage(with_component
     charged = 5e-11 * (1.5e6 - 1.2e6)
     assert_allclose(b, -0.4 * 6 / 6e4 + 2e-13 * 7.8e6 - 1e-13 * (1.2e6 - P_T) + charged, rtol=1e-9)
     assert drawn == 0.0
+
+
+def test_a_pump_s_check_and_relief_valves_hold_its_sides_between_their_pressures(with_component):
+    rig = with_component("pump_controlled").with_values(
+        {"valve.relief_pressure": 20e6, "valve.relief_conductance": 1e-10, "valve.cross_leakage": 0.0}
+    )
+    joint = rig.records()[0]
+    rest = openings(0.0, joint)
+    low_a, low_b, *_ = chamber_flows(rest, P_S, 0.5e6, 0.9e6, 0.0, joint)  # both below the charge pressure
+    assert_allclose(low_a, 5e-11 * (1.5e6 - 0.5e6) - 1e-13 * (0.5e6 - P_T), rtol=1e-9)
+    assert_allclose(low_b, 5e-11 * (1.5e6 - 0.9e6) - 1e-13 * (0.9e6 - P_T), rtol=1e-9)
+    high_a, high_b, *_ = chamber_flows(rest, P_S, 22e6, 1.5e6, 0.0, joint)
+    assert_allclose(high_a, -1e-10 * 2e6 - 1e-13 * (22e6 - P_T), rtol=1e-9)
+    assert_allclose(high_b, 1e-10 * 2e6 - 1e-13 * (1.5e6 - P_T), rtol=1e-9)
+
+
+def test_a_pump_controlled_machine_starts_with_its_lower_side_at_the_charge_pressure(with_component):
+    rig = with_component("pump_controlled").with_values(
+        {"valve.cross_leakage": 0.0, "valve.case_leakage": 0.0}
+    )
+    times = np.arange(0.0, 0.5, 0.01)
+    signals = roll_out(rig.records(), times, np.zeros(times.size), times, longest_step=4e-4).signals
+    assert_allclose(signals.pressure_b[0], 1.5e6)
+    assert abs(math.degrees(np.ptp(signals.position))) < 0.05
 
 
 def test_a_slow_servo_valve_takes_its_time_for_a_large_step_and_not_for_a_small_one(with_component):

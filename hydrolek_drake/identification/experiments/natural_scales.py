@@ -8,7 +8,7 @@ import numpy as np
 from hydrolek_drake.effects.scales import Scales, hydraulic_scales, motor_scales
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rollout.one_point import inlet_conductance, stroke_and_lever
+from hydrolek_drake.rollout.one_point import drive_force, driven_inertia, full_flow, stroke_and_lever
 
 HALF = 0.5
 """Half of the supply pressure falls over the inlet edge of a valve that moves its largest load."""
@@ -33,11 +33,10 @@ def natural_scales(rig: Rig, joint: str, experiments: Sequence[Experiment]) -> S
     duration = max(float(np.ptp(experiment.time)) for experiment in own)
     record = rig.records()[rig.joints.index(joint)]
     if not rig.is_hydraulic(joint):
-        force = float(record["cylinder"]["force_constant"] * record["command"]["limit"])
+        force = abs(drive_force(float(record["command"]["limit"]), record))
         speed = max(_fastest(experiment) for experiment in own)
-        return motor_scales(force, speed, float(record["load"]["inertia"]), travel, duration)
+        return motor_scales(force, speed, driven_inertia(record), travel, duration)
     pressure = float(record["supply"]["pressure"])
-    inlet = inlet_conductance(pressure, HALF * pressure, HALF * pressure, record)
     _, lever = stroke_and_lever(0.5 * (low + high), record)
     # a linkage may turn round within what was recorded
     places = [stroke_and_lever(at, record) for at in np.linspace(low, high, PLACES).tolist()]
@@ -45,7 +44,7 @@ def natural_scales(rig: Rig, joint: str, experiments: Sequence[Experiment]) -> S
     levers = [abs(at) for _, at in places]
     return hydraulic_scales(
         record,
-        inlet * HALF * pressure,
+        full_flow(pressure, HALF * pressure, record),
         abs(lever),
         travel,
         duration,

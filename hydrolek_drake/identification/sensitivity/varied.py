@@ -15,6 +15,9 @@ BOOKKEEPING = frozenset(
         "command.channel_a",
         "command.channel_b",
         "linkage.direction",
+        "linkage.assembly",
+        "holding.at_a",
+        "holding.at_b",
         "sensor.noise",
         "sensor.pressure_noise",
     }

@@ -7,7 +7,7 @@ from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics.parameters import Parameter
 
 OPENINGS = (20, 40, 60, 80, 100)
-"""Shares of the full travel at which flows are given [%]; with the spool in its middle none flows."""
+"""Shares of the way from the overlap to the full travel at which flows are given [%]; at the overlap none flows."""
 
 DROPS = ("low", "middle", "high")
 """Pressure drops of one edge at which flows are given."""
@@ -24,7 +24,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         Parameter(
             f"flow_{side}_{opening}_{drop}",
             "m^3/s",
-            f"flow of one edge at {opening} % of the travel towards {side.upper()} and the {drop} pressure drop",
+            f"flow of one edge, {opening} % of the way from overlap to full travel to {side.upper()}, {drop} drop",
             lowest=0.0,
         )
         for side in "ab"
