@@ -16,8 +16,8 @@ from hydrolek_drake.rollout.one_point import drive_force, driven_inertia, full_f
     [
         (
             "four_bar",
-            {"linkage.link_angle": 0.1, "load.lower_stop": -0.5},
-            "impossible mechanism, at -5.7 deg",
+            {"linkage.link_angle": -0.349, "linkage.coupler": 0.4},
+            "mechanism, at 20.0 deg",
         ),
         ("four_bar", {"linkage.assembly": 0.5}, "0.5 is not a direction"),
         ("lever_table", {"linkage.last_position": 0.5}, "upper_stop is at 1.14"),
