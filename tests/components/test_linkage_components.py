@@ -56,7 +56,7 @@ def test_a_parallelogram_turns_its_crank_as_the_link_and_is_a_triangle(with_comp
 
 
 def test_a_mechanism_that_cannot_be_put_together_is_refused(with_component):
-    with pytest.raises(InputError, match="impossible mechanism, at 65.6 deg"):
+    with pytest.raises(InputError, match=r"impossible mechanism, at 65\.6 deg"):
         with_component("four_bar").with_values({"linkage.coupler": 0.02})
 
 
