@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from component_machines import sound
 
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.rollout.kernel import SIGNALS
@@ -15,14 +16,10 @@ from hydrolek_drake.station.step_sizes import sizes_for
 sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
 from two_executions import differences
 
-NAMES = (
-    "notched_edges", "flow_map", "accumulator", "slow_servo", "pulse_width", "counterbalance", "pilot_check", "hose",
-    "pump_controlled", "four_bar", "lever_table", "ball_screw",
-)  # fmt: skip
 REQUIRED_DEG = 0.02
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", sound())
 @pytest.mark.thorough(but=6)
 def test_the_diagram_agrees_with_the_rollout(with_component, name):
     rig = with_component(name)
@@ -30,7 +27,7 @@ def test_the_diagram_agrees_with_the_rollout(with_component, name):
     assert largest <= REQUIRED_DEG
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", sound())
 @pytest.mark.thorough(but=2)
 def test_a_lane_does_what_the_machine_does_alone(with_component, name, random_volts):
     records = np.repeat(with_component(name).records(), 3)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import yaml
+from component_machines import machine_text, sound
 
 from fuzzing.byte_damage import damaged
 from fuzzing.target import Input, Target
@@ -79,7 +80,10 @@ def _built_in(files: Callable[[], dict[str, Path]], names: tuple[str, ...]) -> t
 
 @functools.cache
 def _rig_texts() -> tuple[str, ...]:
-    return _RIGS + 2 * _built_in(built_in_rigs, ("joint_bench", "emps", "festo_tp511", "patu_lift"))
+    components = tuple(machine_text(name) for name in sound())
+    return (
+        _RIGS + 2 * _built_in(built_in_rigs, ("joint_bench", "emps", "festo_tp511", "patu_lift")) + components
+    )
 
 
 @functools.cache
