@@ -28,7 +28,7 @@ _MOST_FILES = 16  # that are based on each other
 
 def built_in_rigs() -> dict[str, Path]:
     """Name and file of every built-in rig."""
-    folder = Path(str(resources.files("hydrolek_drake.rigs"))) / "machines"
+    folder = Path(str(resources.files("hydrolek_drake.rigs")))
     return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
 
 

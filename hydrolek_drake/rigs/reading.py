@@ -9,8 +9,8 @@ from hydrolek_drake.effects.catalogue import EFFECTS, effect_named
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.parameters import Stage
 from hydrolek_drake.physics.records import JOINT_STAGES, SHARED_STAGES
-from hydrolek_drake.rigs import geometry
 from hydrolek_drake.rigs.arm_loads import FROM_ARM, arm_entries
+from hydrolek_drake.rigs.checks import across
 from hydrolek_drake.rigs.declarations import LONGEST_STEP, SPOOL_STEPS
 from hydrolek_drake.rigs.driven_by import read_driven_by
 from hydrolek_drake.rigs.entries import Entry, parse_entry
@@ -77,7 +77,7 @@ def rig_from_tree(tree: dict[str, Any], path: Path) -> Rig:
         laws=laws,
         driven_by=read_driven_by(recording.get("driven_by"), tuple(tree["joints"]), variants, path),
     )
-    geometry.check(rig)
+    across.check(rig)
     return rig
 
 

@@ -16,8 +16,8 @@ from hydrolek_drake.physics import supply
 from hydrolek_drake.physics.cylinder import ELECTRIC
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.records import JOINT, JOINT_STAGES, SHARED_STAGES
-from hydrolek_drake.rigs import geometry
 from hydrolek_drake.rigs.arm_loads import FROM_ARM, arm_load
+from hydrolek_drake.rigs.checks import across
 from hydrolek_drake.rigs.declarations import declared
 from hydrolek_drake.rigs.driven_by import counts, signals_of
 from hydrolek_drake.rigs.entries import Entry, parse_quantity
@@ -109,7 +109,7 @@ class Rig:
             full = self.full_path(path)
             entries[full] = replace(entries[full], value=float(value), same_as=None)
         rig = replace(self, entries=entries)
-        geometry.check(rig)
+        across.check(rig)
         return rig
 
     def with_settings(self, settings: Mapping[str, str]) -> "Rig":

@@ -4,7 +4,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.cylinder import ELECTRIC
 from hydrolek_drake.physics.valves import flow_map
 from hydrolek_drake.physics.valves.variants import EDGES
-from hydrolek_drake.rigs.checked import Checked
+from hydrolek_drake.rigs.checks.checked import Checked
 
 
 def check(rig: Checked, where: str) -> None:

@@ -2,8 +2,8 @@
 
 from hydrolek_drake.effects.catalogue import EFFECTS
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.rigs import linkage_checks, valve_checks
-from hydrolek_drake.rigs.checked import Checked
+from hydrolek_drake.rigs.checks import linkages, valves
+from hydrolek_drake.rigs.checks.checked import Checked
 
 
 def check(rig: Checked) -> None:
@@ -20,8 +20,8 @@ def check(rig: Checked) -> None:
                 f"{rig.path}: {where}.load: lower_stop {lower:g} must lie below upper_stop {upper:g}"
             )
         _check_signs(rig, where)
-        linkage_checks.check(rig, where, lower, upper)
-        valve_checks.check(rig, where)
+        linkages.check(rig, where, lower, upper)
+        valves.check(rig, where)
         _check_sensor(rig, where)
     _check_supply(rig)
 

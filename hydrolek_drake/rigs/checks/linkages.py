@@ -5,7 +5,7 @@ import math
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.cylinder import ELECTRIC
 from hydrolek_drake.physics.linkages import four_bar, lever_table
-from hydrolek_drake.rigs.checked import Checked
+from hydrolek_drake.rigs.checks.checked import Checked
 
 
 def check(rig: Checked, where: str, lower: float, upper: float) -> None:

@@ -1,0 +1,1 @@
+"""What a rig is refused for when it is loaded or changed: parameters that contradict each other."""
