@@ -20,7 +20,7 @@ REQUIRED_DEG = 0.02
 
 
 @pytest.mark.parametrize("name", sound())
-@pytest.mark.thorough(but=6)
+@pytest.mark.thorough(but=4)
 def test_the_diagram_agrees_with_the_rollout(with_component, name):
     rig = with_component(name)
     [(_, largest)] = differences.compare(rig, 3.0, 0.5 * sizes_for(rig).step, 5)
@@ -28,7 +28,7 @@ def test_the_diagram_agrees_with_the_rollout(with_component, name):
 
 
 @pytest.mark.parametrize("name", sound())
-@pytest.mark.thorough(but=2)
+@pytest.mark.thorough(but=1)
 def test_a_lane_does_what_the_machine_does_alone(with_component, name, random_volts):
     records = np.repeat(with_component(name).records(), 3)
     records["load"]["inertia"] *= [1.0, 1.1, 0.9]
