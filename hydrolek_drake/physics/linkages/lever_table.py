@@ -20,10 +20,10 @@ PARAMETERS = (
 
 
 @njit
-def _hinge(u: float) -> tuple[float, float]:
-    """By how far a straight piece has been passed, 0 to 1, and that integrated up to here."""
+def _between(u: float, first: float, last: float) -> tuple[float, float]:
+    """What a straight piece from one lever to the next adds at `u`, in pieces, and that integrated up to there."""
     passed = min(max(u, 0.0), 1.0)
-    return passed, 0.5 * passed * passed + max(u - 1.0, 0.0)
+    return (last - first) * passed, (last - first) * (0.5 * passed * passed + max(u - 1.0, 0.0))
 
 
 @njit
@@ -39,29 +39,14 @@ def stroke_and_lever_of_table(position: float, joint: Any) -> tuple[float, float
     p = joint.linkage
     spacing = (p.last_position - p.first_position) / (KNOTS - 1)
     u = (position - p.first_position) / spacing
-    lever, stroke = p.lever_0, p.lever_0 * u
-    rise, area = _hinge(u)
-    lever += (p.lever_1 - p.lever_0) * rise
-    stroke += (p.lever_1 - p.lever_0) * area
-    rise, area = _hinge(u - 1.0)
-    lever += (p.lever_2 - p.lever_1) * rise
-    stroke += (p.lever_2 - p.lever_1) * area
-    rise, area = _hinge(u - 2.0)
-    lever += (p.lever_3 - p.lever_2) * rise
-    stroke += (p.lever_3 - p.lever_2) * area
-    rise, area = _hinge(u - 3.0)
-    lever += (p.lever_4 - p.lever_3) * rise
-    stroke += (p.lever_4 - p.lever_3) * area
-    rise, area = _hinge(u - 4.0)
-    lever += (p.lever_5 - p.lever_4) * rise
-    stroke += (p.lever_5 - p.lever_4) * area
-    rise, area = _hinge(u - 5.0)
-    lever += (p.lever_6 - p.lever_5) * rise
-    stroke += (p.lever_6 - p.lever_5) * area
-    rise, area = _hinge(u - 6.0)
-    lever += (p.lever_7 - p.lever_6) * rise
-    stroke += (p.lever_7 - p.lever_6) * area
-    rise, area = _hinge(u - 7.0)
-    lever += (p.lever_8 - p.lever_7) * rise
-    stroke += (p.lever_8 - p.lever_7) * area
-    return p.first_stroke + spacing * stroke, lever
+    rise_0, area_0 = _between(u, p.lever_0, p.lever_1)
+    rise_1, area_1 = _between(u - 1.0, p.lever_1, p.lever_2)
+    rise_2, area_2 = _between(u - 2.0, p.lever_2, p.lever_3)
+    rise_3, area_3 = _between(u - 3.0, p.lever_3, p.lever_4)
+    rise_4, area_4 = _between(u - 4.0, p.lever_4, p.lever_5)
+    rise_5, area_5 = _between(u - 5.0, p.lever_5, p.lever_6)
+    rise_6, area_6 = _between(u - 6.0, p.lever_6, p.lever_7)
+    rise_7, area_7 = _between(u - 7.0, p.lever_7, p.lever_8)
+    lever = p.lever_0 + rise_0 + rise_1 + rise_2 + rise_3 + rise_4 + rise_5 + rise_6 + rise_7
+    areas = area_0 + area_1 + area_2 + area_3 + area_4 + area_5 + area_6 + area_7
+    return p.first_stroke + spacing * (p.lever_0 * u + areas), lever
