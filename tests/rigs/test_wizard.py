@@ -127,7 +127,7 @@ def test_the_command_writes_once_and_says_so(tmp_path, capsys):
 
 
 def test_every_question_is_listed(tmp_path, capsys):
-    assert run(["rig", "new", "x.yaml", "--questions"]) == 0
+    assert run(["rig", "new", "--questions"]) == 0
     listed = capsys.readouterr().out
     assert all(question.option in listed for question in questions().values())
 
@@ -220,3 +220,8 @@ def test_a_pilot_check_valve_is_at_port_a_unless_something_else_is_said():
 def test_half_a_component_is_refused(sheet, change, says):
     with pytest.raises(InputError, match=says):
         written_rig("axis", sheet | change)
+
+
+def test_a_rig_without_a_file_to_write_it_to_is_refused(capsys):
+    assert run(["rig", "new"]) == 2
+    assert "no FILE to write" in capsys.readouterr().err

@@ -22,8 +22,8 @@ WRONG = 1
 def new(
     context: typer.Context,
     file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="rig file to be written, such as my_axis.yaml")
-    ],
+        Path | None, typer.Argument(metavar="FILE", help="rig file to be written, such as my_axis.yaml")
+    ] = None,
     questions: Annotated[bool, typer.Option("--questions", help="list all questions and end")] = False,
     force: Annotated[bool, typer.Option("--force", help="write over a file that is there")] = False,
 ) -> None:
@@ -37,11 +37,14 @@ def new(
 
     out = console()
     if questions:
+        width = max(len(each.option) for each in all_questions().values()) + 1
         for each in all_questions().values():
             kind = f" [{each.unit}]" if each.unit else f" ({', '.join(each.choices)})" if each.choices else ""
             told = "needed" if each.needed else "optional"
-            out.print(f"{each.option:<20} {each.asks}{kind}, {told}", markup=False, soft_wrap=True)
+            out.print(f"{each.option:<{width}} {each.asks}{kind}, {told}", markup=False, soft_wrap=True)
         return
+    if file is None:
+        raise InputError("rig new: no FILE to write, such as my_axis.yaml")
     if file.suffix not in (".yaml", ".yml"):
         raise InputError(f"rig new: {file} is no YAML file; name it {file.with_suffix('.yaml')}")
     if file.exists() and not force:
