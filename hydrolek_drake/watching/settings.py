@@ -72,7 +72,10 @@ FEWEST = 3
 """Points from which a trend and its uncertainty can be told: two numbers, and one degree of freedom."""
 
 REWEIGHTED = 30
-"""Rounds in which the points of a trend get their weights; a round is a fit of two numbers."""
+"""Rounds at most in which the points of a trend get their weights; a round is a fit of two numbers."""
+
+SETTLED = 0.01
+"""They are found where no weight changes by more: a hundredth of a point's weight moves no trend."""
 
 HUBER = 1.345
 """With normal errors Huber's weights lose 5 % of the precision with this constant (Huber 1981)."""

@@ -18,7 +18,7 @@ from scipy.stats import t as student
 
 from hydrolek_drake.diagnosis.intervals.curvature import NORMAL
 from hydrolek_drake.diagnosis.settings import EVIDENCE
-from hydrolek_drake.watching.settings import FEWEST, HUBER, NORMAL_MEDIAN, REWEIGHTED, TOGETHER
+from hydrolek_drake.watching.settings import FEWEST, HUBER, NORMAL_MEDIAN, REWEIGHTED, SETTLED, TOGETHER
 
 PER_PIECE = 3
 """Numbers that a further piece has: where it begins, level and slope."""
@@ -121,8 +121,11 @@ class _Lines(BaseCost):
     def error(self, start: int, end: int) -> float:
         """Cost of the piece [start, end)."""
         time, value, deviation = self.signal[start:end].T
-        off, *_ = _fitted(time - time[0], value / deviation, deviation)
-        return float(np.sum(np.minimum(off**2, TOGETHER * self.scatter)))
+        most = TOGETHER * self.scatter
+        off, *_ = _fitted(time - time[0], value / deviation, deviation, rounds=1)
+        if np.any(off**2 > most):  # else plain least squares cost least
+            off, *_ = _fitted(time - time[0], value / deviation, deviation)
+        return float(np.sum(np.minimum(off**2, most)))
 
 
 def trend_of(
@@ -174,25 +177,36 @@ def _scatter(series: np.ndarray) -> float:
 
 
 def _fitted(
-    time: np.ndarray, value: np.ndarray, deviation: np.ndarray
+    time: np.ndarray, value: np.ndarray, deviation: np.ndarray, rounds: int = REWEIGHTED
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Residuals, level and slope, covariance and weights of a line; values are over their deviations.
 
     Where there are enough points, those far off count less: a recording whose own numbers took a part of the effect has
     a size with too narrow an interval. Weights min(1, k s/|r|) with the scatter s by the median of |r| (Huber, Robust
-    Statistics, 1981, chapter 7), found by repetition.
+    Statistics, 1981, chapter 7), found by repetition; of one round it is plain weighted least squares.
     """
     columns = np.stack([np.ones_like(time), time], axis=1) / deviation[:, None]
     weight = np.ones_like(time)
-    for _ in range(REWEIGHTED):
-        covariance = np.linalg.pinv(columns.T @ (weight[:, None] * columns))
-        found = covariance @ columns.T @ (weight * value)
+    for _ in range(rounds if time.size >= 2 * FEWEST else 1):
+        normal = columns.T @ (weight[:, None] * columns)
+        found = _solved(normal, columns.T @ (weight * value))
         off, used = value - columns @ found, weight
-        scatter = max(1.0, float(np.median(np.abs(off))) / NORMAL_MEDIAN)
-        weight = 1.0 / np.maximum(1.0, np.abs(off) / (HUBER * scatter))
-        if time.size < 2 * FEWEST or np.array_equal(weight, used):
+        size = np.abs(off)
+        scatter = max(1.0, float(np.median(size)) / NORMAL_MEDIAN)
+        weight = 1.0 / np.maximum(1.0, size / (HUBER * scatter))
+        if np.abs(weight - used).max() < SETTLED:
             break
+    covariance = np.linalg.pinv(normal)
     return off, found, covariance, used
+
+
+def _solved(normal: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Level and slope of the normal equations; by their pseudo-inverse where all points have one time."""
+    (a, b), (_, d) = normal
+    determinant = a * d - b * b
+    if determinant <= np.finfo(float).eps * a * d:
+        return np.asarray(np.linalg.pinv(normal) @ right)
+    return np.array([d * right[0] - b * right[1], a * right[1] - b * right[0]]) / determinant
 
 
 def _line(time: np.ndarray, size: np.ndarray, deviation: np.ndarray) -> Line:
