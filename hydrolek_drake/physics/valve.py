@@ -173,11 +173,13 @@ def edge_conductances(
             at += orifice_conductance(area, p_a - p_tank, coefficient, joint)
     elif rare(joint) and p.variant == FLOW_MAP:
         if opened.pa > 0.0:
-            pa += gain * flow_map.mapped_conductance(True, opened.pa, p_supply - p_a, joint)
-            bt += gain * flow_map.mapped_conductance(True, opened.bt, p_b - p_tank, joint)
+            flows = flow_map.flows_towards_a(opened.pa, joint)
+            pa += gain * flow_map.mapped_conductance(flows, p_supply - p_a, joint)
+            bt += gain * flow_map.mapped_conductance(flows, p_b - p_tank, joint)
         if opened.pb > 0.0:
-            pb += gain * flow_map.mapped_conductance(False, opened.pb, p_supply - p_b, joint)
-            at += gain * flow_map.mapped_conductance(False, opened.at, p_a - p_tank, joint)
+            flows = flow_map.flows_towards_b(opened.pb, joint)
+            pb += gain * flow_map.mapped_conductance(flows, p_supply - p_b, joint)
+            at += gain * flow_map.mapped_conductance(flows, p_a - p_tank, joint)
     if rare(joint) and joint.holding.variant != load_holding.NONE:
         fed_a, fed_b = opened.pa > 0.0, opened.pb > 0.0
         pa, at, pb, bt = load_holding.with_load_held(

@@ -48,59 +48,83 @@ def _over_travel(u: float, f20: float, f40: float, f60: float, f80: float, f100:
 
 
 @njit
-def mapped_conductance(towards_a: bool, travelled: float, drop: float, joint: Any) -> float:
-    """Flow over pressure drop of one edge [m^3/(s Pa)] by the map.
-
-    Between its pressure drops the flow goes straight over the root of the drop, as an orifice's does; below the lowest
-    it is an orifice, smooth through zero as `fluid.orifice_conductance`, above the highest the last line goes on.
-
-    Args:
-        towards_a: which half of the map.
-        travelled: share of the full travel, 0 to 1.
-        drop: across the edge [Pa].
-        joint: parameter record.
-    """
+def flows_towards_a(travelled: float, joint: Any) -> tuple[float, float, float]:
+    """Flows of an edge at the three drops [m^3/s], at a share of the way to the full travel towards A."""
     p = joint.valve
-    if towards_a:
-        low = _over_travel(
-            travelled, p.flow_a_20_low, p.flow_a_40_low, p.flow_a_60_low, p.flow_a_80_low, p.flow_a_100_low
-        )
-        middle = _over_travel(
+    return (
+        _over_travel(
+            travelled,
+            p.flow_a_20_low,
+            p.flow_a_40_low,
+            p.flow_a_60_low,
+            p.flow_a_80_low,
+            p.flow_a_100_low,
+        ),
+        _over_travel(
             travelled,
             p.flow_a_20_middle,
             p.flow_a_40_middle,
             p.flow_a_60_middle,
             p.flow_a_80_middle,
             p.flow_a_100_middle,
-        )
-        high = _over_travel(
+        ),
+        _over_travel(
             travelled,
             p.flow_a_20_high,
             p.flow_a_40_high,
             p.flow_a_60_high,
             p.flow_a_80_high,
             p.flow_a_100_high,
-        )
-    else:
-        low = _over_travel(
-            travelled, p.flow_b_20_low, p.flow_b_40_low, p.flow_b_60_low, p.flow_b_80_low, p.flow_b_100_low
-        )
-        middle = _over_travel(
+        ),
+    )
+
+
+@njit
+def flows_towards_b(travelled: float, joint: Any) -> tuple[float, float, float]:
+    """The same towards B."""
+    p = joint.valve
+    return (
+        _over_travel(
+            travelled,
+            p.flow_b_20_low,
+            p.flow_b_40_low,
+            p.flow_b_60_low,
+            p.flow_b_80_low,
+            p.flow_b_100_low,
+        ),
+        _over_travel(
             travelled,
             p.flow_b_20_middle,
             p.flow_b_40_middle,
             p.flow_b_60_middle,
             p.flow_b_80_middle,
             p.flow_b_100_middle,
-        )
-        high = _over_travel(
+        ),
+        _over_travel(
             travelled,
             p.flow_b_20_high,
             p.flow_b_40_high,
             p.flow_b_60_high,
             p.flow_b_80_high,
             p.flow_b_100_high,
-        )
+        ),
+    )
+
+
+@njit
+def mapped_conductance(flows: tuple[float, float, float], drop: float, joint: Any) -> float:
+    """Flow over pressure drop of one edge [m^3/(s Pa)] by the map.
+
+    Between its pressure drops the flow goes straight over the root of the drop, as an orifice's does; below the lowest
+    it is an orifice, smooth through zero as `fluid.orifice_conductance`, above the highest the last line goes on.
+
+    Args:
+        flows: at the three drops, where the spool stands [m^3/s].
+        drop: across the edge [Pa].
+        joint: parameter record.
+    """
+    p = joint.valve
+    low, middle, high = flows
     transition = joint.fluid.laminar_transition
     smooth = math.sqrt(drop * drop + transition * transition)
     root = math.sqrt(smooth)
