@@ -224,27 +224,69 @@ def hard_stop_force(stroke: float, velocity: float, joint: Any) -> float:
 
 
 @njit
-def elastic_stop(stroke: float, velocity: float, joint: Any) -> tuple[float, float]:
-    """Force of the piston's elastic stops against the rod [N], and its slope over velocity [N s/m].
+def elastic_stop(stroke: float, velocity: float, joint: Any) -> float:
+    """Force of the piston's elastic stops against the rod [N].
 
     Beyond each end of the stroke k s (s/s_0)^(n - 1) (1 + c v) + d v, a spring that hardens and loses energy with its
     force (Hunt and Crossley, J. Applied Mechanics 42 (1975) 440; c is 3/2 of their alpha), and a damper; they push back
     and never pull. At s_0 = 1 mm the force is k s_0.
     """
+    if not has_elastic_stops(joint):
+        return 0.0
+    over = _beyond(stroke, joint)
+    if over == 0.0:
+        return 0.0
+    spring = _stop_spring(over, joint)
     p = joint.cylinder
-    if not (rare(joint) and p.variant == CYLINDER and p.stop_stiffness > 0.0):
+    force = spring + (abs(spring) * p.stop_dissipation + p.stop_damping) * velocity
+    return force if force * over > 0.0 else 0.0
+
+
+@njit
+def stop_slopes(stroke: float, velocity: float, h: float, joint: Any) -> tuple[float, float]:
+    """Slopes of that force over velocity [N s/m] and over the stroke [N/m], where a piston at this speed is deepest.
+
+    A step that only saw the slopes at its beginning would fly into a stop that it does not touch yet.
+
+    Args:
+        stroke: [m].
+        velocity: [m/s].
+        h: within so many seconds.
+        joint: parameter record.
+    """
+    if not has_elastic_stops(joint):
         return 0.0, 0.0
-    over = max(stroke - p.stroke, 0.0) + min(stroke, 0.0)
+    now, then = _beyond(stroke, joint), _beyond(stroke + h * velocity, joint)
+    over = then if abs(then) > abs(now) else now
     if over == 0.0:
         return 0.0, 0.0
+    spring = _stop_spring(over, joint)
+    p = joint.cylinder
+    pressed = 1.0 + max(p.stop_dissipation * velocity * over / abs(over), 0.0)
+    return abs(spring) * p.stop_dissipation + p.stop_damping, p.stop_exponent * spring / over * pressed
+
+
+@njit
+def has_elastic_stops(joint: Any) -> bool:
+    """Whether a piston has stops that give way."""
+    p = joint.cylinder
+    return rare(joint) and p.variant == CYLINDER and p.stop_stiffness > 0.0
+
+
+@njit
+def _beyond(stroke: float, joint: Any) -> float:
+    """How far a piston is beyond its stroke [m], negative beyond its retracted end."""
+    return max(stroke - joint.cylinder.stroke, 0.0) + min(stroke, 0.0)
+
+
+@njit
+def _stop_spring(over: float, joint: Any) -> float:
+    """The part of a stop's force that does not depend on speed [N]."""
+    p = joint.cylinder
     spring = p.stop_stiffness * over
     if p.stop_exponent > 1.0:
         spring *= exponential((p.stop_exponent - 1.0) * logarithm(abs(over) / STOP_DEPTH))
-    further = abs(spring) * p.stop_dissipation
-    force = spring + (further + p.stop_damping) * velocity
-    if force * over <= 0.0:
-        return 0.0, 0.0
-    return force, further + p.stop_damping
+    return spring
 
 
 @njit
@@ -255,12 +297,13 @@ def pressure_force(p_a: float, p_b: float, joint: Any) -> float:
 
 @njit
 def friction_force(stroke: float, velocity: float, time: float, joint: Any) -> tuple[float, float]:
-    """All that opposes the rod [N] and its slope over velocity [N s/m]: friction, cushion, end stops (4.9)."""
+    """All that opposes the rod [N]: friction, cushion, end stops (4.9); and its slope over velocity [N s/m], but for
+    that of `stop_slopes`."""
     viscous = joint.cylinder.viscous_friction * hooks.viscous_gain(time, joint)
     friction, slope = hooks.rod_friction(velocity, stroke, joint)
     stop = hard_stop_force(stroke, velocity, joint)
-    elastic, stop_slope = elastic_stop(stroke, velocity, joint)
-    return viscous * velocity + friction + stop + elastic, viscous + slope + stop_slope
+    elastic = elastic_stop(stroke, velocity, joint)
+    return viscous * velocity + friction + stop + elastic, viscous + slope
 
 
 @njit

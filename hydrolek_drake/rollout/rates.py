@@ -54,6 +54,7 @@ class Slopes(NamedTuple):
     turned_by: float  # acceleration of what the actuator turns for each newton of its force [rad/s^2/N]
     tilted_by: float  # and of the base, the other way
     contact: float  # mean moment through a play over the step [N m]
+    sprung: float  # by how much an elastic stop slows what the actuator turns for each rad further [1/s^2]
 
 
 class Turned(NamedTuple):
@@ -165,7 +166,7 @@ def rates(
     rate_a = rate_b = slope_a = slope_b = falls_a = rises_b = 0.0
     supply_rate = slope_supply = drawn = 0.0
     p_supply = 0.0
-    slope_f = 0.0
+    slope_f = stop_stiffness = 0.0
     if not oil:
         force = cylinder.motor_force(voltage, joint)
     else:
@@ -186,6 +187,8 @@ def rates(
         if rare(joint) and pressures_are_driven(joint):
             rate_a = rate_b = slope_a = slope_b = falls_a = rises_b = 0.0
         friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
+        stop_damping, stop_stiffness = cylinder.stop_slopes(stroke, v, h, joint)
+        slope_f += stop_damping
         force = cylinder.pressure_force(s.p_a, s.p_b, joint) - friction
         supply_rate, slope_supply = supply.rate_of_change(s.supply, s.relief, drawn + probe.flow, joint)
 
@@ -253,6 +256,7 @@ def rates(
             turned_by,
             tilted_by,
             through,
+            stop_stiffness * lever * turned_by,
         ),
         p_supply,
         force,
