@@ -33,7 +33,11 @@ def implicit(f: State, slope: Slopes, h: float, joint: Any) -> State:
     """
     playing = hooks.linkage_gap(joint) > 0.0
     part = GAMMA * h
-    c_a, c_b, c_t = _lessening(part, slope.p_a), _lessening(part, slope.p_b), _lessening(part, slope.tilt_rate)
+    c_a, c_b, c_t = (
+        _lessening(part, slope.p_a),
+        _lessening(part, slope.p_b),
+        _lessening(part, slope.tilt_rate),
+    )
     damping, side, onwards = (slope.lead_w, f.lead_w, f.lead_q) if playing else (slope.w, f.w, f.q)
     if slope.sprung > 0.0:  # a stop's stiffness, by the position that the stage itself leads to
         damping -= part * slope.sprung
