@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import base, cylinder, fluid, hooks, linkage, load, supply, valve
+from hydrolek_drake.physics import base, cylinder, end_stops, fluid, hooks, linkage, load, supply, valve
 from hydrolek_drake.physics.angle import Angle, AngleKept, angle, angle_near
 from hydrolek_drake.physics.driven import (
     chamber_pressures,
@@ -187,7 +187,7 @@ def rates(
         if rare(joint) and pressures_are_driven(joint):
             rate_a = rate_b = slope_a = slope_b = falls_a = rises_b = 0.0
         friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
-        stop_damping, stop_stiffness = cylinder.stop_slopes(stroke, v, h, joint)
+        stop_damping, stop_stiffness = end_stops.slopes(stroke, v, h, joint)
         slope_f += stop_damping
         force = cylinder.pressure_force(s.p_a, s.p_b, joint) - friction
         supply_rate, slope_supply = supply.rate_of_change(s.supply, s.relief, drawn + probe.flow, joint)

@@ -1,4 +1,4 @@
-"""How far fitted parameters are known: from the curvature of the fit, and from how it varies over blocks of the data."""
+"""How far fitted parameters are known: from the curvature of the fit, and from how scores vary over blocks."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
