@@ -14,7 +14,7 @@ from hydrolek_drake.diagnosis.locating.terms_for import estimates_for, terms_for
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.lost_commands.search import lost_in
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
-from hydrolek_drake.diagnosis.search.from_the_cut import left_behind, search_machine
+from hydrolek_drake.diagnosis.search.from_the_cut import behind_cut, search_machine
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
@@ -115,7 +115,11 @@ class Inquiry:
         chosen, kept = halves(held_out)
         known, found = self._known(bench, chosen, Tried())
         remarks: tuple[str, ...] = ()
-        astray, far = self.apart and _astray(known), _far_in_all(known)
+        try:
+            astray, far = self.apart and self._astray(known), _far_in_all(known)
+        except KeyboardInterrupt:
+            bench.resume()
+            known = replace(known, interrupted=True)
         if not known.interrupted and (astray or far):
             # numbers that the training data do not tell, the held-out ones ask for
             training = known.bench.training
@@ -178,6 +182,22 @@ class Inquiry:
         known = Known(bench, found, weighted, tuple(judged), conclude(judged), interrupted)
         return known, found
 
+    def _astray(self, known: Known) -> bool:
+        """Whether the best structure leaves more of the held-out data than the training data lead one to expect.
+
+        That is as much, to what noise is known to; where it does not explain these, what it leaves is its own
+        discrepancy, which differs between movements by more. What a pump's line does is not told for long
+        (`Judged.explains_ahead`), but what lies behind its recorded pressure is.
+        """
+        best = known.judged[0]
+        left, ahead = best.hypothesis.fit.over_noise, best.over_noise
+        behind = behind_cut(known.bench, best.hypothesis, self.settings, self.cores)
+        if behind is not None:
+            left, ahead = behind.left(known.bench.training), behind.left(known.held_out)
+            if not replace(best, left_behind_cut=ahead).explains_ahead:
+                return True
+        return ahead > max(left, 1.0) * (NOISE.ahead if left <= NOISE.ahead else NOISE.explained_ahead)
+
     def _reported(self, known: Known, kept: Sequence[Experiment]) -> Known:
         """The same with what structures leave of data by which none was chosen, which have the verdict's last word."""
         try:
@@ -228,24 +248,6 @@ def _beside(known: Known, best: Judged) -> Judged:
         if judged.hypothesis.ids == effects:
             return judged
     return next(j for j in known.judged if not j.hypothesis.effects)
-
-
-def _astray(known: Known) -> bool:
-    """Whether the best structure leaves more of the held-out data than the training data lead one to expect.
-
-    That is as much, to what noise is known to; where it does not explain these, what it leaves is its own discrepancy,
-    which differs between movements by more. What a pump's line does is not told for long (`Judged.explains_ahead`), but
-    what lies behind its recorded pressure is.
-    """
-    best = known.judged[0]
-    left, ahead = best.hypothesis.fit.over_noise, best.over_noise
-    behind = left_behind(known.bench, best.hypothesis, known.bench.training)
-    if behind is not None:
-        best = replace(best, left_behind_cut=left_behind(known.bench, best.hypothesis, known.held_out))
-        if best.left_behind_cut is None or not best.explains_ahead:
-            return True
-        left, ahead = behind, best.left_behind_cut
-    return ahead > max(left, 1.0) * (NOISE.ahead if left <= NOISE.ahead else NOISE.explained_ahead)
 
 
 def _far_in_all(known: Known) -> bool:

@@ -27,7 +27,18 @@ STAGE = Stage(
             "floor_time", "s", "time constant with which a pressure may fall to zero", neutral=0.0, lowest=0.0
         ),
     ),
-    {"oil": ()},
+    {
+        "oil": (),
+        "polytropic_air": (
+            Parameter(
+                "air_exponent",
+                "1",
+                "polytropic exponent of air in the oil: 1 where it keeps its temperature, 1.4 where it has no time to",
+                lowest=1.0,
+            ),
+        ),
+    },
+    default="oil",
 )
 
 

@@ -16,6 +16,7 @@ MARK = "usual"
 RARE: dict[str, tuple[str, ...]] = {
     "supply": ("pump",),
     "accumulator": ("gas",),
+    "fluid": ("polytropic_air",),
     "amplifier": ("pwm",),
     "valve": ("four_edges", "flow_map", "pump_controlled"),
     "holding": ("counterbalance", "pilot_check"),

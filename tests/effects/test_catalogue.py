@@ -197,3 +197,21 @@ def test_an_effect_cannot_hook_where_there_is_none():
     effect = Effect("load.x", "x", "x", (Parameter("a", "1", "a", neutral=0.0),), "a", "x")
     with pytest.raises(ValueError, match="no hook 'gravity'; there are command_delay"):
         effect.hook("gravity")
+
+
+def test_a_file_that_needs_the_composed_effects_is_refused_before_any_is_lost(tmp_path):
+    package = Path(hydrolek_drake.__file__).parent
+    copied = tmp_path / package.name
+    shutil.copytree(package, copied, ignore=shutil.ignore_patterns("__pycache__"))
+    text = "from hydrolek_drake.physics import fluid\n" + NEW_EFFECT
+    (copied / "effects" / "listed" / "hydraulic" / "fluid_wind.py").write_text(text)
+    done = subprocess.run(
+        [sys.executable, "-c", "import hydrolek_drake.effects"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(tmp_path), "XDG_CACHE_HOME": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode != 0
+    assert "fluid_wind imports a module of physics that composes the effects" in done.stderr

@@ -33,7 +33,7 @@ class Judged:
         behind: log-density of the held-out data less than that of the most probable (`with_differences`).
         behind_error: standard error of that.
         fitted_too: times the noise that it leaves of these data beyond what it leaves of the others, fitted to both;
-            None where nobody asked.
+            behind the recorded pressure of a pump where there is one; None where nobody asked.
         left_behind_cut: times the noise that it leaves of these data behind the recorded pressure of a pump
             (`search.from_the_cut`); None where there is none, or nobody asked.
         trained_behind_cut: the same of the training data.
@@ -84,7 +84,9 @@ class Judged:
     @property
     def fails_ahead_alone(self) -> bool:
         """Whether it explains what it was fitted to, and not the held-out data."""
-        return self.hypothesis.fit.over_noise <= NOISE.ahead and not self.explains_ahead
+        behind = self.trained_behind_cut
+        left = self.hypothesis.fit.over_noise if behind is None else behind
+        return left <= NOISE.ahead and not self.explains_ahead
 
     @property
     def log_density(self) -> float:

@@ -23,7 +23,7 @@ from hydrolek_drake.diagnosis.fitting.problems import problem_with
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
 from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
-from hydrolek_drake.diagnosis.search.from_the_cut import left_behind
+from hydrolek_drake.diagnosis.search.from_the_cut import behind_cut
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
@@ -250,13 +250,18 @@ def left_of(
         for j in judged
     )
     told = with_differences(told, held_out)
-    behind = left_behind(bench, told[0].hypothesis, held_out)
-    before = left_behind(bench, told[0].hypothesis, bench.training)
-    told = (replace(told[0], left_behind_cut=behind, trained_behind_cut=before), *told[1:])
+    behind = behind_cut(bench, told[0].hypothesis, settings, cores)
+    if behind is not None:
+        left, trained = behind.left(held_out), behind.left(bench.training)
+        told = (replace(told[0], left_behind_cut=left, trained_behind_cut=trained), *told[1:])
     if not told[0].fails_ahead_alone or own_of_recordings(told[0].hypothesis).any():
         return told
-    [squares] = _beyond(bench, [told[0].hypothesis], held_out, settings, cores)
-    return (replace(told[0], fitted_too=math.sqrt(squares / max(counted, 1))), *told[1:])
+    asked, best, ahead = bench, told[0].hypothesis, list(held_out)
+    if behind is not None:
+        asked, best, ahead = behind.part, behind.structure, behind.weighted(held_out)
+    [squares] = _beyond(asked, [best], ahead, settings, cores)
+    counted = max(sum(e.counted for e in ahead), 1)
+    return (replace(told[0], fitted_too=math.sqrt(squares / counted)), *told[1:])
 
 
 def _of_the_machine(place: Place, hypothesis: Hypothesis) -> np.ndarray:

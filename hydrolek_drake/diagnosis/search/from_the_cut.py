@@ -90,20 +90,48 @@ def _behind_of(bench: Workbench, seeds: Sequence[Hypothesis]) -> list[Hypothesis
     return list(kept.values())
 
 
-def left_behind(bench: Workbench, structure: Hypothesis, experiments: Sequence[Experiment]) -> float | None:
-    """Times the noise that a structure leaves of recordings behind the cut; None where there is none.
+@dataclass(frozen=True)
+class BehindCut:
+    """What lies behind the recorded pressure of a pump, fitted for itself.
+
+    Numbers that were fitted to all of the machine are bent by what the line does otherwise than its model.
+
+    Attributes:
+        part: data and problems.
+        structure: fitted to them.
+    """
+
+    part: Workbench
+    structure: Hypothesis
+
+    def weighted(self, experiments: Sequence[Experiment]) -> list[Experiment]:
+        """Recordings of all of the machine, cut off and weighed by what the structure leaves of them."""
+        return weighted_by(self.part, self.structure, [e.with_recorded_supply() for e in experiments])
+
+    def left(self, experiments: Sequence[Experiment]) -> float:
+        """Times the noise that it leaves of recordings of all of the machine."""
+        weighted = self.weighted(experiments)
+        residuals = self.part.residuals(self.structure, weighted, self.part.step_for(self.structure.effects))
+        return math.sqrt(float(residuals @ residuals) / max(sum(e.counted for e in weighted), 1))
+
+
+def behind_cut(bench: Workbench, structure: Hypothesis, settings: Settings, cores: int) -> BehindCut | None:
+    """A structure behind the cut, fitted from where all of the machine was; None where there is no cut.
 
     Args:
         bench: data and problems of all of the machine.
         structure: fitted to all of the machine.
-        experiments: of all of the machine.
+        settings: of the search.
+        cores: that roll out at the same time.
     """
     part = behind_supply(bench)
     if part is None:
         return None
-    weighted = weighted_by(part, structure, [e.with_recorded_supply() for e in experiments])
-    residuals = part.residuals(structure, weighted, part.step_for(structure.effects))
-    return math.sqrt(float(residuals @ residuals) / max(sum(e.counted for e in weighted), 1))
+    [behind] = _behind_of(bench, [structure])
+    part.training = tuple(weighted_by(part, behind, part.training))
+    [fitted] = race(part, [Entrant(behind.effects, behind.values)], (settings.again,), cores)
+    bench.evaluations += part.evaluations
+    return BehindCut(part, fitted)
 
 
 def _with_supply(

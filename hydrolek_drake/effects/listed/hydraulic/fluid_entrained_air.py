@@ -5,11 +5,14 @@ from typing import Any
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Formula, Search
 from hydrolek_drake.physics.parameters import Parameter
+from hydrolek_drake.physics.smooth import exponential, logarithm
+from hydrolek_drake.physics.usual import rare
 
 EFFECT = Effect(
     id="fluid.entrained_air",
     title="entrained air",
-    equation="1/B_eff = 1/B + air_fraction p_atm / p^2, p at least p_atm",
+    equation="1/B_eff = 1/B + air_fraction p_atm / p^2, p at least p_atm; in a fluid of the variant polytropic_air "
+    "1/B_eff = 1/B + air_fraction (p_atm/P)^(1/n) / (n P) with the absolute pressure P = p + p_atm",
     parameters=(
         Parameter(
             "air_fraction", "1", "volume share of air at atmospheric pressure", neutral=0.0, lowest=0.0
@@ -28,7 +31,8 @@ EFFECT = Effect(
     search={
         "air_fraction": Search("air_fraction", 6, (0.1, 1.0)),
     },
-    source="isothermal compression of free air: V_air = fraction p_atm / p, compressibility fraction p_atm / p^2",
+    source="isothermal compression of free air: V_air = fraction p_atm / p, compressibility fraction p_atm / p^2; "
+    "polytropic, P V^n = const: Gholizadeh, Burton, Schoenau, Fluid bulk modulus: a literature survey, IJFP 12 (2011) 5",
     confused_with={
         "base.compliance": "a soft base rings at a frequency that does not depend on the pressures",
     },
@@ -44,5 +48,8 @@ def compressibility(pressure: float, joint: Any) -> float:
     if fraction == 0.0:
         return 0.0
     atmosphere = joint.fluid.atmospheric_pressure
+    if rare(joint) and joint.fluid.air_exponent >= 1.0:  # not a number but in its variant
+        n, above_vacuum = joint.fluid.air_exponent, max(pressure, 0.0) + atmosphere
+        return fraction * exponential(logarithm(atmosphere / above_vacuum) / n) / (n * above_vacuum)
     absolute = max(pressure, atmosphere)
     return fraction * atmosphere / (absolute * absolute)
