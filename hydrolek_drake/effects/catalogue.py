@@ -8,7 +8,6 @@ from hydrolek_drake.effects import listed
 from hydrolek_drake.effects.effect import Effect
 from hydrolek_drake.errors import InputError, meant
 
-
 COMPOSED = "hydrolek_drake.physics.hooks"
 """Module that composes the effects' functions when it is imported, after which none is added."""
 

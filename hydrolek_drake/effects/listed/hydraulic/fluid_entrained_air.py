@@ -32,7 +32,7 @@ EFFECT = Effect(
         "air_fraction": Search("air_fraction", 6, (0.1, 1.0)),
     },
     source="isothermal compression of free air: V_air = fraction p_atm / p, compressibility fraction p_atm / p^2; "
-    "polytropic, P V^n = const: Gholizadeh, Burton, Schoenau, Fluid bulk modulus: a literature survey, IJFP 12 (2011) 5",
+    "polytropic, P V^n = const: Gholizadeh, Burton, Schoenau, Fluid bulk modulus: a survey, IJFP 12 (2011) 5",
     confused_with={
         "base.compliance": "a soft base rings at a frequency that does not depend on the pressures",
     },
