@@ -20,7 +20,7 @@ RARE: dict[str, tuple[str, ...]] = {
     "valve": ("four_edges", "flow_map", "pump_controlled"),
     "holding": ("counterbalance", "pilot_check"),
     "hose": ("hose",),
-    "cylinder": ("ball_screw",),
+    "cylinder": ("ball_screw", "servo_screw"),
     "linkage": ("four_bar", "lever_table"),
     "load": ("link",),
 }

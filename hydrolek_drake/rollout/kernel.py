@@ -21,6 +21,7 @@ from hydrolek_drake.rollout.rates import (
     Turned,
     as_recorded,
     carried_on,
+    current_read,
     felt_at,
     kept,
     rates,
@@ -28,7 +29,17 @@ from hydrolek_drake.rollout.rates import (
 )
 from hydrolek_drake.rollout.rosenbrock import one_step
 
-SIGNALS = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool", "supply_pressure", "force")
+SIGNALS = (
+    "reading",
+    "position",
+    "velocity",
+    "pressure_a",
+    "pressure_b",
+    "spool",
+    "supply_pressure",
+    "force",
+    "current",
+)
 
 PULLED = ("reading", "pressure_a", "pressure_b")
 NOT_PULLED = np.zeros((0, len(PULLED)))
@@ -88,7 +99,7 @@ def written(
         law: how such inputs follow from the state, or None.
         near: a place that the joint is near to or at.
         joint: parameter record.
-        out: receives the signals. # (8,)
+        out: receives the signals. # (9,)
     """
     x = d.x
     if rare(joint):
@@ -99,7 +110,7 @@ def written(
     _, _, p_supply, force, drawn = rates(s, x, drive, time, inertia, probe, law, near, 0.0, None, joint)
     out[0] = sensor.reading(play, time, joint) + now.sensor
     out[1], out[2], out[3], out[4], out[5] = s.q, s.w, s.p_a, s.p_b, x
-    out[6], out[7] = p_supply, force
+    out[6], out[7], out[8] = p_supply, force, current_read(s, drive, joint)
     return drawn
 
 
@@ -204,7 +215,7 @@ def integrate(
             observer [s]; zero or less for a free rollout.
         measured: `PULLED` at `times`, NaN where there is no value, shape (n, 3); no rows for a free rollout.
         law: how inputs from outside follow from the state, rows of `law.LAW`, or None.
-        out: `SIGNALS`, before the pull, shape (n, 8).
+        out: `SIGNALS`, before the pull, shape (n, 9).
 
     Returns:
         Number of rows written; less than n if the simulation diverged at that row.

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import base, cylinder, fluid, hooks, linkage, load, supply, valve
+from hydrolek_drake.physics import base, cylinder, fluid, hooks, linkage, load, sensor, supply, valve
 from hydrolek_drake.physics.angle import Angle, AngleKept, angle, angle_near
 from hydrolek_drake.physics.driven import (
     chamber_pressures,
@@ -18,6 +18,7 @@ from hydrolek_drake.physics.driven import (
 )
 from hydrolek_drake.physics.friction import FURTHER, slope_of_growth
 from hydrolek_drake.physics.law import Seen, felt
+from hydrolek_drake.physics.linkages import servo_screw
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.physics.usual import rare
 
@@ -29,12 +30,13 @@ class State(NamedTuple):
     p_b: float  # pressure on side B [Pa]
     q: float  # joint position [rad or m]
     w: float  # joint velocity
-    supply: float  # what the supply remembers, `supply.supply_pressure`: a flow [m^3/s] or a pressure [Pa]
+    supply: float  # what the supply remembers, `supply.supply_pressure`: a flow [m^3/s] or a pressure [Pa]; of a drive
+    # that follows a position, which has no supply, the integral of the position's error [m s]
     tilt: float  # of the base [rad]
     tilt_rate: float
     lead_q: float  # position of the cylinder's side of a play [rad]
     lead_w: float
-    relief: float  # where a relief valve stands [Pa]
+    relief: float  # where a relief valve stands [Pa]; of such a drive the integral of the speed's error [m]
 
 
 class Slopes(NamedTuple):
@@ -120,6 +122,17 @@ def felt_at(probe: Probe, law: np.ndarray | None, time: float, s: State, x: floa
 
 
 @njit
+def current_read(s: State, voltage: float, joint: Any) -> float:
+    """What the sensor of an electric motor's current says in a state [A], at a voltage of its drive [V]; else 0."""
+    if not cylinder.is_electric(joint):
+        return 0.0
+    q, w = _rod_side(s, joint)
+    place, lever = linkage.stroke_and_lever(q, joint)
+    current = cylinder.motor_current(voltage, place, lever * w, s.supply, s.relief, joint)
+    return sensor.current_reading(current, joint)
+
+
+@njit
 def rates(
     s: State,
     x: float,
@@ -163,10 +176,15 @@ def rates(
     probe, (braking, easing) = felt(outside, law, lever, seen)
 
     rate_a = rate_b = slope_a = slope_b = falls_a = rises_b = 0.0
-    supply_rate = slope_supply = drawn = 0.0
+    supply_rate = relief_rate = slope_supply = drawn = 0.0
     p_supply = 0.0
     slope_f = 0.0
-    if not oil:
+    if cylinder.follows_position(joint):
+        place, _ = linkage.stroke_and_lever_at(included, side_q, joint)
+        force, slope_f, supply_rate, relief_rate = servo_screw.driven(
+            voltage, place, v, s.supply, s.relief, joint
+        )
+    elif not oil:
         force = cylinder.motor_force(voltage, joint)
     else:
         p_supply = pressure_at_valves(s.supply, probe, joint)
@@ -239,7 +257,7 @@ def rates(
             tilt_acceleration,
             s.lead_w,
             lead_acceleration,
-            0.0,
+            relief_rate,
         ),
         Slopes(
             slope_a,

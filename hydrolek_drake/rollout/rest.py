@@ -11,6 +11,7 @@ import numpy as np
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import amplifier, cylinder, hooks, linkage, load, sensor, supply
+from hydrolek_drake.physics.linkages import servo_screw
 from hydrolek_drake.physics.valves.variants import PUMP_CONTROLLED
 from hydrolek_drake.rollout.rates import State
 
@@ -82,12 +83,14 @@ def _rest(
     state[6], state[16] = supply.at_start(joint)
     state[12] = time
     state[14], state[15] = amplifier.coil_currents(0.0, time, joint)
-    if cylinder.is_electric(joint):
-        state[9] = q
-        return
     if by_itself:
         carried = load.gravity_load(q, time, joint)
     needed = carried - load.stop_load(q, 0.0, joint)
+    if cylinder.is_electric(joint):
+        state[9] = q
+        if cylinder.follows_position(joint):
+            state[6], state[16] = servo_screw.at_rest(joint.linkage.direction * needed, joint)
+        return
     tilt, lead = rest_tilt_and_lead(joint, q, needed)
     state[2], state[3] = rest_pressures(joint, lead - tilt, needed)
     state[7], state[9] = tilt, lead

@@ -19,7 +19,10 @@ DIVIDED_BY_ZERO = "a parameter by which something is divided is zero"
 
 @dataclass(frozen=True)
 class Signals:
-    """What one joint did, one row per requested time; SI units (rad or m, Pa, N)."""
+    """What one joint did, one row per requested time; SI units (rad or m, Pa, N, A).
+
+    `current` is that of an electric motor as its sensor reads it, 0 of other joints.
+    """
 
     time: np.ndarray
     reading: np.ndarray
@@ -30,6 +33,7 @@ class Signals:
     spool: np.ndarray
     supply_pressure: np.ndarray
     force: np.ndarray
+    current: np.ndarray
 
 
 @dataclass(frozen=True)

@@ -104,6 +104,8 @@ def make_station(
         motor = add(ElectricMotor(joints))
         builder.Connect(_behind_the_ramp(builder, add, joints, sizes, delay.voltage), motor.voltage)
         builder.Connect(motor.force, parts.linkage.force)
+        if motor.follows:
+            builder.Connect(parts.linkage.rod_motion, motor.motion)
     elif electric.any():
         raise InputError(f"rig {rig.name}: electric and hydraulic joints cannot share one rig")
     else:
@@ -217,6 +219,7 @@ def _add_logs(builder: DiagramBuilder, systems: dict[str, System], period: float
         "pressure": ("actuator", "pressure"),
         "spool": ("solenoid_spool", "spool_position"),
         "supply_pressure": ("supply", "supply_pressure"),
+        "current": ("electric_motor", "motor_current"),
         "force": ("electric_motor" if "electric_motor" in systems else "actuator", "rod_force"),
     }
     logs = {}

@@ -160,7 +160,7 @@ def integrate_lanes(
         probe_places: where the samples of each machine's inputs from outside begin among all, and how many it has,
             shape (lanes, 2).
         probe_values: samples, shape (all, 15); no rows without such inputs.
-        out: signals, shape (lanes, k, 8).
+        out: signals, shape (lanes, k, 9).
         done: rows written of each machine, shape (lanes,); fewer than its `rows` where one diverged at that row.
     """
     machines, held, steps = np.zeros((_L, 2)), np.full(_L, -1), np.zeros((most_steps, PLANNED, _L))
