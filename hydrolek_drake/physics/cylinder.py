@@ -206,8 +206,9 @@ def pressure_rates(
     stiffness_a = effective_bulk_modulus(p_a, joint) / volume_a
     stiffness_b = effective_bulk_modulus(p_b, joint) / volume_b
     if rare(joint) and joint.hose.variant != hose.NONE:
-        _, stiffness_a = softened(joint.hose.expansion_a, 0.0, stiffness_a)
-        _, stiffness_b = softened(joint.hose.expansion_b, 0.0, stiffness_b)
+        more_a, more_b = hose.gives_way(joint)
+        _, stiffness_a = softened(more_a, 0.0, stiffness_a)
+        _, stiffness_b = softened(more_b, 0.0, stiffness_b)
     rate_a = stiffness_a * (flow_a - p.area_a * velocity)
     rate_b = stiffness_b * (flow_b + p.area_b * velocity)
     return _floored(p_a, rate_a, joint), _floored(p_b, rate_b, joint), stiffness_a, stiffness_b

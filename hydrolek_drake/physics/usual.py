@@ -19,7 +19,7 @@ RARE: dict[str, tuple[str, ...]] = {
     "amplifier": ("pwm",),
     "valve": ("four_edges", "flow_map", "pump_controlled"),
     "holding": ("counterbalance", "pilot_check"),
-    "hose": ("hose",),
+    "hose": ("hose", "long_line"),
     "cylinder": ("ball_screw", "servo_screw"),
     "linkage": ("four_bar", "lever_table"),
     "load": ("link",),

@@ -58,6 +58,14 @@ class Slopes(NamedTuple):
     contact: float  # mean moment through a play over the step [N m]
 
 
+class Fed(NamedTuple):
+    """What long lines feed a joint's chambers, and what the valve draws for it [m^3/s]."""
+
+    a: float
+    b: float
+    drawn: float
+
+
 class Turned(NamedTuple):
     """How far the joint has turned, for the sines and cosines of places that are near (`physics.angle`)."""
 
@@ -68,14 +76,14 @@ class Turned(NamedTuple):
 @njit
 def turned(s: State, joint: Any) -> Turned:
     """How far the joint has turned in a state."""
-    side, _ = _rod_side(s, joint)
+    side, _ = rod_side(s, joint)
     return Turned(angle(s.q), angle(linkage.included_angle(side, joint)))
 
 
 @njit
 def carried_on(near: Turned, s: State, joint: Any) -> Turned:
     """How far the joint has turned, a step after it had turned so far: sines and cosines by the series alone."""
-    side, _ = _rod_side(s, joint)
+    side, _ = rod_side(s, joint)
     position = angle_near(s.q, near.position)
     included = angle_near(linkage.included_angle(side, joint), near.included)
     return Turned(
@@ -92,7 +100,7 @@ def kept(found: Turned) -> Turned:
 
 
 @njit
-def _rod_side(s: State, joint: Any) -> tuple[float, float]:
+def rod_side(s: State, joint: Any) -> tuple[float, float]:
     """Position and speed of the joint [rad or m] as the rod has them, before a play and from a base that rocks."""
     playing = hooks.linkage_gap(joint) > 0.0
     q, w = (s.lead_q, s.lead_w) if playing else (s.q, s.w)
@@ -114,7 +122,7 @@ def felt_at(probe: Probe, law: np.ndarray | None, time: float, s: State, x: floa
         return probe
     if rare(joint):
         s, x = as_recorded(s, x, probe, joint)
-    q, w = _rod_side(s, joint)
+    q, w = rod_side(s, joint)
     stroke = lever = 0.0
     if not cylinder.is_electric(joint):
         stroke, lever = linkage.stroke_and_lever(q, joint)
@@ -126,7 +134,7 @@ def current_read(s: State, voltage: float, joint: Any) -> float:
     """What the sensor of an electric motor's current says in a state [A], at a voltage of its drive [V]; else 0."""
     if not cylinder.is_electric(joint):
         return 0.0
-    q, w = _rod_side(s, joint)
+    q, w = rod_side(s, joint)
     place, lever = linkage.stroke_and_lever(q, joint)
     current = cylinder.motor_current(voltage, place, lever * w, s.supply, s.relief, joint)
     return sensor.current_reading(current, joint)
@@ -144,6 +152,7 @@ def rates(
     near: Turned,
     h: float,
     contact: float | None,
+    fed: Fed | None,
     joint: Any,
 ) -> tuple[State, Slopes, float, float, float]:
     """Rates of the state, their stiff slopes, supply pressure [Pa], rod force [N] and flow drawn [m^3/s].
@@ -159,6 +168,7 @@ def rates(
         near: a place that the joint is near to or at.
         h: a play's contact acts by its mean over so many seconds; 0 for as it is now [s].
         contact: that mean, where it is known from the beginning of the step [N m]; None where it is not.
+        fed: by long lines; None where the valve feeds the chambers itself.
         joint: parameter record.
     """
     rocking = hooks.base_stiffness(joint) > 0.0
@@ -166,7 +176,7 @@ def rates(
     oil = not cylinder.is_electric(joint)
     if rare(joint):
         s, x = as_recorded(s, x, outside, joint)
-    side_q, side_w = _rod_side(s, joint)
+    side_q, side_w = rod_side(s, joint)
     included = angle_near(linkage.included_angle(side_q, joint), near.included)
     stroke, lever = (
         linkage.stroke_and_lever_at(included, side_q, joint) if oil else (0.0, joint.linkage.direction)
@@ -188,10 +198,14 @@ def rates(
         force = cylinder.motor_force(voltage, joint)
     else:
         p_supply = pressure_at_valves(s.supply, probe, joint)
-        opened = valve.widened(valve.openings(x, joint), probe.valve)
-        flow_a, flow_b, drawn, settle_a, settle_b = valve.chamber_flows(
-            opened, p_supply, s.p_a, s.p_b, time, joint, probe.back_a, probe.back_b
-        )
+        if fed is None:
+            opened = valve.widened(valve.openings(x, joint), probe.valve)
+            flow_a, flow_b, drawn, settle_a, settle_b = valve.chamber_flows(
+                opened, p_supply, s.p_a, s.p_b, time, joint, probe.back_a, probe.back_b
+            )
+        else:
+            flow_a, flow_b, settle_a, settle_b = valve.beside_lines(fed.a, fed.b, s.p_a, s.p_b, joint)
+            drawn = fed.drawn
         rate_a, rate_b, stiff_a, stiff_b = cylinder.pressure_rates(
             s.p_a, s.p_b, flow_a, flow_b, stroke, v, joint
         )

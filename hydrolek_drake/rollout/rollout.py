@@ -12,7 +12,7 @@ from hydrolek_drake.physics.law import law_of
 from hydrolek_drake.physics.probes import NO_PROBE
 from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, as_usual, flat, position_of
 from hydrolek_drake.rollout import kernel
-from hydrolek_drake.rollout.rest import STATE_SIZE, rest_state
+from hydrolek_drake.rollout.rest import STATE_SIZE, rest_state, state_size
 
 DIVIDED_BY_ZERO = "a parameter by which something is divided is zero"
 
@@ -139,7 +139,7 @@ class PreparedJoint:
             check_driven(self._joint, probes is not None)
         out = np.full((len(times), len(kernel.SIGNALS)), np.nan)
         times = read_only(times)
-        start = np.full(STATE_SIZE, np.nan) if state is None else state.copy()
+        start = np.full(state_size(self._joint), np.nan) if state is None else state.copy()
         probe_spacing, probe_values = probes or (1.0, NO_PROBE)
         changes = np.ones(len(command_values), dtype=bool)  # what only repeats the command says nothing
         np.not_equal(command_values[1:], command_values[:-1], out=changes[1:])
@@ -161,6 +161,7 @@ class PreparedJoint:
                     pull_time,
                     read_only(measured),
                     self._law,
+                    start[STATE_SIZE:] if len(start) > STATE_SIZE else None,
                     out,
                 )
                 if rows < len(times):

@@ -14,7 +14,7 @@ from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import cylinder, hooks, supply
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.physics.solenoid import GAMMA
-from hydrolek_drake.rollout.rates import Slopes, State, Turned, rates
+from hydrolek_drake.rollout.rates import Fed, Slopes, State, Turned, rates
 
 
 @njit(forceinline=True)
@@ -189,13 +189,14 @@ def one_step(
     probe_next: Probe,
     law: np.ndarray | None,
     near: Turned,
+    fed: Fed | None,
     joint: Any,
 ) -> State:
-    """One Rosenbrock-W step of `h` seconds; the spool goes from `x` to `x_next` meanwhile."""
-    k, slope, _, _, _ = rates(s, x, voltage, time, inertia, probe, law, near, h, None, joint)
+    """One Rosenbrock-W step of `h` seconds; the spool goes from `x` to `x_next` meanwhile, and lines may feed."""
+    k, slope, _, _, _ = rates(s, x, voltage, time, inertia, probe, law, near, h, None, fed, joint)
     k = implicit(k, slope, h, joint)
     middle = first_stage(s, k, slope, h, joint)
     m, _, _, _, _ = rates(
-        middle, x_next, voltage, time + h, inertia, probe_next, law, near, h, slope.contact, joint
+        middle, x_next, voltage, time + h, inertia, probe_next, law, near, h, slope.contact, fed, joint
     )
     return second_stage(s, k, m, slope, h, joint)

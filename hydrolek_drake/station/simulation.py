@@ -85,6 +85,9 @@ def initial_context(station: Station, positions: np.ndarray | None = None) -> Co
         )
         actuator = station.systems["actuator"]
         actuator.GetMyMutableContextFromRoot(context).SetContinuousState(pressures.T.ravel())
+        if "long_lines" in station.systems:
+            lines = station.systems["long_lines"]
+            lines.rest(lines.GetMyMutableContextFromRoot(context), pressures)
     if "electric_motor" in station.systems:
         motor = station.systems["electric_motor"]
         held = joints["linkage"]["direction"] * needed

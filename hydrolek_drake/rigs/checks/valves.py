@@ -48,17 +48,35 @@ def check(rig: Checked, where: str) -> None:
             )
 
 
+def _check_long_lines(rig: Checked, where: str, variant: str) -> None:
+    """Long lines lead from a valve's edges to the chambers, and nothing stands between them and these."""
+    if variant in ("none", "pump_controlled"):
+        raise InputError(
+            f"{rig.path}: {where}.hose: long lines lead from a valve's edges, which a valve of variant {variant} has "
+            "not; use variant: none"
+        )
+    if rig.variants[f"{where}.holding"] != "none":
+        raise InputError(
+            f"{rig.path}: {where}.hose: a holding valve behind a long line is not modelled; use variant: hose, or "
+            "holding: {variant: none}"
+        )
+
+
 def _check_what_stands_in_series(rig: Checked, where: str, variant: str) -> None:
     """Hoses and holding valves need a valve's edges to stand in series with, and oil."""
     for stage in ("holding", "hose"):
         if rig.variants[f"{where}.{stage}"] == "none":
             continue
+        if stage == "hose" and rig.variants[f"{where}.hose"] == "long_line":
+            _check_long_lines(rig, where, variant)
         if rig.variants[f"{where}.cylinder"] in ELECTRIC:
             raise InputError(
                 f"{rig.path}: {where}.{stage}: an electric actuator has no oil; use variant: none"
             )
         losses = (
-            [f"{name}_{side}" for name in ("resistance", "loss") for side in "ab"] if stage == "hose" else []
+            [f"{name}_{side}" for name in ("resistance", "loss") for side in "ab"]
+            if rig.variants[f"{where}.{stage}"] == "hose"
+            else []
         )
         lossy = [name for name in losses if rig.value(f"{where}.hose.{name}") > 0.0]
         if variant == "pump_controlled" and (stage == "holding" or lossy):
