@@ -17,6 +17,7 @@ RARE: dict[str, tuple[str, ...]] = {
     "supply": ("pump",),
     "accumulator": ("gas",),
     "amplifier": ("pwm",),
+    "solenoid": ("switching",),
     "valve": ("four_edges", "flow_map", "pump_controlled"),
     "holding": ("counterbalance", "pilot_check"),
     "hose": ("hose", "long_line"),

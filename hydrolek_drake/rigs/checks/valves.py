@@ -17,6 +17,7 @@ def check(rig: Checked, where: str) -> None:
     variant = rig.variants[f"{where}.valve"]
     _check_what_stands_in_series(rig, where, variant)
     _check_pulses(rig, where)
+    _check_switching(rig, where)
     if variant in ("none", "pump_controlled"):
         return
     overlaps, full = {"four_edges": (EDGES, "full_opening"), "flow_map": (("a", "b"), "full_travel")}.get(
@@ -92,6 +93,24 @@ def _check_what_stands_in_series(rig: Checked, where: str, variant: str) -> None
                 f"{rig.path}: {where}.holding: at_a {ports[0]:g} and at_b {ports[1]:g} must be 0 or 1, one of them 1; "
                 "without any use variant: none"
             )
+
+
+def _check_switching(rig: Checked, where: str) -> None:
+    """A switching valve is switched by the command's voltage."""
+    if rig.variants[f"{where}.solenoid"] != "switching":
+        return
+    amplifier = rig.variants[f"{where}.amplifier"]
+    if amplifier != "none":
+        raise InputError(
+            f"{rig.path}: {where}.solenoid: a switching valve has no amplifier of variant {amplifier}; use "
+            "amplifier: {variant: none}"
+        )
+    threshold, limit = rig.value(f"{where}.solenoid.threshold"), rig.value(f"{where}.command.limit")
+    if not threshold <= limit:
+        raise InputError(
+            f"{rig.path}: {where}.solenoid: threshold ({threshold:g} V) lies beyond command.limit ({limit:g} V): the "
+            "valve would never switch"
+        )
 
 
 def _check_pulses(rig: Checked, where: str) -> None:
