@@ -13,6 +13,11 @@ from hydrolek_drake.effects.effect import Search
 SLOWED = 5.0
 """A payload with which the joint swings so many times slower is a large one."""
 
+TIGHT = 1e-4
+"""What leaks less than this share of the full flow is tight: new spools leak more (Merritt 1967, ch. 5: clearances of
+some micrometres), and a joint that creeps so slowly takes hours for its stroke. The equations' closed edge, which lets
+through nothing at all, simplifies as much."""
+
 
 @dataclass(frozen=True)
 class Scales:
@@ -60,6 +65,11 @@ class Scales:
     capacity: float
     rod_payload: float = 0.0
     unity: float = 1.0
+
+    @property
+    def tightness(self) -> float:
+        """Conductance of what counts as tight [m^3/(s Pa)]."""
+        return TIGHT * self.conductance
 
     @property
     def damping(self) -> float:

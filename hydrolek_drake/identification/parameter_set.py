@@ -100,7 +100,10 @@ class ParameterSet:
     @property
     def arrivals(self) -> np.ndarray:
         """Which of them say when commands arrive. # (n,) truth values."""
-        return np.array([declaration(self.rig, p.path).arrival for p in self.free], dtype=bool)
+        return np.array([self._arrives(p.path) for p in self.free], dtype=bool)
+
+    def _arrives(self, path: str) -> bool:
+        return declaration(self.rig, path).arrival
 
     def per_place(self, unit: np.ndarray) -> np.ndarray:
         """Change of each parameter's value (SI) with its place in the unit cube. # (n,)."""

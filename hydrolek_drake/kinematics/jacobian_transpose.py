@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.chain import arm_chain
-from hydrolek_drake.kinematics.direction_kernel import point_of
+from hydrolek_drake.kinematics.compiled_forward import point_of
 
 Array = NDArray[np.float64]
 

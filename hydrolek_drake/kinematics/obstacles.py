@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hydrolek_drake.kinematics.chain import Chain
-from hydrolek_drake.kinematics.direction_kernel import direction_of, solve_direction
+from hydrolek_drake.kinematics.compiled_forward import direction_of
+from hydrolek_drake.kinematics.direction_kernel import solve_direction
 from hydrolek_drake.kinematics.position_kernel import solve_position
 
 Array = NDArray[np.float64]

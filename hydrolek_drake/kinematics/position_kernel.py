@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from hydrolek_drake.kinematics.direction_kernel import direction_of, wrapped
+from hydrolek_drake.kinematics.compiled_forward import direction_of, wrapped
 
 _OUTSIDE = 1e6  # added to the cost of a posture outside its limits, beyond all distances of postures
 _ROUNDING = 1e-12  # of a sine or cosine of 1

@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import hooks
+from hydrolek_drake.physics import end_stops, hooks
 from hydrolek_drake.physics.fluid import effective_bulk_modulus, softened
 from hydrolek_drake.physics.lines import hose
 from hydrolek_drake.physics.linkages import ball_screw, servo_screw
 from hydrolek_drake.physics.parameters import Parameter, Stage
-from hydrolek_drake.physics.smooth import exponential, logarithm
 from hydrolek_drake.physics.usual import rare
 
 _CHAMBERS = (
@@ -134,10 +133,6 @@ def electric(joints: np.ndarray) -> np.ndarray:
     return np.asarray(np.isin(joints["cylinder"]["variant"], codes))
 
 
-STOP_DEPTH = 1e-3
-"""How deep a stop is pressed in where its stiffness counts as the rig has it, whatever its exponent [m]."""
-
-
 @njit
 def is_electric(joint: Any) -> bool:
     """Whether an actuator has no oil."""
@@ -226,42 +221,6 @@ def _floored(pressure: float, rate: float, joint: Any) -> float:
 
 
 @njit
-def hard_stop_force(stroke: float, velocity: float, joint: Any) -> float:
-    """Force of the cylinder's own end stops against the rod [N], F_C in (4.9)."""
-    p = joint.cylinder
-    if p.variant == CYLINDER or p.variant == VANE:
-        if stroke > p.stroke and velocity > 0.0:
-            return (stroke - p.stroke) * p.stop_penetration * velocity
-        if stroke < 0.0 and velocity < 0.0:
-            return -stroke * p.stop_penetration * velocity
-    return 0.0
-
-
-@njit
-def elastic_stop(stroke: float, velocity: float, joint: Any) -> tuple[float, float]:
-    """Force of the piston's elastic stops against the rod [N], and its slope over velocity [N s/m].
-
-    Beyond each end of the stroke k s (s/s_0)^(n - 1) (1 + c v) + d v, a spring that hardens and loses energy with its
-    force (Hunt and Crossley, J. Applied Mechanics 42 (1975) 440; c is 3/2 of their alpha), and a damper; they push back
-    and never pull. At s_0 = 1 mm the force is k s_0.
-    """
-    p = joint.cylinder
-    if not (rare(joint) and p.variant == CYLINDER and p.stop_stiffness > 0.0):
-        return 0.0, 0.0
-    over = max(stroke - p.stroke, 0.0) + min(stroke, 0.0)
-    if over == 0.0:
-        return 0.0, 0.0
-    spring = p.stop_stiffness * over
-    if p.stop_exponent > 1.0:
-        spring *= exponential((p.stop_exponent - 1.0) * logarithm(abs(over) / STOP_DEPTH))
-    further = abs(spring) * p.stop_dissipation
-    force = spring + (further + p.stop_damping) * velocity
-    if force * over <= 0.0:
-        return 0.0, 0.0
-    return force, further + p.stop_damping
-
-
-@njit
 def pressure_force(p_a: float, p_b: float, joint: Any) -> float:
     """Force of the oil on the piston [N], A_A P_A - A_B P_B in (4.9)."""
     return joint.cylinder.area_a * p_a - joint.cylinder.area_b * p_b
@@ -269,12 +228,15 @@ def pressure_force(p_a: float, p_b: float, joint: Any) -> float:
 
 @njit
 def friction_force(stroke: float, velocity: float, time: float, joint: Any) -> tuple[float, float]:
-    """All that opposes the rod [N] and its slope over velocity [N s/m]: friction, cushion, end stops (4.9)."""
+    """All that opposes the rod [N] and its slope over velocity [N s/m]: friction, cushion, end stops (4.9).
+
+    The slope is without that of elastic stops, which a step takes from `end_stops.slopes`.
+    """
     viscous = joint.cylinder.viscous_friction * hooks.viscous_gain(time, joint)
     friction, slope = hooks.rod_friction(velocity, stroke, joint)
-    stop = hard_stop_force(stroke, velocity, joint)
-    elastic, stop_slope = elastic_stop(stroke, velocity, joint)
-    return viscous * velocity + friction + stop + elastic, viscous + slope + stop_slope
+    stop = end_stops.hard_stop_force(stroke, velocity, joint)
+    elastic = end_stops.elastic_stop(stroke, velocity, joint)
+    return viscous * velocity + friction + stop + elastic, viscous + slope
 
 
 @njit

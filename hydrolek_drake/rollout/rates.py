@@ -8,7 +8,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import base, cylinder, fluid, hooks, linkage, load, sensor, supply, valve
+from hydrolek_drake.physics import (
+    base,
+    cylinder,
+    end_stops,
+    fluid,
+    hooks,
+    linkage,
+    load,
+    sensor,
+    supply,
+    valve,
+)
 from hydrolek_drake.physics.angle import Angle, AngleKept, angle, angle_near
 from hydrolek_drake.physics.driven import (
     chamber_pressures,
@@ -56,6 +67,7 @@ class Slopes(NamedTuple):
     turned_by: float  # acceleration of what the actuator turns for each newton of its force [rad/s^2/N]
     tilted_by: float  # and of the base, the other way
     contact: float  # mean moment through a play over the step [N m]
+    sprung: float  # by how much an elastic stop slows what the actuator turns for each rad further [1/s^2]
 
 
 class Fed(NamedTuple):
@@ -188,7 +200,7 @@ def rates(
     rate_a = rate_b = slope_a = slope_b = falls_a = rises_b = 0.0
     supply_rate = relief_rate = slope_supply = drawn = 0.0
     p_supply = 0.0
-    slope_f = 0.0
+    slope_f = stop_stiffness = 0.0
     if cylinder.follows_position(joint):
         place, _ = linkage.stroke_and_lever_at(included, side_q, joint)
         force, slope_f, supply_rate, relief_rate = servo_screw.driven(
@@ -218,6 +230,8 @@ def rates(
         if rare(joint) and pressures_are_driven(joint):
             rate_a = rate_b = slope_a = slope_b = falls_a = rises_b = 0.0
         friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
+        stop_damping, stop_stiffness = end_stops.slopes(stroke, v, h, joint)
+        slope_f += stop_damping
         force = cylinder.pressure_force(s.p_a, s.p_b, joint) - friction
         supply_rate, slope_supply = supply.rate_of_change(s.supply, s.relief, drawn + probe.flow, joint)
 
@@ -285,6 +299,7 @@ def rates(
             turned_by,
             tilted_by,
             through,
+            stop_stiffness * lever * turned_by,
         ),
         p_supply,
         force,

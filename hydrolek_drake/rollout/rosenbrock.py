@@ -33,10 +33,21 @@ def implicit(f: State, slope: Slopes, h: float, joint: Any) -> State:
     """
     playing = hooks.linkage_gap(joint) > 0.0
     part = GAMMA * h
-    c_a, c_b, c_w = _lessening(part, slope.p_a), _lessening(part, slope.p_b), _lessening(part, slope.w)
-    c_t, c_l = _lessening(part, slope.tilt_rate), _lessening(part, slope.lead_w)
-    w, tilt_rate, lead_w = c_w * f.w, c_t * f.tilt_rate, c_l * f.lead_w
-    side, c_s = (lead_w, c_l) if playing else (w, c_w)
+    c_a, c_b, c_t = (
+        _lessening(part, slope.p_a),
+        _lessening(part, slope.p_b),
+        _lessening(part, slope.tilt_rate),
+    )
+    damping, side, onwards = (slope.lead_w, f.lead_w, f.lead_q) if playing else (slope.w, f.w, f.q)
+    if slope.sprung > 0.0:  # a stop's stiffness, by the position that the stage itself leads to
+        damping -= part * slope.sprung
+        side -= part * slope.sprung * onwards
+    c_s = _lessening(part, damping)
+    side *= c_s
+    # behind a play the link, before none what its side would be
+    c_o = _lessening(part, slope.w if playing else slope.lead_w)
+    other = c_o * (f.w if playing else f.lead_w)
+    tilt_rate = c_t * f.tilt_rate
     stiffness = _stiffness(part, slope, joint)
     yields = c_s * slope.turned_by + c_t * slope.tilted_by
     force = (pushed(f, slope, h, joint) - part * stiffness * side) / (1.0 + part * part * stiffness * yields)
@@ -44,7 +55,7 @@ def implicit(f: State, slope: Slopes, h: float, joint: Any) -> State:
     tilt_rate -= tilted
     side += turned
     against = side - tilt_rate
-    w, lead_w = (w, side) if playing else (side, lead_w)
+    w, lead_w = (other, side) if playing else (side, other)
     return State(
         c_a * (f.p_a - part * slope.falls_a * against),
         c_b * (f.p_b + part * slope.rises_b * against),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from hydrolek_drake.physics import cylinder
+from hydrolek_drake.physics import cylinder, end_stops
 from hydrolek_drake.rigs import load_rig
 
 A_A, A_B, V_0, B = 800e-6, 600e-6, 40e-6, 1e9
@@ -65,8 +65,8 @@ def test_hard_stop_of_4_9_opposes_only_what_goes_further_in(bench_joint, stroke,
     # (4.9) subtracts F_C and prints x K_p v for x < 0, v < 0: positive, so it would pull the rod further in;
     # the code takes -x K_p v (docs/reference/thesis_errata.md), which opposes the motion at both ends
     joint = bench_joint({"cylinder.stop_penetration": 5e6})
-    assert_allclose(cylinder.hard_stop_force(stroke, velocity, joint), expected, rtol=1e-12, atol=0)
-    assert cylinder.hard_stop_force(stroke, velocity, joint) * velocity >= 0.0
+    assert_allclose(end_stops.hard_stop_force(stroke, velocity, joint), expected, rtol=1e-12, atol=0)
+    assert end_stops.hard_stop_force(stroke, velocity, joint) * velocity >= 0.0
 
 
 def test_a_vane_is_the_cylinder_s_equations_with_displacements(bench):
@@ -84,7 +84,7 @@ def test_a_hydraulic_motor_has_chambers_of_constant_volume_and_no_stop(bench):
     records["cylinder"]["variant"] = cylinder.HYDRAULIC_MOTOR
     for stroke in (-7.0, 0.0, 31.0):
         assert_allclose(cylinder.chamber_volumes(stroke, records[0]), (V_0, V_0), rtol=1e-14)
-        assert cylinder.hard_stop_force(stroke, np.sign(stroke), records[0]) == 0.0
+        assert end_stops.hard_stop_force(stroke, np.sign(stroke), records[0]) == 0.0
 
 
 def test_electric_motor_is_a_force_constant():
@@ -118,7 +118,9 @@ def test_a_piston_s_stops_push_back_beyond_its_stroke_and_never_pull(link_joint,
     )
     found, slope = cylinder.friction_force(stroke, velocity, 0.0, joint)
     assert_allclose(found, force, rtol=1e-12, atol=1e-9)
-    assert slope == (3e3 if force else 0.0)
+    assert slope == 0.0
+    if force:
+        assert_allclose(end_stops.slopes(stroke, velocity, 0.0, joint), (3e3, 5e6), rtol=1e-9)
 
 
 @pytest.mark.parametrize("depth", [0.2e-3, 1e-3, 3e-3])
@@ -134,7 +136,10 @@ def test_a_stop_that_hardens_is_hunt_and_crossley_s(link_joint, depth, speed):
     expected = 5e6 / 1e-3**0.5 * depth**1.5 * (1.0 + 6.0 * speed)
     found, slope = cylinder.friction_force(0.2 + depth, speed, 0.0, joint)
     assert_allclose(found, expected, rtol=1e-12)
-    assert_allclose(slope, 5e6 / 1e-3**0.5 * depth**1.5 * 6.0, rtol=1e-12)
+    damping, stiffness = end_stops.slopes(0.2 + depth, speed, 0.0, joint)
+    assert_allclose(slope + damping, 5e6 / 1e-3**0.5 * depth**1.5 * 6.0, rtol=1e-12)
+    if speed >= 0.0:  # outwards the stiffness of one that is still pressed, which is larger
+        assert_allclose(stiffness, 1.5 * expected / depth, rtol=1e-9)
     assert_allclose(cylinder.friction_force(-depth, -speed, 0.0, joint)[0], -expected, rtol=1e-12)
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
 
 
@@ -85,3 +86,33 @@ def test_a_rollout_in_two_parts_is_the_rollout_in_one(bench, effect):
     assert_allclose(second.signals.position, whole.signals.position[89:], rtol=1e-12)
     assert_allclose(second.signals.reading, whole.signals.reading[89:], rtol=1e-12)
     assert_allclose(second.state, whole.state, rtol=1e-9, atol=1e-15)
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 3.0])
+def test_a_stiff_stop_bears_steps_that_are_longer_than_its_oscillation(exponent):
+    """A link of some 100 kg struck against a stop of 1.5e8 N/m swings with far less than 4 ms."""
+    rig = load_rig("hopsan_link").with_values(
+        {
+            "cylinder.stop_stiffness": 1.5e8,
+            "cylinder.stop_damping": 1e3,
+            "cylinder.stop_exponent": exponent,
+            "cylinder.stop_dissipation": 1.0,
+        }
+    )
+    limit = rig.value("command.limit")
+    changes, volts = np.array([0.0, 4.0, 8.0]), np.array([limit, -limit, limit])
+    times = np.arange(0.0, 11.0, 0.01)
+    shown = {}
+    for step in (4e-3, 1e-3, 1e-4):
+        outcome = roll_out(rig.records(), changes, volts, times, longest_step=step)
+        assert not outcome.diverged
+        shown[step] = outcome.signals
+    fine = shown[1e-4]
+    struck = [np.flatnonzero(np.abs(fine.velocity[a:b]) > 1e-3)[-1] + a for a, b in ((0, 400), (400, 800))]
+    assert struck[0] < 390 and struck[1] < 790  # both ends were reached, and it came to rest there
+    noise = rig.value("sensor.noise")
+    for step in (4e-3, 1e-3):
+        rest = [abs(shown[step].position[i] - fine.position[i]) for i in (395, 795)]
+        assert max(rest) < 0.1 * noise  # where it rests is a balance of forces, whatever the step
+        penetrated = [np.ptp(shown[step].position) - np.ptp(fine.position)]
+        assert max(penetrated) < noise  # no step flies through the stop

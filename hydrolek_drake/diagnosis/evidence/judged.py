@@ -36,6 +36,7 @@ class Judged:
             None where nobody asked.
         left_behind_cut: times the noise that it leaves of these data behind the recorded pressure of a pump
             (`search.from_the_cut`); None where there is none, or nobody asked.
+        trained_behind_cut: the same of the training data.
         stands: recording (`windows.recording_of`) -> additions and place in the unit cube there (`nuisance`).
     """
 
@@ -49,6 +50,7 @@ class Judged:
     behind_error: float = math.nan
     fitted_too: float | None = None
     left_behind_cut: float | None = None
+    trained_behind_cut: float | None = None
     stands: Mapping[str, tuple[tuple[Addition, ...], np.ndarray]] = field(default_factory=dict)
 
     @property
@@ -70,6 +72,14 @@ class Judged:
         if self.left_behind_cut is None:
             return self.over_noise <= most
         return self.left_behind_cut <= most and self.over_noise <= NOISE.far
+
+    @property
+    def explains_training(self) -> bool:
+        """Whether it leaves so little of the training data that nothing is missing that these show, as for held-out."""
+        left = self.hypothesis.fit.over_noise
+        if self.trained_behind_cut is None:
+            return left <= NOISE.explained
+        return self.trained_behind_cut <= NOISE.explained and left <= NOISE.far
 
     @property
     def fails_ahead_alone(self) -> bool:
@@ -169,7 +179,7 @@ def conclude(judged: Sequence[Judged]) -> Conclusion:
     paths = {path for j in judged for path in j.hypothesis.ids}
     probability = {path: probability_of(path, judged) for path in paths}
     groups = _groups(best, judged)
-    if best.hypothesis.fit.over_noise > NOISE.explained or not best.explains_ahead:
+    if not (best.explains_training and best.explains_ahead):
         return Conclusion("unlisted_physics", best, probability, groups if best.hypothesis.effects else ())
     if not best.hypothesis.effects:
         return Conclusion(

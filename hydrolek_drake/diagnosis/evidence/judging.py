@@ -251,7 +251,8 @@ def left_of(
     )
     told = with_differences(told, held_out)
     behind = left_behind(bench, told[0].hypothesis, held_out)
-    told = (replace(told[0], left_behind_cut=behind), *told[1:])
+    before = left_behind(bench, told[0].hypothesis, bench.training)
+    told = (replace(told[0], left_behind_cut=behind, trained_behind_cut=before), *told[1:])
     if not told[0].fails_ahead_alone or own_of_recordings(told[0].hypothesis).any():
         return told
     [squares] = _beyond(bench, [told[0].hypothesis], held_out, settings, cores)

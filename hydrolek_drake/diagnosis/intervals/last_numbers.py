@@ -19,7 +19,12 @@ from scipy.stats import chi2
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged
 from hydrolek_drake.diagnosis.fitting.projection import Across
-from hydrolek_drake.diagnosis.intervals.curvature import Interval, covariance_of, intervals_of
+from hydrolek_drake.diagnosis.intervals.curvature import (
+    Interval,
+    beyond_curvature,
+    covariance_of,
+    intervals_of,
+)
 from hydrolek_drake.diagnosis.intervals.step_error import without_step_error
 from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS
 from hydrolek_drake.diagnosis.structures.weighing import felt_together
@@ -78,11 +83,16 @@ class LastNumbers:
             profiles = self._profiles(fit)
         bench.evaluations += self.problem.evaluations
         parameters = self.problem.parameters
-        intervals = intervals_of(parameters, fit)
+        times = beyond_curvature(fit, self.problem.experiments)
+        intervals = intervals_of(parameters, fit, times)
         for one in profiles:
-            free = parameters.free[one.index]
+            free, there = parameters.free[one.index], float(fit.unit[one.index])
             low, high = (
-                free.from_unit(end if reached is None else reached)
+                free.from_unit(
+                    end
+                    if reached is None
+                    else float(np.clip(there + times[one.index] * (reached - there), 0.0, 1.0))
+                )
                 for end, reached in ((0.0, one.low), (1.0, one.high))
             )
             known = intervals[free.path]

@@ -220,11 +220,8 @@ class WithTerms(ParameterSet):
         self.free = (*self.free, *(each for term in terms for each in term.free))
         self._neutral = {path: value for term in terms for path, value in term.neutral().items()}
 
-    @property
-    def arrivals(self) -> np.ndarray:
-        """Which of them say when commands arrive. # (n,) truth values."""
-        own = ParameterSet(self.rig, self.free[: self._of_rig]).arrivals
-        return np.concatenate([own, np.zeros(len(self.free) - self._of_rig, dtype=bool)])
+    def _arrives(self, path: str) -> bool:
+        return path not in self._neutral and super()._arrives(path)
 
     def records(self, unit: np.ndarray) -> np.ndarray:
         """Records of all joints, shape (n joints,), for a place in the unit cube."""

@@ -114,6 +114,7 @@ def slopes_at(r: np.ndarray, i: int) -> Slopes:
         r[i, f + 8],
         r[i, f + 9],
         r[i, f + 10],
+        0.0,  # the arms' accelerations are known without it
     )
 
 

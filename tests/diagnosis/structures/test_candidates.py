@@ -94,8 +94,22 @@ def test_a_payload_must_spin_more_than_the_rod_is_wrong(joint, recorded) -> None
     assert payload.says_something({payload.size_path: 0.99 * scales.rod_payload}) == (joint == "left_j4")
 
 
+@pytest.mark.parametrize("leak", ["valve.null_leakage", "cylinder.cross_port_leakage"])
+def test_a_joint_that_creeps_for_hours_is_tight(leak, recorded) -> None:
+    """Merritt (1967), ch. 5: even a new spool leaks more than a ten-thousandth of its full flow."""
+    rig = load_rig("joint_bench")
+    experiments = recorded(rig, rig)
+    scales = natural_scales(rig, "joint", experiments)
+    full_flow = scales.rod_speed * rig.value("cylinder.area_a")
+    [effect] = [c for c in candidates_of(rig, "joint", scales) if c.id == leak]
+    pressure = rig.value("supply.pressure") - rig.value("supply.tank_pressure")
+    assert not effect.says_something({effect.size_path: 0.9e-4 * full_flow / pressure})
+    assert effect.says_something({effect.size_path: 1.1e-4 * full_flow / pressure})
+
+
 def test_every_effect_says_how_far_it_is_searched() -> None:
-    fields = {*Scales.__dataclass_fields__, "damping", "load_damping", "load_stiffness", "drift_per_min"}
+    scaled = {"damping", "load_damping", "load_stiffness", "drift_per_min", "tightness"}
+    fields = {*Scales.__dataclass_fields__, *scaled}
     for effect in EFFECTS.values():
         assert set(effect.search) == {p.name for p in effect.parameters}, effect.id
         assert effect.beneath in {"", *fields}

@@ -29,6 +29,7 @@ EFFECT = Effect(
         "measure the oil that comes out of it."
     ),
     size="conductance_m3_per_s_Pa",
+    beneath="tightness",
     search={
         "conductance_m3_per_s_Pa": Search("conductance", 1, (0.02, 0.15)),
     },

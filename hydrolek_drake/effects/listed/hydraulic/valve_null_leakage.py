@@ -29,6 +29,7 @@ EFFECT = Effect(
         "tank: worn lands leak."
     ),
     size="conductance_m3_per_s_Pa",
+    beneath="tightness",
     search={
         "conductance_m3_per_s_Pa": Search("conductance", 1, (0.01, 0.06)),
     },
