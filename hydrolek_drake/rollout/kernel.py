@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import command, hooks, load, sensor
+from hydrolek_drake.physics import command, cylinder, hooks, linkage, load, sensor
 from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.lines.long_line import Lines, lines_in, put_lines
 from hydrolek_drake.physics.probes import Probe, probe_at
@@ -23,10 +23,10 @@ from hydrolek_drake.rollout.rates import (
     Turned,
     as_recorded,
     carried_on,
-    current_read,
     felt_at,
     kept,
     rates,
+    rod_side,
     turned,
 )
 from hydrolek_drake.rollout.rosenbrock import one_step
@@ -67,6 +67,17 @@ def out_of_bounds(x: float, s: State) -> bool:
         and abs(s.tilt) < 1e3
         and abs(s.lead_q) < 1e3
     )
+
+
+@njit
+def current_read(s: State, voltage: float, joint: Any) -> float:
+    """What the sensor of an electric motor's current says in a state [A], at a voltage of its drive [V]; else 0."""
+    if not cylinder.is_electric(joint):
+        return 0.0
+    q, w = rod_side(s, joint)
+    place, lever = linkage.stroke_and_lever(q, joint)
+    current = cylinder.motor_current(voltage, place, lever * w, s.supply, s.relief, joint)
+    return sensor.current_reading(current, joint)
 
 
 @njit

@@ -12,6 +12,7 @@ from hydrolek_drake.physics import cylinder, fluid, linkage, valve
 from hydrolek_drake.physics.driven import pressure_at_valves
 from hydrolek_drake.physics.lines.long_line import (
     Ended,
+    Fed,
     Lines,
     Pipe,
     Source,
@@ -23,7 +24,7 @@ from hydrolek_drake.physics.lines.long_line import (
 )
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.physics.solenoid import GAMMA
-from hydrolek_drake.rollout.rates import Fed, State, rod_side
+from hydrolek_drake.rollout.rates import State, rod_side
 
 
 @njit

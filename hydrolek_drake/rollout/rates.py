@@ -8,18 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import (
-    base,
-    cylinder,
-    end_stops,
-    fluid,
-    hooks,
-    linkage,
-    load,
-    sensor,
-    supply,
-    valve,
-)
+from hydrolek_drake.physics import base, cylinder, end_stops, fluid, hooks, linkage, load, supply, valve
 from hydrolek_drake.physics.angle import Angle, AngleKept, angle, angle_near
 from hydrolek_drake.physics.driven import (
     chamber_pressures,
@@ -29,6 +18,7 @@ from hydrolek_drake.physics.driven import (
 )
 from hydrolek_drake.physics.friction import FURTHER, slope_of_growth
 from hydrolek_drake.physics.law import Seen, felt
+from hydrolek_drake.physics.lines.long_line import Fed
 from hydrolek_drake.physics.linkages import servo_screw
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.physics.usual import rare
@@ -68,14 +58,6 @@ class Slopes(NamedTuple):
     tilted_by: float  # and of the base, the other way
     contact: float  # mean moment through a play over the step [N m]
     sprung: float  # by how much an elastic stop slows what the actuator turns for each rad further [1/s^2]
-
-
-class Fed(NamedTuple):
-    """What long lines feed a joint's chambers, and what the valve draws for it [m^3/s]."""
-
-    a: float
-    b: float
-    drawn: float
 
 
 class Turned(NamedTuple):
@@ -139,17 +121,6 @@ def felt_at(probe: Probe, law: np.ndarray | None, time: float, s: State, x: floa
     if not cylinder.is_electric(joint):
         stroke, lever = linkage.stroke_and_lever(q, joint)
     return felt(probe, law, lever, Seen(time, s.q, s.w, stroke, lever * w, s.p_a, s.p_b, x))[0]
-
-
-@njit
-def current_read(s: State, voltage: float, joint: Any) -> float:
-    """What the sensor of an electric motor's current says in a state [A], at a voltage of its drive [V]; else 0."""
-    if not cylinder.is_electric(joint):
-        return 0.0
-    q, w = rod_side(s, joint)
-    place, lever = linkage.stroke_and_lever(q, joint)
-    current = cylinder.motor_current(voltage, place, lever * w, s.supply, s.relief, joint)
-    return sensor.current_reading(current, joint)
 
 
 @njit

@@ -12,9 +12,10 @@ import numpy as np
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import cylinder, hooks, supply
+from hydrolek_drake.physics.lines.long_line import Fed
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.physics.solenoid import GAMMA
-from hydrolek_drake.rollout.rates import Fed, Slopes, State, Turned, rates
+from hydrolek_drake.rollout.rates import Slopes, State, Turned, rates
 
 
 @njit(forceinline=True)

@@ -80,6 +80,14 @@ class Source(NamedTuple):
     conductance: float
 
 
+class Fed(NamedTuple):
+    """What long lines feed a joint's chambers, and what the valve draws for it [m^3/s]."""
+
+    a: float
+    b: float
+    drawn: float
+
+
 @njit
 def pipe(length: float, bore: float, loss: float, joint: Any) -> Pipe:
     """A segment of a line [m, m, Pa s^2/m^6]."""
