@@ -48,6 +48,7 @@ def sensors_of(rig: Rig) -> Sensors:
         own = f"joints.{joint}.sensor"
         noise[position_key(rig, joint)] = rig.value(f"{own}.noise")
         resolution[position_key(rig, joint)] = rig.value(f"{own}.resolution")
+        noise[f"{joint}.current"] = rig.value(f"{own}.current_noise")
         for side in ("pressure_a", "pressure_b"):
             noise[f"{joint}.{side}"] = rig.value(f"{own}.pressure_noise")
     return Sensors(noise, resolution)

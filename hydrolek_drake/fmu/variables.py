@@ -14,6 +14,7 @@ UNITS: dict[str, dict[str, int]] = {
     "m": {"m": 1},
     "m/s": {"m": 1, "s": -1},
     "Pa": {"kg": 1, "m": -1, "s": -2},
+    "A": {"A": 1},
 }
 """Unit -> exponents of the base units, which FMI asks for."""
 
@@ -64,6 +65,12 @@ def _of_joint(rig: Rig, joint: str) -> list[Variable]:
         Variable(f"{joint}.true_{place}", position, OUTPUT, joint, "position", "where it is"),
         Variable(f"{joint}.{speed}", rate, OUTPUT, joint, "velocity", "how fast it moves"),
     ]
+    if rig.tells_current(joint):
+        found.append(
+            Variable(
+                f"{joint}.current", "A", OUTPUT, joint, "current", "of its motor, as the sensor reads it"
+            )
+        )
     if rig.is_hydraulic(joint):
         found += [
             Variable(f"{joint}.pressure_a", "Pa", OUTPUT, joint, "pressure_a", "pressure in chamber A"),

@@ -12,7 +12,7 @@ from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import end_stops, hooks
 from hydrolek_drake.physics.fluid import effective_bulk_modulus, softened
 from hydrolek_drake.physics.lines import hose
-from hydrolek_drake.physics.linkages import ball_screw
+from hydrolek_drake.physics.linkages import ball_screw, servo_screw
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.usual import rare
 
@@ -111,6 +111,7 @@ STAGE = Stage(
         "hydraulic_motor": (*_DISPLACEMENTS, *_CHAMBERS, *_TURNING_FRICTION),
         "electric_motor": (Parameter("force_constant", "N/V", "force over command voltage", lowest=0.0),),
         "ball_screw": ball_screw.PARAMETERS,
+        "servo_screw": servo_screw.PARAMETERS,
     },
 )
 CYLINDER = float(STAGE.code("cylinder"))
@@ -118,7 +119,11 @@ VANE = float(STAGE.code("vane"))
 HYDRAULIC_MOTOR = float(STAGE.code("hydraulic_motor"))
 ELECTRIC_MOTOR = float(STAGE.code("electric_motor"))
 BALL_SCREW = float(STAGE.code("ball_screw"))
-ELECTRIC = ("electric_motor", "ball_screw")
+SERVO_SCREW = float(STAGE.code("servo_screw"))
+FORCED = ("electric_motor", "ball_screw")
+"""Variants without oil whose force the command gives."""
+
+ELECTRIC = (*FORCED, "servo_screw")
 """Variants without oil."""
 
 
@@ -132,7 +137,15 @@ def electric(joints: np.ndarray) -> np.ndarray:
 def is_electric(joint: Any) -> bool:
     """Whether an actuator has no oil."""
     p = joint.cylinder
-    return p.variant == ELECTRIC_MOTOR or (rare(joint) and p.variant == BALL_SCREW)
+    return p.variant == ELECTRIC_MOTOR or (
+        rare(joint) and (p.variant == BALL_SCREW or p.variant == SERVO_SCREW)
+    )
+
+
+@njit
+def follows_position(joint: Any) -> bool:
+    """Whether a drive follows a commanded position."""
+    return rare(joint) and joint.cylinder.variant == SERVO_SCREW
 
 
 @njit
@@ -188,8 +201,9 @@ def pressure_rates(
     stiffness_a = effective_bulk_modulus(p_a, joint) / volume_a
     stiffness_b = effective_bulk_modulus(p_b, joint) / volume_b
     if rare(joint) and joint.hose.variant != hose.NONE:
-        _, stiffness_a = softened(joint.hose.expansion_a, 0.0, stiffness_a)
-        _, stiffness_b = softened(joint.hose.expansion_b, 0.0, stiffness_b)
+        more_a, more_b = hose.gives_way(joint)
+        _, stiffness_a = softened(more_a, 0.0, stiffness_a)
+        _, stiffness_b = softened(more_b, 0.0, stiffness_b)
     rate_a = stiffness_a * (flow_a - p.area_a * velocity)
     rate_b = stiffness_b * (flow_b + p.area_b * velocity)
     return _floored(p_a, rate_a, joint), _floored(p_b, rate_b, joint), stiffness_a, stiffness_b
@@ -227,7 +241,19 @@ def friction_force(stroke: float, velocity: float, time: float, joint: Any) -> t
 
 @njit
 def motor_force(voltage: float, joint: Any) -> float:
-    """Force of an electric motor with its drive [N]: force constant times command, or that of a ball screw."""
+    """Force of one of the motors of `FORCED` [N]: force constant times command, or that of a ball screw."""
     if rare(joint) and joint.cylinder.variant == BALL_SCREW:
         return ball_screw.screw_force(voltage, joint)
     return joint.cylinder.force_constant * voltage
+
+
+@njit
+def motor_current(
+    command: float, place: float, velocity: float, lag: float, deficit: float, joint: Any
+) -> float:
+    """Current of an electric motor [A] as `servo_screw.controlled` has it, or its command; 0 where it is not known."""
+    if follows_position(joint):
+        return servo_screw.controlled(command, place, velocity, lag, deficit, joint).current
+    if rare(joint) and joint.cylinder.variant == BALL_SCREW:
+        return ball_screw.commanded_current(command, joint)
+    return 0.0

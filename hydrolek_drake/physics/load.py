@@ -5,7 +5,7 @@ from typing import Any
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.angle import Angle, angle
-from hydrolek_drake.physics.cylinder import BALL_SCREW
+from hydrolek_drake.physics.cylinder import BALL_SCREW, SERVO_SCREW
 from hydrolek_drake.physics.linkage import stroke_and_lever
 from hydrolek_drake.physics.linkages.ball_screw import screw_mass
 from hydrolek_drake.physics.parameters import Parameter, Stage
@@ -191,7 +191,7 @@ def reflected_rod_inertia(joint: Any) -> float:
 
     Of a ball screw it is the mass that its turning parts add to the nut's [kg].
     """
-    if rare(joint) and joint.cylinder.variant == BALL_SCREW:
+    if rare(joint) and (joint.cylinder.variant == BALL_SCREW or joint.cylinder.variant == SERVO_SCREW):
         return screw_mass(joint)
     mass = joint.cylinder.rod_mass
     if not mass > 0.0:

@@ -24,6 +24,27 @@ STAGE = Stage(
             neutral=0.0,
             lowest=0.0,
         ),
+        Parameter(
+            "current_noise",
+            "A",
+            "standard deviation of the noise of a motor's current reading",
+            neutral=0.0,
+            lowest=0.0,
+        ),
+        Parameter(
+            "current_offset",
+            "A",
+            "reading of a motor's current where it draws none for its force",
+            neutral=0.0,
+        ),
+        Parameter(
+            "current_size",
+            "1",
+            "1 where the size of a motor's current is read alone, 0 with its sign",
+            neutral=0.0,
+            lowest=0.0,
+            highest=1.0,
+        ),
     ),
     {
         "position": (),
@@ -51,6 +72,13 @@ def played(reading: float, position: float, joint: Any) -> float:
 def reading(held: float, time: float, joint: Any) -> float:
     """What the sensor says [rad or m] when its shaft stands at `held`, without noise."""
     return held + hooks.reading_error(held, time, joint)
+
+
+@njit
+def current_reading(current: float, joint: Any) -> float:
+    """What a sensor says of a motor's current [A]: i_0 + i, or i_0 + |i| of one that has no sign, without noise."""
+    p = joint.sensor
+    return p.current_offset + (abs(current) if p.current_size > 0.0 else current)
 
 
 @njit

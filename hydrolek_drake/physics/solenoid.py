@@ -12,6 +12,7 @@ from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.usual import rare
 from hydrolek_drake.physics.valve import openings
+from hydrolek_drake.physics.valves import switching
 
 STAGE = Stage(
     "solenoid",
@@ -53,11 +54,13 @@ STAGE = Stage(
             Parameter("slew_rate", "m/s", "highest speed of the spool; 0 for any", neutral=0.0, lowest=0.0),
         ),
         "none": (),
+        "switching": switching.PARAMETERS,
     },
 )
 SPOOL_PAIR = float(STAGE.code("spool_pair"))
 SERVO_VALVE = float(STAGE.code("servo_valve"))
 NO_SPOOL = float(STAGE.code("none"))
+SWITCHING = float(STAGE.code("switching"))
 
 # Two-stage Rosenbrock-W method of Verwer, Spee, Blom, Hundsdorfer, SIAM J. Sci. Comput. 20 (1999) 1456:
 # of second order whatever matrix is used, L-stable with this constant.
@@ -158,6 +161,8 @@ def advanced(
     """The same as `advance`, in exactly so many steps."""
     if joint.solenoid.variant == NO_SPOOL:
         return 0.0, 0.0
+    if rare(joint) and joint.solenoid.variant == SWITCHING:
+        return switching.switched(x, drive_a - drive_b, h, joint)
     dt = h / steps
     if steps == 2:  # written out, as below: within a loop over lanes no other may stand
         return _two_steps(x, v, drive_a, drive_b, dt, joint, closing_a, closing_b)

@@ -18,10 +18,11 @@ RARE: dict[str, tuple[str, ...]] = {
     "accumulator": ("gas",),
     "fluid": ("polytropic_air",),
     "amplifier": ("pwm",),
+    "solenoid": ("switching",),
     "valve": ("four_edges", "flow_map", "pump_controlled"),
     "holding": ("counterbalance", "pilot_check"),
-    "hose": ("hose",),
-    "cylinder": ("ball_screw",),
+    "hose": ("hose", "long_line"),
+    "cylinder": ("ball_screw", "servo_screw"),
     "linkage": ("four_bar", "lever_table"),
     "load": ("link",),
 }

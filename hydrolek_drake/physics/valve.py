@@ -7,6 +7,7 @@ from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.fluid import orifice_conductance
 from hydrolek_drake.physics.lines import hose
+from hydrolek_drake.physics.lines.long_line import Source
 from hydrolek_drake.physics.usual import rare
 from hydrolek_drake.physics.valves import flow_map, load_holding, opening_table, pump_controlled
 from hydrolek_drake.physics.valves.variants import (
@@ -185,7 +186,7 @@ def edge_conductances(
         pa, at, pb, bt = load_holding.with_load_held(
             (pa, at, pb, bt), fed_a, fed_b, p_supply, p_a, p_b, joint
         )
-    if rare(joint) and joint.hose.variant != hose.NONE:
+    if rare(joint) and joint.hose.variant == hose.HOSE:
         pa, at, pb, bt = hose.through_hoses((pa, at, pb, bt), p_supply, p_a, p_b, joint)
     return pa, at, pb, bt
 
@@ -237,6 +238,42 @@ def chamber_flows(
         pa + at + cross,
         pb + bt + cross,
     )
+
+
+@njit
+def port_sources(
+    opened: Openings,
+    p_supply: float,
+    p_a: float,
+    p_b: float,
+    time: float,
+    joint: Any,
+    back_a: float = 0.0,
+    back_b: float = 0.0,
+) -> tuple[Source, Source, float]:
+    """What ports A and B give to long lines, and the flow drawn from the supply [m^3/s].
+
+    Arguments as for `chamber_flows`, with the pressures at the ports; leakage past the piston does not pass them.
+    """
+    p_tank = joint.supply.tank_pressure
+    pa, at, pb, bt = edge_conductances(opened, p_supply, p_a, p_b, time, joint)
+    at *= max(1.0 + back_a, 0.0)
+    bt *= max(1.0 + back_b, 0.0)
+    return (
+        Source(pa * p_supply + at * p_tank, pa + at),
+        Source(pb * p_supply + bt * p_tank, pb + bt),
+        pa * (p_supply - p_a) + pb * (p_supply - p_b),
+    )
+
+
+@njit
+def beside_lines(
+    flow_a: float, flow_b: float, p_a: float, p_b: float, joint: Any
+) -> tuple[float, float, float, float]:
+    """Flows into chambers A and B [m^3/s] that long lines feed, with leakage past the piston, and its conductance."""
+    cross = hooks.cross_conductance(joint)
+    across = cross * (p_a - p_b)
+    return flow_a - across, flow_b + across, cross, cross
 
 
 @njit

@@ -1,6 +1,7 @@
 """Joints of a rig under recorded commands on the Drake Diagram: the same machine as `driving`, wired of LeafSystems."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
 
 import numpy as np
 
@@ -76,10 +77,10 @@ def _signals_of(done: Run, place: int, seconds: np.ndarray, times: np.ndarray) -
             return np.zeros(seconds.size)
         return np.interp(seconds, done.time, done.signals[name][:, column])
 
-    names = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool")
+    names = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool", "current")
     own = {name: at(name, place) for name in names}
     return Signals(times, **own, supply_pressure=at("supply_pressure", 0), force=at("force", place))
 
 
 def _nothing(times: np.ndarray) -> Signals:
-    return Signals(times, *(np.full(times.size, np.nan) for _ in range(8)))
+    return Signals(times, *(np.full(times.size, np.nan) for _ in fields(Signals)[1:]))

@@ -71,7 +71,10 @@ def measured_position(rig: Rig, joint: str, recording: Recording) -> np.ndarray:
 
 
 def pairs_of_joint(rig: Rig, joint: str, recording: Recording, signals: Signals) -> list[Pair]:
-    """Position, and chamber pressures where they were recorded, do not drive the model, and the joint has chambers."""
+    """Position; chamber pressures where they were recorded, do not drive the model, and the joint has chambers.
+
+    Of a drive that follows a position also the current, where that was recorded.
+    """
     key = position_key(rig, joint)
     unit = "m" if key.endswith(".position") else "rad"
     pairs = [Pair(key, unit, joint, measured_position(rig, joint, recording), signals.reading)]
@@ -80,6 +83,9 @@ def pairs_of_joint(rig: Rig, joint: str, recording: Recording, signals: Signals)
             key = f"{joint}.{quantity}"
             if key in recording.signals and key not in rig.driven_by:
                 pairs.append(Pair(key, "Pa", joint, recording.signal(key), getattr(signals, quantity)))
+    key = f"{joint}.current"
+    if rig.tells_current(joint) and key in recording.signals:
+        pairs.append(Pair(key, "A", joint, recording.signal(key), signals.current))
     return pairs
 
 

@@ -98,6 +98,10 @@ class Rig:
         """The chosen variant of a stage."""
         return self.variants[stage if stage in SHARED_STAGES else f"joints.{joint}.{stage}"]
 
+    def tells_current(self, joint: str) -> bool:
+        """Whether a motor's current is what its drive makes of a commanded position, and so tells something."""
+        return self.variant(joint, "cylinder") == "servo_screw"
+
     def is_hydraulic(self, joint: str) -> bool:
         """Whether oil moves a joint."""
         return self.variant(joint, "cylinder") not in ELECTRIC

@@ -35,6 +35,7 @@ def driven_on(
     probe: Probe,
     probe_next: Probe,
     law: np.ndarray | None,
+    ports: tuple[float, float] | None,
     joint: Any,
 ) -> tuple[Drive, float]:
     """Advance ramp, coils and spool by `h` seconds; also the voltage that drives meanwhile.
@@ -51,6 +52,7 @@ def driven_on(
         probe: inputs from outside now.
         probe_next: after the step.
         law: how inputs from outside follow from the state, or None.
+        ports: pressures at the valve's ports A and B where long lines lead on from them [Pa], or None.
         joint: parameter record.
     """
     gain = 0.0
@@ -62,7 +64,7 @@ def driven_on(
     behind, drive = command.ramped(d.behind, voltage, h, now.ramp, joint)
     currents, driving = amplifier.following(d.currents, drive, time + 0.5 * h, h, now.coil_time, joint)
     gain += 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
-    p_a, p_b = chamber_pressures(s.p_a, s.p_b, probe, joint)
+    p_a, p_b = _beside_the_spool(s, probe, ports, joint)
     closing_a, closing_b = valve.flow_forces(
         pressure_at_valves(s.supply, now, joint), p_a, p_b, now.flow_force, joint
     )
@@ -70,6 +72,16 @@ def driven_on(
         d.x, d.xd, gain * driving.a, gain * driving.b, h, spool_steps, joint, closing_a, closing_b
     )
     return Drive(behind, currents, x, xd), drive
+
+
+@njit
+def _beside_the_spool(
+    s: State, probe: Probe, ports: tuple[float, float] | None, joint: Any
+) -> tuple[float, float]:
+    """Pressures at the valve's ports A and B [Pa]: of the chambers, unless long lines lead on to these."""
+    if ports is None:
+        return chamber_pressures(s.p_a, s.p_b, probe, joint)
+    return ports
 
 
 @njit

@@ -5,17 +5,19 @@ end exactly where the delayed command changes, so that a fit sees the transport 
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import command, hooks, load, sensor
+from hydrolek_drake.physics import command, cylinder, hooks, linkage, load, sensor
 from hydrolek_drake.physics.amplifier import Currents
+from hydrolek_drake.physics.lines.long_line import Lines, lines_in, put_lines
 from hydrolek_drake.physics.probes import Probe, probe_at
 from hydrolek_drake.physics.solenoid import steps_needed
 from hydrolek_drake.physics.usual import rare
 from hydrolek_drake.rollout.drive import Drive, acts_early, driven_on
+from hydrolek_drake.rollout.lines import fed_now, lines_advanced
 from hydrolek_drake.rollout.rates import (
     State,
     Turned,
@@ -24,11 +26,23 @@ from hydrolek_drake.rollout.rates import (
     felt_at,
     kept,
     rates,
+    rod_side,
     turned,
 )
 from hydrolek_drake.rollout.rosenbrock import one_step
+from hydrolek_drake.rollout.stretches import arrived, next_stretch
 
-SIGNALS = ("reading", "position", "velocity", "pressure_a", "pressure_b", "spool", "supply_pressure", "force")
+SIGNALS = (
+    "reading",
+    "position",
+    "velocity",
+    "pressure_a",
+    "pressure_b",
+    "spool",
+    "supply_pressure",
+    "force",
+    "current",
+)
 
 PULLED = ("reading", "pressure_a", "pressure_b")
 NOT_PULLED = np.zeros((0, len(PULLED)))
@@ -38,12 +52,6 @@ NOT_PULLED = np.zeros((0, len(PULLED)))
 def inertia_at(time: float, rod: float, joint: Any) -> float:
     """Inertia of the load with its payload and of the rod at the joint [kg m^2 or kg]."""
     return load.moving_inertia(time, joint) + rod
-
-
-@njit
-def arrived(command_values: np.ndarray, held: int, joint: Any) -> float:
-    """The command that acts [V]; neutral until the first one has arrived, as in the Diagram's transport delay."""
-    return command_values[held] if held >= 0 else joint.command.neutral
 
 
 @njit
@@ -62,6 +70,17 @@ def out_of_bounds(x: float, s: State) -> bool:
 
 
 @njit
+def current_read(s: State, voltage: float, joint: Any) -> float:
+    """What the sensor of an electric motor's current says in a state [A], at a voltage of its drive [V]; else 0."""
+    if not cylinder.is_electric(joint):
+        return 0.0
+    q, w = rod_side(s, joint)
+    place, lever = linkage.stroke_and_lever(q, joint)
+    current = cylinder.motor_current(voltage, place, lever * w, s.supply, s.relief, joint)
+    return sensor.current_reading(current, joint)
+
+
+@njit
 def written(
     d: Drive,
     s: State,
@@ -72,6 +91,7 @@ def written(
     probe: Probe,
     law: np.ndarray | None,
     near: Turned,
+    lines: Lines | None,
     joint: Any,
     out: np.ndarray,
 ) -> float:
@@ -87,8 +107,9 @@ def written(
         probe: inputs from outside.
         law: how such inputs follow from the state, or None.
         near: a place that the joint is near to or at.
+        lines: between valve and chambers where these are long, or None.
         joint: parameter record.
-        out: receives the signals. # (8,)
+        out: receives the signals. # (9,)
     """
     x = d.x
     if rare(joint):
@@ -96,10 +117,14 @@ def written(
     now = felt_at(probe, law, time, s, x, joint)
     voltage = command.drive_voltage(volts + now.command, joint)
     drive = d.behind if joint.command.ramp + now.ramp > 0.0 else voltage
-    _, _, p_supply, force, drawn = rates(s, x, drive, time, inertia, probe, law, near, 0.0, None, joint)
+    if lines is None:
+        fed = None
+    else:
+        fed = fed_now(lines, s, x, time, now, joint)
+    _, _, p_supply, force, drawn = rates(s, x, drive, time, inertia, probe, law, near, 0.0, None, fed, joint)
     out[0] = sensor.reading(play, time, joint) + now.sensor
     out[1], out[2], out[3], out[4], out[5] = s.q, s.w, s.p_a, s.p_b, x
-    out[6], out[7] = p_supply, force
+    out[6], out[7], out[8] = p_supply, force, current_read(s, drive, joint)
     return drawn
 
 
@@ -124,52 +149,6 @@ def pulled(s: State, share: float, reading: float, measured: np.ndarray) -> tupl
     return moved, by
 
 
-class Stretch(NamedTuple):
-    """Time over which one command acts, in equal steps."""
-
-    until: float  # [s]
-    held: int  # place of the command that acts
-    volts: float  # that command [V]
-    steps: int
-    h: float  # their length [s]; 0 for none
-
-
-@njit
-def next_stretch(
-    t: float,
-    target: float,
-    held: int,
-    delay: float,
-    command_times: np.ndarray,
-    command_values: np.ndarray,
-    longest_step: float,
-    joint: Any,
-) -> Stretch:
-    """From `t` on as far as the command stays the same, at most to `target`.
-
-    Args:
-        t: [s].
-        target: [s].
-        held: place of the command that has acted, -1 for none.
-        delay: of the commands [s].
-        command_times: [s], shape (m,).
-        command_values: [V], shape (m,).
-        longest_step: [s].
-        joint: parameter record.
-    """
-    last = len(command_times) - 1
-    while held < last and command_times[held + 1] + delay <= t + 1e-12:
-        held += 1
-    following = held + 1
-    while held >= 0 and following <= last and command_values[following] == command_values[held]:
-        following += 1
-    until = target
-    if following <= last and command_times[following] + delay < target:
-        until = max(command_times[following] + delay, t)
-    steps = max(math.ceil((until - t) / longest_step - 1e-9), 1)
-    return Stretch(until, held, arrived(command_values, held, joint), steps, (until - t) / steps)
-
-
 @njit(cache=True, nogil=True)
 def integrate(
     joints: np.ndarray,
@@ -184,6 +163,7 @@ def integrate(
     pull_time: float,
     measured: np.ndarray,
     law: np.ndarray | None,
+    lines: np.ndarray | None,
     out: np.ndarray,
 ) -> int:
     """Integrate one joint through a command and write its signals at `times`.
@@ -204,7 +184,9 @@ def integrate(
             observer [s]; zero or less for a free rollout.
         measured: `PULLED` at `times`, NaN where there is no value, shape (n, 3); no rows for a free rollout.
         law: how inputs from outside follow from the state, rows of `law.LAW`, or None.
-        out: `SIGNALS`, before the pull, shape (n, 8).
+        lines: between valve and chambers where these are long, as of `lines.lines_in`, shape (16,), or None; holds
+            their final state afterwards.
+        out: `SIGNALS`, before the pull, shape (n, 9).
 
     Returns:
         Number of rows written; less than n if the simulation diverged at that row.
@@ -214,6 +196,11 @@ def integrate(
     s = State(
         state[2], state[3], state[4], state[5], state[6], state[7], state[8], state[9], state[10], state[16]
     )
+    line: Any
+    if lines is None:
+        line = None
+    else:
+        line = lines_in(lines)
     playing = hooks.linkage_gap(joint) > 0.0
     rocking = hooks.base_stiffness(joint) > 0.0
     early = acts_early(law, joint)
@@ -239,11 +226,31 @@ def integrate(
                     time = t + i * h - on
                     probe_next = probe_at(t + (i + 1) * h, begin, probe_spacing, probe_values)
                     x = d.x
+                    if lines is None:
+                        ports, fed = None, None
+                    else:
+                        ports = line.a.p_0, line.b.p_0
                     d, drive = driven_on(
-                        d, s, volts, voltage, time, h, spool_steps, early, probe, probe_next, law, joint
+                        d,
+                        s,
+                        volts,
+                        voltage,
+                        time,
+                        h,
+                        spool_steps,
+                        early,
+                        probe,
+                        probe_next,
+                        law,
+                        ports,
+                        joint,
                     )
+                    if lines is not None:
+                        middle = 0.5 * (x + d.x)
+                        acting = felt_at(probe, law, time, s, middle, joint)
+                        line, fed = lines_advanced(line, s, middle, time, h, acting, joint)
                     inertia = inertia_at(time, rod, joint)
-                    s = one_step(s, x, d.x, drive, time, h, inertia, probe, probe_next, law, near, joint)
+                    s = one_step(s, x, d.x, drive, time, h, inertia, probe, probe_next, law, near, fed, joint)
                     near = carried_on(near, s, joint)
                     probe = probe_next
                     play = sensor.played(play, s.q - s.tilt, joint)
@@ -253,7 +260,7 @@ def integrate(
         probe = probe_at(t, begin, probe_spacing, probe_values)
         inertia = inertia_at(t - on, rod, joint)
         volts = arrived(command_values, held, joint)
-        written(d, s, play, volts, t - on, inertia, probe, law, near, joint, out[row])
+        written(d, s, play, volts, t - on, inertia, probe, law, near, line, joint, out[row])
         if pull_time > 0.0 and row + 1 < len(times):
             share = 1.0 - math.exp((t - times[row + 1]) / pull_time)
             s, by = pulled(s, share, out[row, 0], measured[row])
@@ -268,4 +275,6 @@ def integrate(
     state[11], state[12] = play, times[-1] - on
     state[13], state[14], state[15] = d.behind, d.currents.a, d.currents.b
     state[16] = s.relief
+    if lines is not None:
+        put_lines(lines, line)
     return len(times)

@@ -10,6 +10,7 @@ import numpy as np
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import cylinder, linkage, load, valve
 from hydrolek_drake.physics.law import Seen, law_value
+from hydrolek_drake.physics.linkages import ball_screw
 from hydrolek_drake.physics.valves.variants import PUMP_CONTROLLED
 
 
@@ -32,7 +33,9 @@ def full_flow(p_supply: float, drop: float, joint: Any) -> float:
 
 @njit(cache=True)
 def drive_force(command: float, joint: Any) -> float:
-    """Force of an electric drive [N] at a command [V]; see `cylinder.motor_force`."""
+    """Force of an electric drive [N] at a command [V]; the largest of one that follows a position."""
+    if cylinder.follows_position(joint):
+        return ball_screw.nut_force(joint.cylinder.current_limit, joint)
     return cylinder.motor_force(command, joint)
 
 

@@ -49,7 +49,7 @@ class JointOnwards:
     Attributes:
         joints: its name.
         time: where it is [s].
-        signals: of it there, as `kernel.SIGNALS`. # (1, 8)
+        signals: of it there, as `kernel.SIGNALS`. # (1, 9)
     """
 
     def __init__(self, rig: Rig, joint: str, time: float, position: float | None = None) -> None:
@@ -124,7 +124,7 @@ class JointsOnwards:
     Attributes:
         joints: that move, in the rig's order.
         time: where they are [s].
-        signals: of each there, as `kernel.SIGNALS`. # (joints, 8)
+        signals: of each there, as `kernel.SIGNALS`. # (joints, 9)
     """
 
     def __init__(

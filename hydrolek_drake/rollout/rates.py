@@ -18,6 +18,8 @@ from hydrolek_drake.physics.driven import (
 )
 from hydrolek_drake.physics.friction import FURTHER, slope_of_growth
 from hydrolek_drake.physics.law import Seen, felt
+from hydrolek_drake.physics.lines.long_line import Fed
+from hydrolek_drake.physics.linkages import servo_screw
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.physics.usual import rare
 
@@ -29,12 +31,13 @@ class State(NamedTuple):
     p_b: float  # pressure on side B [Pa]
     q: float  # joint position [rad or m]
     w: float  # joint velocity
-    supply: float  # what the supply remembers, `supply.supply_pressure`: a flow [m^3/s] or a pressure [Pa]
+    supply: float  # what the supply remembers, `supply.supply_pressure`: a flow [m^3/s] or a pressure [Pa]; of a drive
+    # that follows a position, which has no supply, the integral of the position's error [m s]
     tilt: float  # of the base [rad]
     tilt_rate: float
     lead_q: float  # position of the cylinder's side of a play [rad]
     lead_w: float
-    relief: float  # where a relief valve stands [Pa]
+    relief: float  # where a relief valve stands [Pa]; of such a drive the integral of the speed's error [m]
 
 
 class Slopes(NamedTuple):
@@ -67,14 +70,14 @@ class Turned(NamedTuple):
 @njit
 def turned(s: State, joint: Any) -> Turned:
     """How far the joint has turned in a state."""
-    side, _ = _rod_side(s, joint)
+    side, _ = rod_side(s, joint)
     return Turned(angle(s.q), angle(linkage.included_angle(side, joint)))
 
 
 @njit
 def carried_on(near: Turned, s: State, joint: Any) -> Turned:
     """How far the joint has turned, a step after it had turned so far: sines and cosines by the series alone."""
-    side, _ = _rod_side(s, joint)
+    side, _ = rod_side(s, joint)
     position = angle_near(s.q, near.position)
     included = angle_near(linkage.included_angle(side, joint), near.included)
     return Turned(
@@ -91,7 +94,7 @@ def kept(found: Turned) -> Turned:
 
 
 @njit
-def _rod_side(s: State, joint: Any) -> tuple[float, float]:
+def rod_side(s: State, joint: Any) -> tuple[float, float]:
     """Position and speed of the joint [rad or m] as the rod has them, before a play and from a base that rocks."""
     playing = hooks.linkage_gap(joint) > 0.0
     q, w = (s.lead_q, s.lead_w) if playing else (s.q, s.w)
@@ -113,7 +116,7 @@ def felt_at(probe: Probe, law: np.ndarray | None, time: float, s: State, x: floa
         return probe
     if rare(joint):
         s, x = as_recorded(s, x, probe, joint)
-    q, w = _rod_side(s, joint)
+    q, w = rod_side(s, joint)
     stroke = lever = 0.0
     if not cylinder.is_electric(joint):
         stroke, lever = linkage.stroke_and_lever(q, joint)
@@ -132,6 +135,7 @@ def rates(
     near: Turned,
     h: float,
     contact: float | None,
+    fed: Fed | None,
     joint: Any,
 ) -> tuple[State, Slopes, float, float, float]:
     """Rates of the state, their stiff slopes, supply pressure [Pa], rod force [N] and flow drawn [m^3/s].
@@ -147,6 +151,7 @@ def rates(
         near: a place that the joint is near to or at.
         h: a play's contact acts by its mean over so many seconds; 0 for as it is now [s].
         contact: that mean, where it is known from the beginning of the step [N m]; None where it is not.
+        fed: by long lines; None where the valve feeds the chambers itself.
         joint: parameter record.
     """
     rocking = hooks.base_stiffness(joint) > 0.0
@@ -154,7 +159,7 @@ def rates(
     oil = not cylinder.is_electric(joint)
     if rare(joint):
         s, x = as_recorded(s, x, outside, joint)
-    side_q, side_w = _rod_side(s, joint)
+    side_q, side_w = rod_side(s, joint)
     included = angle_near(linkage.included_angle(side_q, joint), near.included)
     stroke, lever = (
         linkage.stroke_and_lever_at(included, side_q, joint) if oil else (0.0, joint.linkage.direction)
@@ -164,17 +169,26 @@ def rates(
     probe, (braking, easing) = felt(outside, law, lever, seen)
 
     rate_a = rate_b = slope_a = slope_b = falls_a = rises_b = 0.0
-    supply_rate = slope_supply = drawn = 0.0
+    supply_rate = relief_rate = slope_supply = drawn = 0.0
     p_supply = 0.0
     slope_f = stop_stiffness = 0.0
-    if not oil:
+    if cylinder.follows_position(joint):
+        place, _ = linkage.stroke_and_lever_at(included, side_q, joint)
+        force, slope_f, supply_rate, relief_rate = servo_screw.driven(
+            voltage, place, v, s.supply, s.relief, joint
+        )
+    elif not oil:
         force = cylinder.motor_force(voltage, joint)
     else:
         p_supply = pressure_at_valves(s.supply, probe, joint)
-        opened = valve.widened(valve.openings(x, joint), probe.valve)
-        flow_a, flow_b, drawn, settle_a, settle_b = valve.chamber_flows(
-            opened, p_supply, s.p_a, s.p_b, time, joint, probe.back_a, probe.back_b
-        )
+        if fed is None:
+            opened = valve.widened(valve.openings(x, joint), probe.valve)
+            flow_a, flow_b, drawn, settle_a, settle_b = valve.chamber_flows(
+                opened, p_supply, s.p_a, s.p_b, time, joint, probe.back_a, probe.back_b
+            )
+        else:
+            flow_a, flow_b, settle_a, settle_b = valve.beside_lines(fed.a, fed.b, s.p_a, s.p_b, joint)
+            drawn = fed.drawn
         rate_a, rate_b, stiff_a, stiff_b = cylinder.pressure_rates(
             s.p_a, s.p_b, flow_a, flow_b, stroke, v, joint
         )
@@ -242,7 +256,7 @@ def rates(
             tilt_acceleration,
             s.lead_w,
             lead_acceleration,
-            0.0,
+            relief_rate,
         ),
         Slopes(
             slope_a,

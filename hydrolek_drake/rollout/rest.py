@@ -11,10 +11,20 @@ import numpy as np
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import amplifier, cylinder, hooks, linkage, load, sensor, supply
+from hydrolek_drake.physics.lines import hose
+from hydrolek_drake.physics.lines.long_line import LINES_SIZE, put_lines, resting_lines
+from hydrolek_drake.physics.linkages import servo_screw
 from hydrolek_drake.physics.valves.variants import PUMP_CONTROLLED
 from hydrolek_drake.rollout.rates import State
 
 STATE_SIZE = 2 + len(State._fields) + 3 + len(amplifier.Currents._fields)
+"""Numbers of a joint's state; what moves in long lines comes behind them."""
+
+
+def state_size(joint: np.ndarray) -> int:
+    """Numbers of the state of a joint, whose record has the shape (1,), with its long lines if it has any."""
+    return STATE_SIZE + (LINES_SIZE if joint["hose"]["variant"][0] == hose.LONG_LINE else 0)
+
 
 START_STEPS = 8
 """Steps of the search for a start: its error falls by the share that lean and bow change with position, at most a
@@ -40,7 +50,7 @@ def rest_state(
     Raises:
         ZeroDivisionError: a lever, an area or a play's stiffness is zero.
     """
-    state = np.zeros(STATE_SIZE)
+    state = np.zeros(state_size(joint))
     q = float(joint[0]["load"]["initial_position"]) if position is None else float(position)
     _rest(joint, q, float(time), carried is None, 0.0 if carried is None else float(carried), state)
     return state
@@ -56,7 +66,7 @@ def rest_state_at_reading(joint: np.ndarray, reading: float) -> np.ndarray:
     Raises:
         ZeroDivisionError: as of `rest_state`.
     """
-    state = np.zeros(STATE_SIZE)
+    state = np.zeros(state_size(joint))
     _rest_at_reading(joint, float(reading), state)
     return state
 
@@ -82,16 +92,20 @@ def _rest(
     state[6], state[16] = supply.at_start(joint)
     state[12] = time
     state[14], state[15] = amplifier.coil_currents(0.0, time, joint)
-    if cylinder.is_electric(joint):
-        state[9] = q
-        return
     if by_itself:
         carried = load.gravity_load(q, time, joint)
     needed = carried - load.stop_load(q, 0.0, joint)
+    if cylinder.is_electric(joint):
+        state[9] = q
+        if cylinder.follows_position(joint):
+            state[6], state[16] = servo_screw.at_rest(joint.linkage.direction * needed, joint)
+        return
     tilt, lead = rest_tilt_and_lead(joint, q, needed)
     state[2], state[3] = rest_pressures(joint, lead - tilt, needed)
     state[7], state[9] = tilt, lead
     state[11] = q - tilt
+    if len(state) > STATE_SIZE:
+        put_lines(state[STATE_SIZE:], resting_lines(state[2], state[3]))
 
 
 @njit

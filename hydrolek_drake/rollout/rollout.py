@@ -12,14 +12,17 @@ from hydrolek_drake.physics.law import law_of
 from hydrolek_drake.physics.probes import NO_PROBE
 from hydrolek_drake.physics.records import EFFECT_RECORD, STAGES, as_usual, flat, position_of
 from hydrolek_drake.rollout import kernel
-from hydrolek_drake.rollout.rest import STATE_SIZE, rest_state
+from hydrolek_drake.rollout.rest import STATE_SIZE, rest_state, state_size
 
 DIVIDED_BY_ZERO = "a parameter by which something is divided is zero"
 
 
 @dataclass(frozen=True)
 class Signals:
-    """What one joint did, one row per requested time; SI units (rad or m, Pa, N)."""
+    """What one joint did, one row per requested time; SI units (rad or m, Pa, N, A).
+
+    `current` is that of an electric motor as its sensor reads it, 0 of other joints.
+    """
 
     time: np.ndarray
     reading: np.ndarray
@@ -30,6 +33,7 @@ class Signals:
     spool: np.ndarray
     supply_pressure: np.ndarray
     force: np.ndarray
+    current: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -135,7 +139,7 @@ class PreparedJoint:
             check_driven(self._joint, probes is not None)
         out = np.full((len(times), len(kernel.SIGNALS)), np.nan)
         times = read_only(times)
-        start = np.full(STATE_SIZE, np.nan) if state is None else state.copy()
+        start = np.full(state_size(self._joint), np.nan) if state is None else state.copy()
         probe_spacing, probe_values = probes or (1.0, NO_PROBE)
         changes = np.ones(len(command_values), dtype=bool)  # what only repeats the command says nothing
         np.not_equal(command_values[1:], command_values[:-1], out=changes[1:])
@@ -157,6 +161,7 @@ class PreparedJoint:
                     pull_time,
                     read_only(measured),
                     self._law,
+                    start[STATE_SIZE:] if len(start) > STATE_SIZE else None,
                     out,
                 )
                 if rows < len(times):

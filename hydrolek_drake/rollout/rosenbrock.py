@@ -12,6 +12,7 @@ import numpy as np
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import cylinder, hooks, supply
+from hydrolek_drake.physics.lines.long_line import Fed
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.physics.solenoid import GAMMA
 from hydrolek_drake.rollout.rates import Slopes, State, Turned, rates
@@ -122,9 +123,19 @@ def _areas(joint: Any) -> tuple[float, float]:
 
 
 @njit(forceinline=True)
+def _remembered(
+    s: State, rate: float, relief_rate: float, slope: float, h: float, joint: Any
+) -> tuple[float, float]:
+    """What the supply remembers after `h` seconds of held rates, with its relief valve; or a drive's integrals."""
+    if cylinder.follows_position(joint):
+        return s.supply + h * rate, s.relief + h * relief_rate
+    return supply.advanced(s.supply, s.relief, rate, slope, h, joint)
+
+
+@njit(forceinline=True)
 def first_stage(s: State, k: State, slope: Slopes, h: float, joint: Any) -> State:
     """State after a step of `h` seconds with the rates `k` of its first stage, `implicit`."""
-    remembered, relief = supply.advanced(s.supply, s.relief, k.supply, slope.supply, h, joint)
+    remembered, relief = _remembered(s, k.supply, k.relief, slope.supply, h, joint)
     return State(
         s.p_a + h * k.p_a,
         s.p_b + h * k.p_b,
@@ -160,8 +171,8 @@ def changed(m: State, k: State) -> State:
 def second_stage(s: State, k: State, m: State, slope: Slopes, h: float, joint: Any) -> State:
     """State after a step of `h` seconds: rates `k` of its first stage, `m` those where this ended."""
     n = implicit(changed(m, k), slope, h, joint)
-    mean = 0.5 * (k.supply + m.supply)
-    remembered, relief = supply.advanced(s.supply, s.relief, mean, slope.supply, h, joint)
+    mean, mean_relief = 0.5 * (k.supply + m.supply), 0.5 * (k.relief + m.relief)
+    remembered, relief = _remembered(s, mean, mean_relief, slope.supply, h, joint)
     half = 0.5 * h
     return State(
         max(s.p_a + half * (3.0 * k.p_a + n.p_a), 0.0),
@@ -190,13 +201,14 @@ def one_step(
     probe_next: Probe,
     law: np.ndarray | None,
     near: Turned,
+    fed: Fed | None,
     joint: Any,
 ) -> State:
-    """One Rosenbrock-W step of `h` seconds; the spool goes from `x` to `x_next` meanwhile."""
-    k, slope, _, _, _ = rates(s, x, voltage, time, inertia, probe, law, near, h, None, joint)
+    """One Rosenbrock-W step of `h` seconds; the spool goes from `x` to `x_next` meanwhile, and lines may feed."""
+    k, slope, _, _, _ = rates(s, x, voltage, time, inertia, probe, law, near, h, None, fed, joint)
     k = implicit(k, slope, h, joint)
     middle = first_stage(s, k, slope, h, joint)
     m, _, _, _, _ = rates(
-        middle, x_next, voltage, time + h, inertia, probe_next, law, near, h, slope.contact, joint
+        middle, x_next, voltage, time + h, inertia, probe_next, law, near, h, slope.contact, fed, joint
     )
     return second_stage(s, k, m, slope, h, joint)

@@ -44,8 +44,8 @@ def named_signals(done: ScenarioRun) -> tuple[dict[str, np.ndarray], dict[str, s
         else:
             keep(f"{joint}.angle", np.degrees(run.signals["measured"][:, i]), "deg")
             keep(f"{joint}.rate", np.degrees(run.signals["velocity"][:, i]), "deg/s")
-        for quantity, unit in (("pressure_a", "Pa"), ("pressure_b", "Pa"), ("spool", "m")):
-            if quantity in run.signals:
+        for quantity, unit in (("pressure_a", "Pa"), ("pressure_b", "Pa"), ("spool", "m"), ("current", "A")):
+            if quantity in run.signals and (quantity != "current" or rig.tells_current(joint)):
                 keep(f"{joint}.{quantity}", run.signals[quantity][:, i], unit)
         by_rod = rig.variant(joint, "cylinder") in ("cylinder", *ELECTRIC)
         if by_rod:

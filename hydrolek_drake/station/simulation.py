@@ -28,7 +28,8 @@ class Run:
     Attributes:
         time: [s], shape (n,).
         signals: `reading`, `measured`, `position`, `velocity`, `voltage`, and for hydraulic rigs `pressure_a`,
-            `pressure_b`, `spool`, `force` (n, joints) and `supply_pressure` (n, 1).
+            `pressure_b`, `spool`, `force` (n, joints) and `supply_pressure` (n, 1); for electric ones `force` and
+            `current` (n, joints).
         final: context after the run.
         interrupted: whether the user stopped it before its end.
     """
@@ -84,6 +85,13 @@ def initial_context(station: Station, positions: np.ndarray | None = None) -> Co
         )
         actuator = station.systems["actuator"]
         actuator.GetMyMutableContextFromRoot(context).SetContinuousState(pressures.T.ravel())
+        if "long_lines" in station.systems:
+            lines = station.systems["long_lines"]
+            lines.rest(lines.GetMyMutableContextFromRoot(context), pressures)
+    if "electric_motor" in station.systems:
+        motor = station.systems["electric_motor"]
+        held = joints["linkage"]["direction"] * needed
+        motor.rest(motor.GetMyMutableContextFromRoot(context), held)
     zero = np.zeros(len(q))
     for name, state in (("play", leads), ("rocking_base", tilts)):
         if name in station.systems:

@@ -12,6 +12,7 @@ from pydrake.systems.primitives import LogVectorOutput, VectorLogSink
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import cylinder
 from hydrolek_drake.physics.law import any_gives, law_of
+from hydrolek_drake.physics.lines import hose
 from hydrolek_drake.physics.probes import RAMP
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rollout.rollout import check_driven
@@ -22,6 +23,7 @@ from hydrolek_drake.systems.actuator import Actuator
 from hydrolek_drake.systems.command_ramp import CommandRamp
 from hydrolek_drake.systems.electric_motor import ElectricMotor
 from hydrolek_drake.systems.four_way_valve import FourWayValve
+from hydrolek_drake.systems.long_lines import LongLines
 from hydrolek_drake.systems.operator_computer import FieldPoint, OperatorComputer
 from hydrolek_drake.systems.potentiometer import Potentiometer
 from hydrolek_drake.systems.proportional_amplifier import ProportionalAmplifier
@@ -104,6 +106,8 @@ def make_station(
         motor = add(ElectricMotor(joints))
         builder.Connect(_behind_the_ramp(builder, add, joints, sizes, delay.voltage), motor.voltage)
         builder.Connect(motor.force, parts.linkage.force)
+        if motor.follows:
+            builder.Connect(parts.linkage.rod_motion, motor.motion)
     elif electric.any():
         raise InputError(f"rig {rig.name}: electric and hydraulic joints cannot share one rig")
     else:
@@ -179,12 +183,18 @@ def _wire_hydraulics(
     builder.Connect(_behind_the_ramp(builder, add, joints, sizes, delay.arriving), amplifier.voltage)
     builder.Connect(amplifier.current, spool.current)
     builder.Connect(spool.position, valve.spool)
-    builder.Connect(actuator.pressure, valve.pressure)
+    ports, fed = actuator.pressure, valve.flow
+    if np.any(joints["hose"]["variant"] == hose.LONG_LINE):
+        lines = add(LongLines(joints))
+        builder.Connect(actuator.pressure, lines.pressure_in)
+        builder.Connect(valve.flow, lines.flow_in)
+        ports, fed = lines.pressure, lines.flow
+    builder.Connect(ports, valve.pressure)
     builder.Connect(supply.pressure, valve.supply)
     builder.Connect(valve.flow, supply.flow)
-    builder.Connect(valve.flow, actuator.flow)
+    builder.Connect(fed, actuator.flow)
     if spool.feels_oil:
-        builder.Connect(actuator.pressure, spool.pressure)
+        builder.Connect(ports, spool.pressure)
         builder.Connect(supply.pressure, spool.supply)
     builder.Connect(parts.linkage.rod_motion, actuator.motion)
     builder.Connect(actuator.force, parts.linkage.force)
@@ -217,6 +227,7 @@ def _add_logs(builder: DiagramBuilder, systems: dict[str, System], period: float
         "pressure": ("actuator", "pressure"),
         "spool": ("solenoid_spool", "spool_position"),
         "supply_pressure": ("supply", "supply_pressure"),
+        "current": ("electric_motor", "motor_current"),
         "force": ("electric_motor" if "electric_motor" in systems else "actuator", "rod_force"),
     }
     logs = {}

@@ -6,6 +6,8 @@ import numpy as np
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics import hooks
+from hydrolek_drake.physics.lines import hose
+from hydrolek_drake.physics.lines.long_line import SEGMENTS
 from hydrolek_drake.rigs import Rig
 
 INTEGRATORS = {
@@ -45,6 +47,11 @@ class StepSizes:
             raise InputError(f"integrator '{self.integrator}' is unknown; use {' or '.join(INTEGRATORS)}")
 
 
+WAVES_SEEN = 1.0
+"""A step lasts at most so many radians of the fastest oscillation of a chain of segments, 2 c over a segment's length:
+the third-order method is stable up to sqrt(3)."""
+
+
 def sizes_for(rig: Rig) -> StepSizes:
     """Steps that a Diagram of a rig takes where none is given, logged at every one of them.
 
@@ -52,11 +59,14 @@ def sizes_for(rig: Rig) -> StepSizes:
     frictions by
     an implicit method, a Diagram's explicit one needs steps that see them: two of the rollout's, and a quarter of that
     where a play closes, whose blows take 0.2 ms, or a relief valve sticks in its hysteresis, while nothing but the
-    line's volume holds the pressure.
+    line's volume holds the pressure. Long lines need steps that see their fastest oscillation.
     """
     step = min(StepSizes.step, 2.0 * rig.value("integration.longest_step"))
     records = rig.records()
     sticks = any(bool(np.any(records["supply"][name] > 0.0)) for name in ("relief_hysteresis", "relief_time"))
     if sticks or any(hooks.linkage_gap(record) > 0.0 for record in records):
         step /= 4.0
+    for record in records[records["hose"]["variant"] == hose.LONG_LINE]:
+        shortest = min(float(record["hose"][name]) for name in ("length_a", "length_b"))
+        step = min(step, WAVES_SEEN * 0.5 * shortest / (SEGMENTS * float(record["hose"]["wave_speed"])))
     return StepSizes(step=step, log_period=step)

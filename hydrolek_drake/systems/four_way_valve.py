@@ -4,8 +4,9 @@ import numpy as np
 from numba import njit
 from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
+from hydrolek_drake.physics.lines.hose import LONG_LINE
 from hydrolek_drake.physics.probes import BACK_A, BACK_B, VALVE
-from hydrolek_drake.physics.valve import chamber_flows, openings, widened
+from hydrolek_drake.physics.valve import chamber_flows, openings, port_sources, widened
 from hydrolek_drake.systems.short_law import Outside
 
 
@@ -23,6 +24,20 @@ def _flows(
     for i in range(n):
         joint = joints[i]
         opened = widened(openings(x[i], joint), outside[i, VALVE])
+        if joint.hose.variant == LONG_LINE:
+            a, b, out[2 * n + i] = port_sources(
+                opened,
+                p_supply,
+                pressure[i],
+                pressure[n + i],
+                time,
+                joint,
+                outside[i, BACK_A],
+                outside[i, BACK_B],
+            )
+            out[i] = a.flow - a.conductance * pressure[i]
+            out[n + i] = b.flow - b.conductance * pressure[n + i]
+            continue
         out[i], out[n + i], out[2 * n + i], _, _ = chamber_flows(
             opened,
             p_supply,
@@ -40,11 +55,11 @@ class FourWayValve(LeafSystem):
 
     Ports:
         in `spool_position` (n) [m].
-        in `pressure` (2n): chambers A, then B [Pa].
+        in `pressure` (2n): chambers A, then B [Pa]; ports where long lines lead on.
         in `supply_pressure` (1) [Pa].
         in `outside` (15 n): what a law adds, or open.
         out `oil_flow` (3n): into chambers A, into chambers B (leakage past the piston included), and drawn
-            from the supply [m^3/s].
+            from the supply [m^3/s]; through ports A and B where long lines lead on.
     """
 
     def __init__(self, joints: np.ndarray):

@@ -7,13 +7,19 @@ from hydrolek_drake.checking.steps import differs, driven_about
 from hydrolek_drake.rigs.reading import rig_from_tree
 from hydrolek_drake.rigs.rig import Rig
 from hydrolek_drake.units import si_factor
-from hydrolek_drake.wizard.questions import fixed, read_answers
+from hydrolek_drake.wizard.questions import SCREW, fixed, read_answers
+from hydrolek_drake.wizard.screw import screw_text
 from hydrolek_drake.wizard.sheet import Sheet
 from hydrolek_drake.wizard.writing import rig_text
 from hydrolek_drake.yaml_files import parse_yaml
 
 MARGIN = 0.5
 """Share of what a step may err by, of one that a new rig gets: other commands and fitted numbers ask for more."""
+
+
+def text_of(name: str, sheet: Sheet, step: float) -> str:
+    """The rig's file with a step of the integration [s], hydraulic or with a servo drive as the sheet says."""
+    return (screw_text if sheet["moves"] == SCREW else rig_text)(name, sheet, step)
 
 
 def written_rig(name: str, given: Mapping[str, str]) -> tuple[str, Rig]:
@@ -30,7 +36,7 @@ def written_rig(name: str, given: Mapping[str, str]) -> tuple[str, Rig]:
     steps = fixed("steps")
     tried = [step * si_factor(steps["unit"], "s") for step in steps["value"]]
     for step in tried:
-        text = rig_text(name, sheet, step)
+        text = text_of(name, sheet, step)
         rig = rig_from_tree(parse_yaml(text, name), Path(f"{name}.yaml"))
         times, volts = driven_about(rig.value("command.limit"))
         off = differs(rig, rig.joints[0], times, volts, step)

@@ -12,12 +12,13 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.units import si_factor
 from hydrolek_drake.yaml_files import package_yaml
 
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_SPLIT = re.compile(rf"\s*(?P<numbers>{_NUMBER}(?:[,;\s]+{_NUMBER})*)\s*(?P<unit>[^\d\s,;.+-].*)?")
-SIGNED = ("base_mount", "link_mount", "centre", "mid_stroke_at", "overlap")
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?!/)"  # the 1 of 1/s belongs to the unit
+_SPLIT = re.compile(rf"\s*(?P<numbers>{_NUMBER}(?:[,;\s]+{_NUMBER})*)\s*(?P<unit>1/.*|[^\d\s,;.+-].*)?")
+SIGNED = ("base_mount", "link_mount", "centre", "mid_stroke_at", "overlap", "pushed_by", "current_at_rest")
 MAY_BE_ZERO = (
     "rod", "delay", "tank_pressure", "pump_leakage", "relief_hysteresis", "port_shares", "rated_flow", "angle_noise",
     "position_noise", "pressure_noise", "bearing_damping", "guide_damping", "seal_damping",
+    "position_time", "top_speed", "current_noise",
 )  # fmt: skip
 """Questions whose answers may be below zero, and zero."""
 
@@ -27,9 +28,14 @@ SMALLEST, LARGEST = 1e-15, 1e15
 SI = {
     "mm": "m", "m": "m", "cm^3": "m^3", "l": "m^3", "deg": "rad", "kg": "kg", "N m s/rad": "N m s/rad",
     "N s/m": "N s/m", "ms": "s", "V": "V", "Hz": "rad/s", "1": "1", "l/min": "m^3/s", "bar": "Pa", "kPa": "Pa",
-    "GPa": "Pa", "cm^3/rev": "m^3/rad", "rpm": "rad/s", "kg/m^3": "kg/m^3",
+    "GPa": "Pa", "cm^3/rev": "m^3/rad", "rpm": "rad/s", "kg/m^3": "kg/m^3", "mm/V": "m/V", "mm/s": "m/s",
+    "1/s": "1/s", "A": "A", "N": "N", "N m/A": "N m/A", "N m": "N m", "kg cm^2": "kg m^2",
 }  # fmt: skip
 """Unit of a question -> SI unit of its answer."""
+
+
+SCREW = "screw"
+"""What `moves` says of a machine without oil."""
 
 
 class Share(float):
@@ -70,6 +76,8 @@ class Question:
     def applies(self, answers: Mapping[str, Any]) -> bool:
         """Whether it is asked of a machine with these answers."""
         wanted = self.what.get("for")
+        if answers.get("moves") == SCREW:
+            return wanted == SCREW or self.key in _tree()["_screw"]
         holding = answers.get("holding", "none")
         if wanted == "holding":
             return bool(holding != "none")
@@ -172,6 +180,8 @@ def read_answers(given: Mapping[str, str]) -> dict[str, Any]:
 def missing(answers: Mapping[str, Any]) -> list[Question]:
     """Questions without which no rig can be written."""
     left = [q for q in questions().values() if q.needed and q.key not in answers and q.applies(answers)]
+    if answers.get("moves") == SCREW:
+        return left
     by_width = "spool_diameter" in answers and "port_shares" in answers
     by_flow = "rated_flow" in answers and "rated_drop" in answers
     for one, other in (("rated_flow", "rated_drop"), ("rated_drop", "rated_flow")):

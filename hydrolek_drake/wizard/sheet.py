@@ -6,7 +6,7 @@ from typing import Any
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.units import si_factor
-from hydrolek_drake.wizard.questions import SI, Question, Share, missing, questions
+from hydrolek_drake.wizard.questions import SCREW, SI, Question, Share, missing, questions
 
 EDGES = ("pa", "pb", "at", "bt")
 """In the order in which a data sheet's four numbers stand."""
@@ -30,6 +30,9 @@ class Sheet:
         if left:
             told = "; ".join(f"{q.option} ({q.asks}{f' [{q.unit}]' if q.unit else ''})" for q in left)
             raise InputError(f"rig new: not answered: {told}")
+        if self["moves"] == SCREW:
+            self._read_screw()
+            return
         bore, rod = self["bore"], self["rod"]
         if not 0.0 <= rod < bore:
             raise InputError(f"rig new: --rod {1e3 * rod:g} mm is not thinner than --bore {1e3 * bore:g} mm")
@@ -41,6 +44,21 @@ class Sheet:
         self.lever = self._geometry() if self.turns else 1.0
         self.gradients = self._gradients()
         self.speed = self._speed()
+
+    def _read_screw(self) -> None:
+        """Newtons for each ampere, largest force [N], mass with the rotor's [kg], and a speed [m/s]."""
+        if self["efficiency"] > 1.0:
+            raise InputError(f"rig new: --efficiency {self['efficiency']:g} is more than 1")
+        strange = [
+            q.option for q in questions().values() if q.key in self.answers and not q.applies(self.answers)
+        ]
+        if strange:
+            raise InputError(f"rig new: {', '.join(strange)}: not of a machine with --moves {SCREW}")
+        turn = 2.0 * math.pi / self["lead"]
+        self.per_amp = turn * self["efficiency"] * self["torque_constant"]
+        self.force = self.per_amp * self["peak_current"]
+        self.moved = self["mass"] + self["rotor_inertia"] * turn * turn
+        self.speed = self["top_speed"] or self["travel"] * self["position_gain"]
 
     def __getitem__(self, key: str) -> Any:
         """An answer, or what is assumed in its place."""
@@ -63,6 +81,8 @@ class Sheet:
             return float(self.area_a * self["stroke"])
         if key == "overlap":
             return float(self["spool_travel"])
+        if key == "drag_torque":
+            return float(self["torque_constant"] * self["peak_current"])
         if key == "pump_leakage":
             return self["displacement"] * self["pump_speed"]
         if key in ("relief_rise", "relief_hysteresis", "accumulator_precharge", "holding_setting"):

@@ -115,7 +115,7 @@ def test_conditions_follow_the_models_movement():
     position = middle + reach * np.sin(TIME)
     velocity = reach * np.cos(TIME)
     rest = np.zeros(TIME.size)
-    signals = Signals(TIME, position, position, velocity, rest, rest, rest, rest, rest)
+    signals = Signals(TIME, position, position, velocity, *[rest] * 6)
     holds = conditions_of(rig, "joint", 5.0 * np.cos(TIME), signals)
     up, down = (holds[f"while moving in the {way} direction"] for way in ("positive", "negative"))
     assert np.array_equal(holds["at rest"], ~(up | down))

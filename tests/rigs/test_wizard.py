@@ -13,8 +13,8 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import built_in_rigs, load_rig
 from hydrolek_drake.rigs.json_schema import rig_schema
 from hydrolek_drake.rigs.reading import rig_from_tree
-from hydrolek_drake.wizard import questions, read_answers, rig_text
-from hydrolek_drake.wizard.making import written_rig
+from hydrolek_drake.wizard import questions, read_answers
+from hydrolek_drake.wizard.making import text_of, written_rig
 from hydrolek_drake.wizard.sheet import Sheet
 from hydrolek_drake.yaml_files import parse_yaml, read_yaml
 
@@ -26,6 +26,12 @@ LINK = {
 SLIDE = {
     "moves": "slide", "bore": "25", "rod": "16", "stroke": "300", "mass": "8", "rated_flow": "24 l/min",
     "rated_drop": "5 bar", "supply": "constant", "supply_pressure": "6 MPa",
+}  # fmt: skip
+
+
+SCREW = {
+    "moves": "screw", "travel": "160 mm", "lead": "5 mm", "torque_constant": "1.5 N m/A", "peak_current": "5 A",
+    "mass": "5 kg",
 }  # fmt: skip
 
 
@@ -68,6 +74,50 @@ def test_a_slide_with_a_rated_flow_gives_that_flow():
     assert rig.variants["supply"] == "constant_pressure"
 
 
+def test_a_screw_s_speed_loop_has_its_bandwidth_and_its_friction_the_drag_torque():
+    told = {
+        "position_gain": "4 1/s",
+        "speed_bandwidth": "10 Hz",
+        "drag_torque": "0.6 N m",
+        "rotor_inertia": "2 kg cm^2",
+    }
+    rig = written_rig("axis", {**SCREW, **told, "pushed_by": "-196 N", "current_reads": "size"})[1]
+    turn = 2 * np.pi / 5e-3
+    moved = 5.0 + 2e-4 * turn**2
+    loop = rig.value("cylinder.speed_gain") * 0.9 * 1.5 * turn / moved
+    assert np.isclose(loop, 2 * np.pi * 10, rtol=1e-4)
+    assert np.isclose(rig.value("cylinder.position_gain"), 4.0)
+    friction = "effects.load.stribeck_friction"
+    assert np.isclose(rig.value(f"{friction}.force_N"), 0.6 * turn, rtol=1e-4)
+    assert rig.value("load.gravity_cos") == -196.0 and rig.value("sensor.current_size") == 1.0
+    assert not rig.is_hydraulic("joint")
+    torque = rig.entries["joints.joint.cylinder.torque_constant"]
+    assert torque.range is not None and torque.range[1] / torque.range[0] > 4.0  # a factor of two lies inside
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"bore": "40 mm"}, "--bore: not of a machine with --moves screw"),
+        ({"efficiency": "1.2"}, "more than 1"),
+        ({"lead": "0 mm"}, "above zero"),
+        ({"position_gain": "4 1/m"}, "--position-gain"),
+        ({"position_gain": "4 5 1/s"}, "2 numbers, where 1 belong"),
+    ],
+)
+def test_a_bad_answer_about_a_screw_is_refused_in_one_line(change, says):
+    with pytest.raises(InputError) as caught:
+        written_rig("axis", {**SCREW, **change})
+    assert says in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_what_is_missing_of_a_screw_is_listed():
+    with pytest.raises(
+        InputError, match=r"not answered: --mass .*--travel .*--lead .*--torque-constant .*--peak"
+    ):
+        written_rig("axis", {"moves": "screw"})
+
+
 def test_the_built_in_link_is_what_the_wizard_writes_from_its_data_sheet():
     """By the command of docs/guides/own_machine.md, but for the step, which agrees on this machine's recordings."""
     guide = (Path(__file__).parents[2] / "docs" / "guides" / "own_machine.md").read_text()
@@ -89,7 +139,7 @@ def test_the_built_in_link_is_what_the_wizard_writes_from_its_data_sheet():
         ({"bore": "wide"}, "not a number with a unit"),
         ({"bore": "-40"}, "below zero"),
         ({"rod": "50"}, "not thinner than --bore"),
-        ({"moves": "wheel"}, "choose link or slide"),
+        ({"moves": "wheel"}, "choose link or slide or screw"),
         ({"base_mount": "0.1"}, "1 numbers, where 2 belong"),
         ({"stroke": "3 m"}, "a cylinder cannot reach"),
         ({"boar": "40"}, "did you mean --bore"),
@@ -153,11 +203,12 @@ STRANGE = (
 def test_strange_answers_give_a_rig_or_one_printable_line():
     generator, done = np.random.default_rng(5), {True: 0, False: 0}
     for _ in range(1000):
-        given = dict(LINK if generator.random() < 0.6 else SLIDE)
-        for key in generator.choice(list(questions()), size=generator.integers(1, 3)):
+        given = dict((LINK, SLIDE, SCREW)[generator.choice(3, p=(0.5, 0.3, 0.2))])
+        asked = [key for key, question in questions().items() if question.applies(given)]
+        for key in generator.choice(asked, size=generator.integers(1, 3)):
             given[str(key)] = STRANGE[generator.integers(len(STRANGE))]
         try:
-            text = rig_text("strange", Sheet(read_answers(given)), 5e-4)
+            text = text_of("strange", Sheet(read_answers(given)), 5e-4)
             rig_from_tree(parse_yaml(text, "strange"), Path("strange.yaml"))
             done[True] += 1
         except InputError as error:

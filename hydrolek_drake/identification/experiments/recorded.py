@@ -22,7 +22,7 @@ CONSTANT = 1e-12
 def experiments_of(
     rig: Rig,
     recording: Recording,
-    signals: tuple[str, ...] = ("position", "pressure_a", "pressure_b", "supply_pressure"),
+    signals: tuple[str, ...] = ("position", "pressure_a", "pressure_b", "supply_pressure", "current"),
 ) -> list[Experiment]:
     """One experiment for each joint of the rig that has a command in the recording.
 
@@ -31,8 +31,8 @@ def experiments_of(
     Args:
         rig: the machine.
         recording: read with the rig's `columns`.
-        signals: which of position, pressure_a, pressure_b, supply_pressure are to be followed, where recorded; the
-            last for a rig of one joint only, since all joints draw from the supply and a rollout knows one.
+        signals: which of position, pressure_a, pressure_b, supply_pressure, current are to be followed, where recorded;
+            the supply's for a rig of one joint only, since all joints draw from it and a rollout knows one.
 
     Raises:
         InputError: no command, no position, a command that never changes, or a signal without noise level.
@@ -84,6 +84,12 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
             measured = np.asarray(recording.signal("supply.pressure"), dtype=float)
             noise = _noise(measured, rig, joint, "pressure_noise")
             channels.append(Channel("supply.pressure", "Pa", "supply_pressure", measured, noise))
+    name = f"{joint}.current"
+    if rig.tells_current(joint) and "current" in wanted and name in recording.signals:
+        measured = np.asarray(recording.signal(name), dtype=float)
+        channels.append(
+            Channel(name, "A", "current", measured, _noise(measured, rig, joint, "current_noise"))
+        )
     start, start_error = None, 0.0
     if rig.initial_position == "recording":
         start, start_error = resting_position(position, command, _noise(position, rig, joint, "noise"))

@@ -33,7 +33,7 @@ from hydrolek_drake.rollout.pool import RolloutPool
 CONFIDENCE = 1.96
 """Standard errors on either side that hold 95 % of a normal distribution."""
 
-SIGNALS = ("position", "pressure_a", "pressure_b", "supply_pressure")
+SIGNALS = ("position", "pressure_a", "pressure_b", "supply_pressure", "current")
 """What is followed where it was recorded; the last in rigs of one joint, as of `experiments_of`."""
 
 

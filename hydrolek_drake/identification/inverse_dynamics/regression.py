@@ -19,7 +19,7 @@ from scipy.stats import norm
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.command import drive_voltage
-from hydrolek_drake.physics.cylinder import ELECTRIC, motor_force
+from hydrolek_drake.physics.cylinder import FORCED, motor_force
 from hydrolek_drake.physics.load import reflected_rod_inertia
 from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.replay.readings import measured_position
@@ -86,7 +86,7 @@ def motor_joint(rig: Rig) -> str:
         )
     (joint,) = rig.joints
     drive = rig.variant(joint, "cylinder")
-    if drive not in ELECTRIC:
+    if drive not in FORCED:
         raise InputError(
             f"rig {rig.name}: {joint} is driven by a '{drive}'; the force is known of an 'electric_motor' or a "
             "'ball_screw' alone, so use hydrolek fit"

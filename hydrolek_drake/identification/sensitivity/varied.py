@@ -20,6 +20,8 @@ BOOKKEEPING = frozenset(
         "holding.at_b",
         "sensor.noise",
         "sensor.pressure_noise",
+        "sensor.current_noise",
+        "sensor.current_size",
     }
 )
 """Parameters that say how things are wired or how noisy a reading is: no number that could be a little off."""

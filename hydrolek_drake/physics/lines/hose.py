@@ -1,16 +1,17 @@
-"""Hoses between valve and actuator: they widen with pressure, and take pressure for the flow."""
+"""Hoses between valve and actuator: they widen with pressure, and take pressure for the flow; or long lines."""
 
 import math
 from typing import Any
 
 from hydrolek_drake.compiling import njit
+from hydrolek_drake.physics.lines import long_line
 from hydrolek_drake.physics.parameters import Parameter, Stage
 
 _SIDES = {"a": "port A", "b": "port B"}
 
 STAGE = Stage(
     "hose",
-    "hoses between valve and actuator; the oil in them counts to the dead volumes",
+    "hoses between valve and actuator, whose oil counts to the dead volumes; or long lines, whose oil does not",
     (),
     {
         "none": (),
@@ -41,10 +42,23 @@ STAGE = Stage(
                 ),
             )
         ),
+        "long_line": long_line.PARAMETERS,
     },
     default="none",
 )
 NONE = float(STAGE.code("none"))
+HOSE = float(STAGE.code("hose"))
+LONG_LINE = float(STAGE.code("long_line"))
+
+
+@njit
+def gives_way(joint: Any) -> tuple[float, float]:
+    """Volume that the lines of ports A and B gain beside the chambers' oil, for each pascal there [m^3/Pa]."""
+    p = joint.hose
+    if p.variant == LONG_LINE:
+        a, b = long_line.pipes(joint)
+        return 0.5 * a.capacity, 0.5 * b.capacity  # of the last half segments
+    return p.expansion_a, p.expansion_b
 
 
 @njit

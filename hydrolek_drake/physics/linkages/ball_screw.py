@@ -19,17 +19,25 @@ PARAMETERS = (
 
 
 @njit
-def screw_force(command: float, joint: Any) -> float:
-    """Force on the nut [N]: 2 pi/lead times torque constant, efficiency and current (ISO 3408-5).
-
-    Args:
-        command: of the drive [V].
-        joint: parameter record.
-    """
+def commanded_current(command: float, joint: Any) -> float:
+    """Current of the motor [A] at a command of its drive [V]."""
     p = joint.cylinder
     current = p.current_gain * command
     if p.current_limit > 0.0:
         current = min(max(current, -p.current_limit), p.current_limit)
+    return current
+
+
+@njit
+def screw_force(command: float, joint: Any) -> float:
+    """Force on the nut [N] at a command of the drive [V]."""
+    return nut_force(commanded_current(command, joint), joint)
+
+
+@njit
+def nut_force(current: float, joint: Any) -> float:
+    """Force on the nut [N]: 2 pi/lead times torque constant, efficiency and current [A] (ISO 3408-5)."""
+    p = joint.cylinder
     return 2.0 * math.pi / p.lead * p.efficiency * p.torque_constant * current
 
 

@@ -17,6 +17,7 @@ def check(rig: Checked, where: str) -> None:
     variant = rig.variants[f"{where}.valve"]
     _check_what_stands_in_series(rig, where, variant)
     _check_pulses(rig, where)
+    _check_switching(rig, where)
     if variant in ("none", "pump_controlled"):
         return
     overlaps, full = {"four_edges": (EDGES, "full_opening"), "flow_map": (("a", "b"), "full_travel")}.get(
@@ -48,17 +49,35 @@ def check(rig: Checked, where: str) -> None:
             )
 
 
+def _check_long_lines(rig: Checked, where: str, variant: str) -> None:
+    """Long lines lead from a valve's edges to the chambers, and nothing stands between them and these."""
+    if variant in ("none", "pump_controlled"):
+        raise InputError(
+            f"{rig.path}: {where}.hose: long lines lead from a valve's edges, which a valve of variant {variant} has "
+            "not; use variant: none"
+        )
+    if rig.variants[f"{where}.holding"] != "none":
+        raise InputError(
+            f"{rig.path}: {where}.hose: a holding valve behind a long line is not modelled; use variant: hose, or "
+            "holding: {variant: none}"
+        )
+
+
 def _check_what_stands_in_series(rig: Checked, where: str, variant: str) -> None:
     """Hoses and holding valves need a valve's edges to stand in series with, and oil."""
     for stage in ("holding", "hose"):
         if rig.variants[f"{where}.{stage}"] == "none":
             continue
+        if stage == "hose" and rig.variants[f"{where}.hose"] == "long_line":
+            _check_long_lines(rig, where, variant)
         if rig.variants[f"{where}.cylinder"] in ELECTRIC:
             raise InputError(
                 f"{rig.path}: {where}.{stage}: an electric actuator has no oil; use variant: none"
             )
         losses = (
-            [f"{name}_{side}" for name in ("resistance", "loss") for side in "ab"] if stage == "hose" else []
+            [f"{name}_{side}" for name in ("resistance", "loss") for side in "ab"]
+            if rig.variants[f"{where}.{stage}"] == "hose"
+            else []
         )
         lossy = [name for name in losses if rig.value(f"{where}.hose.{name}") > 0.0]
         if variant == "pump_controlled" and (stage == "holding" or lossy):
@@ -74,6 +93,24 @@ def _check_what_stands_in_series(rig: Checked, where: str, variant: str) -> None
                 f"{rig.path}: {where}.holding: at_a {ports[0]:g} and at_b {ports[1]:g} must be 0 or 1, one of them 1; "
                 "without any use variant: none"
             )
+
+
+def _check_switching(rig: Checked, where: str) -> None:
+    """A switching valve is switched by the command's voltage."""
+    if rig.variants[f"{where}.solenoid"] != "switching":
+        return
+    amplifier = rig.variants[f"{where}.amplifier"]
+    if amplifier != "none":
+        raise InputError(
+            f"{rig.path}: {where}.solenoid: a switching valve has no amplifier of variant {amplifier}; use "
+            "amplifier: {variant: none}"
+        )
+    threshold, limit = rig.value(f"{where}.solenoid.threshold"), rig.value(f"{where}.command.limit")
+    if not threshold <= limit:
+        raise InputError(
+            f"{rig.path}: {where}.solenoid: threshold ({threshold:g} V) lies beyond command.limit ({limit:g} V): the "
+            "valve would never switch"
+        )
 
 
 def _check_pulses(rig: Checked, where: str) -> None:

@@ -16,9 +16,7 @@ from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.probes import no_probe, probe_at, sample_at
 from hydrolek_drake.rollout.drive import Drive, driven_on
 from hydrolek_drake.rollout.kernel import (
-    arrived,
     inertia_at,
-    next_stretch,
     out_of_bounds,
     pulled,
     written,
@@ -60,6 +58,7 @@ from hydrolek_drake.rollout.lanes.view import (
 )
 from hydrolek_drake.rollout.rates import State, carried_on, turned
 from hydrolek_drake.rollout.rosenbrock import one_step
+from hydrolek_drake.rollout.stretches import arrived, next_stretch
 
 _L = LANES
 
@@ -87,10 +86,22 @@ def _loop(kind: Any, b: np.ndarray) -> None:
         voltage = command.drive_voltage(commanded, joint)
         law = lane_law(kind, b, TERMS * _L + lane)
         e, drive = driven_on(
-            d, s, volts, voltage, time, h, spool_steps_of(kind), early_of(kind), probe, probe_next, law, joint
+            d,
+            s,
+            volts,
+            voltage,
+            time,
+            h,
+            spool_steps_of(kind),
+            early_of(kind),
+            probe,
+            probe_next,
+            law,
+            None,
+            joint,
         )
         inertia = inertia_at(time, b[ROD * _L + lane], joint)
-        n = one_step(s, d.x, e.x, drive, time, h, inertia, probe, probe_next, law, near, joint)
+        n = one_step(s, d.x, e.x, drive, time, h, inertia, probe, probe_next, law, near, None, joint)
         played = sensor.played(play, n.q - n.tilt, joint)
         after = carried_on(near, n, joint)
         position, included = after.position, after.included
@@ -160,7 +171,7 @@ def integrate_lanes(
         probe_places: where the samples of each machine's inputs from outside begin among all, and how many it has,
             shape (lanes, 2).
         probe_values: samples, shape (all, 15); no rows without such inputs.
-        out: signals, shape (lanes, k, 8).
+        out: signals, shape (lanes, k, 9).
         done: rows written of each machine, shape (lanes,); fewer than its `rows` where one diverged at that row.
     """
     machines, held, steps = np.zeros((_L, 2)), np.full(_L, -1), np.zeros((most_steps, PLANNED, _L))
@@ -323,7 +334,7 @@ def _write(
         near = near_in(b, NEAR, lane)
         first, many = probe_places[lane]
         probe = probe_at(t, times[lane, 0], probe_spacing[lane], probe_values[first : first + many])
-        written(d, s, play, volts, time, inertia, probe, law, near, joint, out[lane, row])
+        written(d, s, play, volts, time, inertia, probe, law, near, None, joint, out[lane, row])
         if pull_time[lane] > 0.0 and row < last:
             share = 1.0 - math.exp((t - times[lane, row + 1]) / pull_time[lane])
             s, by = pulled(s, share, out[lane, row, 0], measured[lane, row])

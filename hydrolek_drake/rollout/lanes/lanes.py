@@ -10,6 +10,7 @@ import numpy as np
 
 from hydrolek_drake.compiled import read_only
 from hydrolek_drake.physics.law import MOST_TERMS
+from hydrolek_drake.physics.lines.hose import LONG_LINE
 from hydrolek_drake.physics.probes import NO_PROBE
 from hydrolek_drake.physics.records import JOINT, flat
 from hydrolek_drake.rollout import kernel
@@ -217,7 +218,9 @@ def _outside(lanes: Sequence[Run]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _in_lanes(run: Run, law: np.ndarray | None) -> bool:
-    """Whether there can be a loop over lanes for a machine."""
+    """Whether there can be a loop over lanes for a machine; long lines are not followed in one."""
+    if run.joint["hose"]["variant"][0] == LONG_LINE:
+        return False
     return (law is None or len(law) <= MOST_TERMS) and missing_number(run.joint) is None and _begins(run)
 
 

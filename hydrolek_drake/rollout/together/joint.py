@@ -81,7 +81,9 @@ def begins(
     d, s = drive_at(r, i), state_at(r, i, STATE)
     volts = r[i, COMMAND]
     voltage = command.drive_voltage(volts, joint)
-    e, drive = driven_on(d, s, volts, voltage, time, h, spool_steps, early, outside, outside, law, joint)
+    e, drive = driven_on(
+        d, s, volts, voltage, time, h, spool_steps, early, outside, outside, law, None, joint
+    )
     inertia = inertia_at(time, r[i, ROD], joint)
     go = h > 0.0
     put_drive(
@@ -96,7 +98,7 @@ def begins(
     )
     r[i, SPOOL], r[i, VOLTS], r[i, INERTIA] = d.x, drive, inertia
     near = near_at(r, i)
-    k, slope, _, _, drawn = rates(s, d.x, drive, time, inertia, outside, law, near, h, None, joint)
+    k, slope, _, _, drawn = rates(s, d.x, drive, time, inertia, outside, law, near, h, None, None, joint)
     put_state(r, i, RATES, k)
     put_slopes(r, i, slope)
     drag, share = through_oil(slope, h, inertia, joint)
@@ -165,7 +167,9 @@ def goes_on(
     """
     s, near, inertia = state_at(r, i, MIDDLE), near_at(r, i), r[i, INERTIA]
     slope, before = slopes_at(r, i), state_at(r, i, RATES)
-    m, _, _, _, drawn = rates(s, x, r[i, VOLTS], time, inertia, outside, law, near, h, slope.contact, joint)
+    m, _, _, _, drawn = rates(
+        s, x, r[i, VOLTS], time, inertia, outside, law, near, h, slope.contact, None, joint
+    )
     put_state(r, i, LATER, m)
     r[i, PUSH] = pushed(changed(m, before), slope, h, joint)
     _tell(r, i, s, m.w, inertia, drawn, near, time, joint)

@@ -15,8 +15,9 @@ from hydrolek_drake.physics.driven import driven_by
 from hydrolek_drake.physics.probes import probe_at
 from hydrolek_drake.physics.solenoid import steps_needed
 from hydrolek_drake.rollout.drive import acts_early
-from hydrolek_drake.rollout.kernel import SIGNALS, arrived, inertia_at, out_of_bounds, written
+from hydrolek_drake.rollout.kernel import SIGNALS, inertia_at, out_of_bounds, written
 from hydrolek_drake.rollout.rates import kept, turned
+from hydrolek_drake.rollout.stretches import arrived
 from hydrolek_drake.rollout.together.joint import begins, ends, goes_on, halfway
 from hydrolek_drake.rollout.together.joint_rows import (
     BIAS,
@@ -48,6 +49,9 @@ from hydrolek_drake.rollout.together.rates import (
 
 TOLD = (*SIGNALS, "drawn")
 """What is written of each joint; `drawn`: the flow from the supply [m^3/s]."""
+
+DRAWN_TOLD = len(SIGNALS)
+"""Its place."""
 
 
 @njit
@@ -244,7 +248,7 @@ def integrate_together(
             inertia = inertia_at(now, r[i, ROD], joint)
             volts = arrived(command_values[:, i], held[i], joint)
             told = out[row, i]
-            told[8] = written(
+            told[DRAWN_TOLD] = written(
                 d,
                 s,
                 r[i, PLAY],
@@ -254,6 +258,7 @@ def integrate_together(
                 outside,
                 own_law(laws, first, i),
                 near_at(r, i),
+                None,
                 joint,
                 told,
             )

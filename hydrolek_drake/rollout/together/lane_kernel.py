@@ -13,10 +13,11 @@ import numpy as np
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import command, load
 from hydrolek_drake.physics.probes import no_probe
-from hydrolek_drake.rollout.kernel import arrived, inertia_at, out_of_bounds, written
+from hydrolek_drake.rollout.kernel import inertia_at, out_of_bounds, written
 from hydrolek_drake.rollout.lanes.numbers import lane_array, lane_rows
 from hydrolek_drake.rollout.lanes.view import LANES
 from hydrolek_drake.rollout.rates import kept, turned
+from hydrolek_drake.rollout.stretches import arrived
 from hydrolek_drake.rollout.together.joint_rows import (
     BIAS,
     COMMAND,
@@ -33,7 +34,7 @@ from hydrolek_drake.rollout.together.joint_rows import (
     put_near,
     state_at,
 )
-from hydrolek_drake.rollout.together.kernel import next_stretch_of_all, put_payloads
+from hydrolek_drake.rollout.together.kernel import DRAWN_TOLD, next_stretch_of_all, put_payloads
 from hydrolek_drake.rollout.together.lane_programs import BLOCK, TIME, H, call_program
 from hydrolek_drake.rollout.together.rates import arm_begins, arm_equation, arm_goes_on, drawn_by_all
 
@@ -199,6 +200,10 @@ def _write(
         told, near, play, outside = out[row, i], near_at(r, i), r[i, PLAY], no_probe()
         if terms[i] > 0:
             law = laws[i, : terms[i]]
-            told[8] = written(d, s, play, volts, time, inertia, outside, law, near, joint, told)
+            told[DRAWN_TOLD] = written(
+                d, s, play, volts, time, inertia, outside, law, near, None, joint, told
+            )
         else:
-            told[8] = written(d, s, play, volts, time, inertia, outside, None, near, joint, told)
+            told[DRAWN_TOLD] = written(
+                d, s, play, volts, time, inertia, outside, None, near, None, joint, told
+            )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.compiled import read_only
+from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.bodies.serial_arm import moments_along, scratch
 from hydrolek_drake.physics.law import LAW, law_of
 from hydrolek_drake.physics.records import as_usual
@@ -115,7 +116,7 @@ class RunTogether:
         return self.told(told, done)
 
     def nothing(self) -> np.ndarray:
-        """Room for what is told. # (k, joints, 9)."""
+        """Room for what is told. # (k, joints, 10)."""
         return np.full((len(self.times), len(self.records), len(TOLD)), np.nan)
 
     def told(self, told: np.ndarray, done: int) -> Together:
@@ -155,7 +156,16 @@ class JointsTogether:
         Args:
             rig: the machine.
             joints: that move; all are hydraulic.
+
+        Raises:
+            InputError: one of them has long lines, whose waves are followed of joints that move alone.
         """
+        lined = [j for j in joints if rig.variant(j, "hose") == "long_line"]
+        if lined:
+            raise InputError(
+                f"rig {rig.name}: {lined[0]}.hose: long lines are followed of joints that move alone, and on the Drake "
+                "diagram; where joints move together use variant: hose"
+            )
         self._rig = rig
         self.joints = tuple(j for j in rig.joints if j in joints)
         self._places = [rig.joints.index(joint) for joint in self.joints]

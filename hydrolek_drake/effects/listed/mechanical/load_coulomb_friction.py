@@ -25,7 +25,7 @@ EFFECT = Effect(
     search={
         "force_N": Search("load_force", 0.5, (0.01, 0.06)),
     },
-    searched_on={"cylinder": ("electric_motor", "ball_screw"), "load": ("link",)},
+    searched_on={"cylinder": ("electric_motor", "ball_screw", "servo_screw"), "load": ("link",)},
     source="thesis (4.1), F_c; Janot, Gautier, Brunot, EMPS benchmark (2019)",
     confused_with={
         "cylinder.coulomb_friction": "seals rub at the rod, so that their moment follows the lever",

@@ -40,7 +40,7 @@ EFFECT = Effect(
         "coulomb_N": Search("load_force", 0.2, (0.005, -0.005), lowest=-0.2),
         "damping_N_s_per_m": Search("load_damping", 0.5, (0.01, -0.01), lowest=-0.5),
     },
-    searched_on={"cylinder": ("electric_motor", "ball_screw")},
+    searched_on={"cylinder": ("electric_motor", "ball_screw", "servo_screw")},
     source="Janot, Young, Gautier, Int. J. Control 90 (2017) 643: fatigue of the screw",
     confused_with={
         "load.offset_force": "an offset acts at rest too",

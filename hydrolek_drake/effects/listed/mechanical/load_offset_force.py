@@ -20,7 +20,7 @@ EFFECT = Effect(
     search={
         "force_N": Search("load_force", 0.5, (0.01, -0.01), lowest=-0.5),
     },
-    searched_on={"cylinder": ("electric_motor", "ball_screw")},
+    searched_on={"cylinder": ("electric_motor", "ball_screw", "servo_screw")},
     source="Janot, Gautier, Brunot, EMPS benchmark (2019): offset of the drive",
     confused_with={
         "load.friction_asymmetry": "an offset acts at rest too",

@@ -19,7 +19,7 @@ EFFECT = Effect(
     search={
         "damping_N_s_per_m": Search("load_damping", 1, (0.02, 0.1)),
     },
-    searched_on={"cylinder": ("electric_motor", "ball_screw")},
+    searched_on={"cylinder": ("electric_motor", "ball_screw", "servo_screw")},
     source="thesis (4.1), F_v",
     confused_with={
         "load.coulomb_friction": "dry friction does not grow with speed",
