@@ -16,7 +16,7 @@ from hydrolek_drake.diagnosis.search.by_continuation import (
     steps_for,
     traced,
 )
-from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut, enough_for
+from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.search.openings import Opening
 from hydrolek_drake.diagnosis.search.standing_in import standing_in
@@ -47,8 +47,7 @@ def enlarged(
     Returns:
         Whether the structure itself was fitted so much better meanwhile that it should be enlarged again.
     """
-    parent = opening.parent
-    enough = enough_for(bench)
+    parent, enough = opening.parent, opening.enough
     runners = _led_on(bench, opening, candidates, settings, cores)
     if runners and over_noise_of(runners[0]) > enough:
         runners = [*_farther(bench, runners[0], settings, cores), *runners]
@@ -58,7 +57,7 @@ def enlarged(
         runners = [*run(bench, runners[:1], settings.ended, cores, traced("first to the end")), *runners[1:]]
     better = None
     reached = min((over_noise_of(r) for r in runners), default=math.inf)
-    if reached > enough and parent.fit.over_noise > NOISE.at:
+    if reached > enough and parent.fit.over_noise > enough:
         if not parent.effects and not found.nominal_continued:
             better = continued_nominal(bench, parent, found, settings, cores)
             if better is not None:
@@ -84,7 +83,7 @@ def _led_on(
     """A race of free rollouts from where the structure was fitted, the best first."""
     parent = opening.parent
     begun, needed = Start(parent.effects, parent.values), gain_needed(parent.fit)
-    near = parent.fit.over_noise <= NOISE.at
+    near = parent.fit.over_noise <= opening.enough  # promises hold there
     entrants = [
         begun.with_addition(p.candidate, start)
         for number, p in enumerate(opening.free[: settings.entrants])
