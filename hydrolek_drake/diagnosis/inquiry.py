@@ -36,6 +36,11 @@ ASKED_FOR = (
     "missed by {predicted:.3g} times the noise, fitted too by {fitted:.3g} times"
 )
 
+BEHIND_THE_CUT = (
+    "behind the recorded supply pressure, where it was fitted for itself, the model leaves {left:.3g} times the noise of "
+    "the held-out data; what all of the machine leaves beyond that is in the pump's line, which no model tells for long"
+)
+
 SIGNALS_APART = (
     "no model comes near the noise of any signal, so that signals count by how far models are off from them: 'times "
     "the noise' is that of the one which they follow best ({told})"
@@ -134,7 +139,11 @@ class Inquiry:
         known = self._reported(known, kept)
         first = known.judged[0]
         if first.fitted_too is not None:
-            remarks = (*remarks, ASKED_FOR.format(predicted=first.over_noise, fitted=first.fitted_too))
+            behind = first.left_behind_cut
+            predicted = first.over_noise if behind is None else behind
+            remarks = (*remarks, ASKED_FOR.format(predicted=predicted, fitted=first.fitted_too))
+        elif first.left_behind_cut is not None and first.explains_ahead:
+            remarks = (*remarks, BEHIND_THE_CUT.format(left=first.left_behind_cut))
         conclusion, law = self._told(known, next(j for j in known.judged if j.hypothesis is best))
         if known.interrupted:
             remarks = (*remarks, INTERRUPTED)
