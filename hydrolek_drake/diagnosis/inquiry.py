@@ -36,10 +36,9 @@ ASKED_FOR = (
     "missed by {predicted:.3g} times the noise, fitted too by {fitted:.3g} times"
 )
 
-
 BEHIND_THE_CUT = (
-    "behind the recorded supply pressure, fitted for itself, the model leaves {left:.3g} times the noise of the held-out "
-    "data; what all of the machine leaves beyond that is in the pump's line, which no model tells for long"
+    "behind the recorded supply pressure, fitted for itself, the model leaves {left:.3g} times the noise of the "
+    "held-out data; what all of the machine leaves beyond that is in the pump's line, which no model tells for long"
 )
 
 SIGNALS_APART = (
