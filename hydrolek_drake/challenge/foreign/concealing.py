@@ -17,6 +17,9 @@ CLOSE = 0.75
 """An effect shows as much as was drawn, to within this factor."""
 FARTHEST = 5.0
 """Sizes change by so much from one try to the next."""
+WITHIN = 4.4
+"""A dead time up to so many times a machine's own may be what its data sheet, wrong by a factor of two, is taken for:
+a number of the nominal model, and nothing that it lacks."""
 LARGEST = 30.0
 """A concealed effect is at most so many times, and at least this part of, its nominal size."""
 
@@ -76,6 +79,12 @@ def sized(
         found = shown(scale)
         # a smaller loss would be within what a pump's displacement is known to
         enough = effect == "supply.pump_loss" and found > low
+        if effect == "command.delay":
+            late = _fields(own, base, plant, effect, scale, when)["late_s"]
+            if plant.delay + late <= WITHIN * plant.delay:
+                scale *= FARTHEST
+                continue
+            enough = found > low
         if enough or CLOSE * wanted < found < wanted / CLOSE:
             return _fields(own, base, plant, effect, scale, when), found
         by = wanted / found if math.isfinite(found) and found > 0.0 else 1.0 / FARTHEST
