@@ -1,7 +1,7 @@
 """Fits of the reference's model with one effect each to a recording: from where it stands, and through observers."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,15 +12,19 @@ from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.lockstep import descend, with_slopes
 from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.watching.knowledge import Knowledge
+from hydrolek_drake.watching.profiles import Rung
 from hydrolek_drake.watching.reference import Session
 from hydrolek_drake.watching.scanning import Scan
 from hydrolek_drake.watching.settings import (
+    BEHIND,
     CONTINUED,
     EXACT,
     FITTED,
     FURTHER,
+    LED,
     OBSERVED,
     RACED,
+    RETRIED,
     ROUNDS,
     TRIED,
     WORTH,
@@ -39,7 +43,12 @@ def fitted_on(places: list[Place], session: Session, rounds: int = ROUNDS) -> li
 
 
 def fits_of_effects(
-    session: Session, nominal: Place, scans: list[Scan], experiments: Sequence[Experiment], known: Knowledge
+    session: Session,
+    nominal: Place,
+    scans: list[Scan],
+    rungs: Mapping[str, Sequence[Rung]],
+    experiments: Sequence[Experiment],
+    known: Knowledge,
 ) -> dict[str, Place]:
     """Fits of the nominal model with one effect each, by the effect's path; of those alone that promise something.
 
@@ -47,39 +56,37 @@ def fits_of_effects(
         session: rig and reference.
         nominal: the model without any, fitted, with slopes.
         scans: what each effect promises beside it.
+        rungs: effects held at a few sizes; a fit begins at the best of them.
         experiments: of the recording.
         known: of the machine's own numbers.
     """
-    chosen = [scan for scan in scans if scan.gain > TRIED][:FITTED]
-    assert nominal.slopes is not None
-    values = nominal.problem.parameters.values(nominal.unit)
+    bench, cores, count = session.bench, session.cores, nominal.unit.size
+    best = {path: min(own, key=lambda rung: rung.place.objective).place for path, own in rungs.items() if own}
+    promising = {p: place for p, place in best.items() if nominal.objective - place.objective > TRIED}
+    chosen = sorted(promising, key=lambda path: promising[path].objective)[:FITTED]
+    candidates = {scan.candidate.size_path: scan.candidate for scan in scans}
     begun = []
-    for scan in chosen:
-        candidate = scan.candidate
-        problem = session.problem((candidate,), experiments, known)
-        moving = session.bench.movable((candidate,), problem.parameters)
-        unit = np.clip(problem.parameters.unit({**values, **scan.start}), 1e-6, 1.0 - 1e-6)
-        unit[: nominal.unit.size] = nominal.unit
-        slopes = np.full((len(nominal.slopes), unit.size), np.nan)
-        slopes[:, : nominal.unit.size] = nominal.slopes
-        begun.append(Place(problem, moving, unit, slopes=slopes))
-    ended = dict(
-        zip((scan.candidate.size_path for scan in chosen), fitted_on(begun, session, RACED), strict=True)
-    )
+    for path in chosen:
+        place = best[path]
+        assert place.slopes is not None
+        slopes = place.slopes.copy()
+        slopes[:, count:] = np.nan
+        moving = bench.movable((candidates[path],), place.problem.parameters)
+        begun.append(Place(place.problem, moving, place.unit, place.residuals, slopes))
+    led = descend(begun, LED, bench.pool, cores, worth=WORTH, share=1e-4, renewing=False)
+    ended = {
+        path: replace(place, slopes=start.slopes if place.slopes is None else place.slopes)
+        for path, place, start in zip(chosen, led, begun, strict=True)
+    }
     near = sorted(ended, key=lambda path: ended[path].objective)[:FURTHER]
-    ended |= dict(zip(near, fitted_on([ended[path] for path in near], session, RACED), strict=True))
-    better = {path: place for path, place in ended.items() if place.objective < nominal.objective}
-    first = sorted(better, key=lambda path: better[path].objective)[:EXACT]
-    again = [replace(better[path], slopes=None, ended=False, exact=False) for path in first]
-    better |= dict(zip(first, fitted_on(again, session), strict=True))
-    led = _by_observers(session, nominal, better, scans, experiments, known)
-    better, first = better | led, [*first, *led]
-    renewed = [_renewed(place, path in first, nominal.unit.size) for path, place in better.items()]
-    known_there = with_slopes(renewed, session.bench.pool, session.cores)
-    return dict(zip(better, known_there, strict=True))
+    again = [replace(ended[path], ended=False) for path in near]
+    raced = descend(again, RACED, bench.pool, cores, worth=WORTH, share=1e-4, behind=BEHIND)
+    for path, place in zip(near, raced, strict=True):
+        ended[path] = replace(place, slopes=ended[path].slopes if place.slopes is None else place.slopes)
+    return {path: place for path, place in ended.items() if place.objective < nominal.objective}
 
 
-def _by_observers(
+def by_observers(
     session: Session,
     nominal: Place,
     fits: dict[str, Place],
@@ -129,10 +136,49 @@ def _by_observers(
     return better
 
 
-def _renewed(place: Place, every: bool, known: int) -> Place:
-    """A place that asks for its slopes anew: for every one, or for those of the effect alone."""
-    if every or place.slopes is None:
-        return replace(place, slopes=None)
-    slopes = place.slopes.copy()
-    slopes[:, known:] = np.nan
-    return replace(place, slopes=slopes)
+def with_own_slopes(session: Session, fits: Mapping[str, Place], known: int) -> dict[str, Place]:
+    """Fits with slopes of where they ended: all of the best ones, and of the others those of the effect alone.
+
+    Args:
+        session: rig and reference.
+        fits: by the effect's path.
+        known: how many numbers are the machine's own.
+    """
+    best = sorted(fits, key=lambda path: fits[path].objective)[:EXACT]
+    begun = []
+    for path, place in fits.items():
+        slopes = None
+        if path not in best and place.slopes is not None:
+            slopes = place.slopes.copy()
+            slopes[:, known:] = np.nan
+        begun.append(replace(place, slopes=slopes))
+    return dict(zip(fits, with_slopes(begun, session.bench.pool, session.cores), strict=True))
+
+
+def without_effects(
+    session: Session, nominal: Place, fits: Mapping[str, Place], scale: float
+) -> Place | None:
+    """The nominal model where the best fits with an effect have its own numbers, if it is lower there; else None.
+
+    Over free rollouts the squares have local minima, and what led out of one may be the way, not the effect.
+
+    Args:
+        session: rig and reference.
+        nominal: the model without any, fitted.
+        fits: of the model with one effect each.
+        scale: squares that count as one.
+    """
+    count, bench = nominal.unit.size, session.bench
+    best = sorted(fits.values(), key=lambda place: place.objective)[:RETRIED]
+    begun = [
+        Place(nominal.problem, nominal.moving, place.unit[:count], slopes=place.slopes[:, :count])
+        for place in best
+        if place.slopes is not None and place.objective < nominal.objective - TRIED * scale
+    ]
+    if not begun:
+        return None
+    led = descend(begun, LED, bench.pool, session.cores, worth=WORTH, share=1e-4, renewing=False)
+    found = min(led, key=lambda place: place.objective)
+    if found.objective >= nominal.objective - TRIED * scale:
+        return None
+    return fitted_on([replace(found, slopes=None, ended=False)], session)[0]

@@ -216,9 +216,11 @@ def _rule(watched: Watched) -> str:
         f"{ratio(healthy.inflation)} times what chance gives, by which thresholds are raised."
     )
     return (
-        f"<p class='other'>An effect is beyond its threshold where its gain, the fall of the squares against the "
-        f"reference, is more than chance would bring: all tests of all recordings together give a false alarm with a "
-        f"probability of {watched.rule.false_alarms:g} at most. {watched.rule.persistence} in a row are an alarm."
+        f"<p class='other'>The likelihood ratios of recordings with and without an effect add up; the alarm is raised "
+        f"where they exceed what leaves a healthy machine's series any alarm with a probability of "
+        f"{watched.rule.false_alarms:g} at most. One recording alone is no alarm, and one that tells nothing changes "
+        f"nothing. By itself a recording is beyond its threshold where its gain, the fall of the squares against the "
+        f"reference, is more than chance brings in all tests of all recordings."
         f"{lone}</p>"
     )
 
