@@ -20,7 +20,7 @@ from scipy.stats import chi2, norm
 from hydrolek_drake.diagnosis.settings import GAINS, NOISE
 from hydrolek_drake.watching.asking import OWN_NUMBERS, Answer, EffectTold
 from hydrolek_drake.watching.evidence import Evidence, as_one_number, bounded, by_chance, sizes_by
-from hydrolek_drake.watching.likelihood import Profile
+from hydrolek_drake.watching.fitting.likelihood import Profile
 from hydrolek_drake.watching.settings import FALSE_ALARMS, LAST, TOGETHER
 
 UNLISTED = "unlisted"
@@ -191,6 +191,36 @@ def _ratios(told: EffectTold, healthy: tuple[float, bool] | None, tempered: floa
     return sizes_by(*healthy).ratios(Profile(told.strengths, rises), tempered)
 
 
+@dataclass(frozen=True)
+class Share:
+    """Evidence for one effect after a recording.
+
+    Attributes:
+        share: of what an alarm asks for; above 1 it is raised.
+        since: number of the recording with which it begins.
+    """
+
+    share: float
+    since: int
+
+
+def evidence_after(judgements: Sequence[Judgement], rule: AlarmRule) -> list[dict[str, Share]]:
+    """Evidence after each recording, by effect (`key_of`).
+
+    Args:
+        judgements: of the recordings, in the order of time.
+        rule: of the alarm.
+    """
+    evidence: dict[str, Evidence] = {}
+    found = []
+    for judgement in judgements:
+        for key, ratios in judgement.ratios.items():
+            evidence.setdefault(key, Evidence()).add(ratios, judgement.number)
+        asked_for = rule.asked_for(len(judgement.ratios))
+        found.append({key: Share(each.total / asked_for, each.since) for key, each in evidence.items()})
+    return found
+
+
 def alarm_of(answers: Sequence[Answer], judgements: Sequence[Judgement], rule: AlarmRule) -> Alarm | None:
     """The first alarm of a series, named by all recordings since it began; None for none.
 
@@ -199,18 +229,13 @@ def alarm_of(answers: Sequence[Answer], judgements: Sequence[Judgement], rule: A
         judgements: of them.
         rule: of the alarm.
     """
-    evidence: dict[str, Evidence] = {}
-    raised = -1
-    for judgement in judgements:
-        raised += 1
-        for key, ratios in judgement.ratios.items():
-            evidence.setdefault(key, Evidence()).add(ratios, judgement.number)
-        beyond = {k for k, e in evidence.items() if e.total > rule.asked_for(len(judgement.ratios))}
-        if beyond:
-            break
-    else:
+    after = evidence_after(judgements, rule)
+    raised = next((i for i, shares in enumerate(after) if any(s.share > 1.0 for s in shares.values())), None)
+    if raised is None:
         return None
-    strongest = max(beyond, key=lambda key: evidence[key].total)
+    evidence = after[raised]
+    beyond = {key for key, each in evidence.items() if each.share > 1.0}
+    strongest = max(beyond, key=lambda key: evidence[key].share)
     numbers = [judgement.number for judgement in judgements]
     since = next(i for i, number in enumerate(numbers) if number >= evidence[strongest].since)
     later = [i for i in range(since, len(answers)) if judgements[i].beyond] or list(range(since, raised + 1))

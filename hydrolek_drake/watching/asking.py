@@ -15,20 +15,22 @@ from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.replay.display import display_unit
-from hydrolek_drake.watching.beginning import nominal_on
 from hydrolek_drake.watching.curves import curves_of
-from hydrolek_drake.watching.effect_fits import (
+from hydrolek_drake.watching.fitting.around import around
+from hydrolek_drake.watching.fitting.beginning import nominal_on
+from hydrolek_drake.watching.fitting.effect_fits import (
     by_observers,
     fits_of_effects,
     fitted_on,
     with_own_slopes,
     without_effects,
 )
+from hydrolek_drake.watching.fitting.likelihood import SizeTold, of_branches
+from hydrolek_drake.watching.fitting.profiles import profile_of, rungs_of, without
+from hydrolek_drake.watching.fitting.rungs import Rung
+from hydrolek_drake.watching.fitting.scanning import Scan, scanned, size_of, strengths
 from hydrolek_drake.watching.knowledge import Knowledge
-from hydrolek_drake.watching.likelihood import SizeTold, of_branches
-from hydrolek_drake.watching.profiles import Rung, around, profile_of, rungs_of, without
 from hydrolek_drake.watching.reference import Session
-from hydrolek_drake.watching.scanning import Scan, scanned, size_of, strengths
 from hydrolek_drake.watching.settings import BEGUN
 
 OWN_NUMBERS = "machine.own_numbers"

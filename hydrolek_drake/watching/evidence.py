@@ -17,8 +17,11 @@ import numpy as np
 from scipy.special import ndtr
 from scipy.stats import chi2
 
-from hydrolek_drake.watching.likelihood import Profile
+from hydrolek_drake.watching.fitting.likelihood import Profile
 from hydrolek_drake.watching.settings import BEYOND, FALLS, GROWS, MISHAP, OCTAVES, STAYS
+
+MOST = 1e200
+"""Evidence above this is not told apart: so near the largest number that there is."""
 
 
 @dataclass(frozen=True)
@@ -135,12 +138,12 @@ class Evidence:
                 np.zeros(count, dtype=int),
             )
         ways = _followers(count)
-        self._parts = ratios * (self._parts @ ways + 1.0 / (number * (number + 1) * count))
+        self._parts = np.minimum(ratios * (self._parts @ ways + 1.0 / (number * (number + 1) * count)), MOST)
         self.total = float(self._parts.sum())
         courses = self._best[:, None] * ways
         from_one, before = courses.max(axis=0), self._begun[np.argmax(courses, axis=0)]
         self._begun = np.where(from_one > 1.0 / count, before, number)
-        self._best = ratios * np.maximum(from_one, 1.0 / count)
+        self._best = np.minimum(ratios * np.maximum(from_one, 1.0 / count), MOST)
         self.since = int(self._begun[int(np.argmax(self._best))])
 
 

@@ -181,18 +181,22 @@ def _last(watched: Watched) -> str:
 def _recordings(watched: Watched) -> str:
     head = (
         "<tr><th>time</th><th class='text'>from</th><th class='text'>recording</th><th>left / noise</th>"
-        "<th class='text'>best effect</th><th>gain</th><th class='text'>beyond</th></tr>"
+        "<th class='text'>best effect</th><th>gain</th><th class='text'>beyond</th>"
+        "<th class='text'>most evidence, over what an alarm asks for</th></tr>"
     )
-    rows = []
+    rows, evidence = [], watched.evidence
     for each, judgement in zip(watched.asked, watched.judgements, strict=True):
         assert each.answer is not None
         best = each.answer.effects[0]
         beyond = " class='beyond'" if judgement.beyond else ""
+        key, share = max(evidence[each.digest].items(), key=lambda item: item[1])
+        told = f"{share:.2g}" if share < 100.0 else "over 100"
         rows.append(
             f"<tr{beyond}><td>{each.stamp.iso}</td><td class='text'>{each.stamp.source}</td><td class='text path'>"
             f"<a href='#recording' data-id='{each.digest}'>{html.escape(Path(each.recording).name)}</a></td>"
             f"<td>{ratio(each.answer.left)}</td><td class='text'>{html.escape(best.effect)}</td>"
-            f"<td>{best.gain:.1f}</td><td class='text'>{'yes' if judgement.beyond else ''}</td></tr>"
+            f"<td>{best.gain:.1f}</td><td class='text'>{'yes' if judgement.beyond else ''}</td>"
+            f"<td class='text'>{told}, {html.escape(key)}</td></tr>"
         )
     return f"<table>{head}{''.join(rows)}</table>" if rows else "<p class='other'>None.</p>"
 

@@ -24,8 +24,8 @@ CHANGED = 40
 """Marquardt steps of these at most: from elsewhere in the range of a load, twelve were not enough (bench, three of four
 recordings)."""
 
-ROUNDS = 5
-"""Marquardt steps of the best effects at most, which go on from other fits."""
+ROUNDS = 16
+"""Marquardt steps of the best effect at most, which goes on from a race, and of other fits that go on."""
 
 LEFT_OUT = 6
 """So many reference recordings are each asked by what the others tell: enough to see how a healthy machine varies."""
@@ -41,7 +41,7 @@ LED = 4
 """Steps of every fitted effect with slopes that are corrected by rollouts: it begins at the best of the sizes at which
 it was held."""
 
-RACED = 6
+RACED = 3
 """Steps of the `FURTHER` best of these, with slopes computed anew where those do not hold."""
 
 BEHIND = 0.2
@@ -81,7 +81,10 @@ BEGUN = 3
 """So often at most effects are tried beside a nominal model: a fit with one may have led it to a lower place."""
 
 RETRIED = 3
-"""So many of the best fits lead the nominal model."""
+"""So many of the best fits lead the nominal model, ..."""
+
+MOST_OF = 0.5
+"""... which stays where it was if it takes less than this share of what the best of them gained: an effect is there."""
 
 HELD_AT = 2.0
 """An effect is held so many standard deviations, by its slope, from where that has it: where its interval would end."""
@@ -98,6 +101,9 @@ LIKELY = 2.0
 DAMPED = 1e-4
 """Damping of the steps with which own numbers follow, over that of a fit's first one: their slopes are good, and they
 have begun at what those promise."""
+
+NEGLIGIBLE = 0.05
+"""They end where one promises less than this share of how far it is behind the best of all effects."""
 
 SHORTER = 1e4
 """A step that leads up is tried again with so many times the damping: with that of a fit's first one."""

@@ -10,8 +10,8 @@ import pytest
 from hydrolek_drake.watching.alarms import AlarmRule, Healthy, alarm_of, judged
 from hydrolek_drake.watching.asking import Answer, EffectTold
 from hydrolek_drake.watching.evidence import Evidence, bounded, sizes_by
+from hydrolek_drake.watching.fitting.likelihood import Branch, Profile, of_branches
 from hydrolek_drake.watching.knowledge import with_drift
-from hydrolek_drake.watching.likelihood import Branch, Profile, of_branches
 from hydrolek_drake.watching.settings import OCTAVES
 from hydrolek_drake.watching.stamps import stamp_of
 from hydrolek_drake.watching.trends import reached, trend_of

@@ -11,10 +11,10 @@ from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.lockstep import descend, with_slopes
 from hydrolek_drake.identification.least_squares.place import Place, fit_of
+from hydrolek_drake.watching.fitting.rungs import Rung
+from hydrolek_drake.watching.fitting.scanning import Scan
 from hydrolek_drake.watching.knowledge import Knowledge
-from hydrolek_drake.watching.profiles import Rung
 from hydrolek_drake.watching.reference import Session
-from hydrolek_drake.watching.scanning import Scan
 from hydrolek_drake.watching.settings import (
     BEHIND,
     CONTINUED,
@@ -22,6 +22,7 @@ from hydrolek_drake.watching.settings import (
     FITTED,
     FURTHER,
     LED,
+    MOST_OF,
     OBSERVED,
     RACED,
     RETRIED,
@@ -31,15 +32,18 @@ from hydrolek_drake.watching.settings import (
 )
 
 
-def fitted_on(places: list[Place], session: Session, rounds: int = ROUNDS) -> list[Place]:
+def fitted_on(
+    places: list[Place], session: Session, rounds: int = ROUNDS, behind: float = 0.0
+) -> list[Place]:
     """Fits continued until no step promises anything that counts.
 
     Args:
         places: where they stand.
         session: rig and reference.
         rounds: so many steps at most.
+        behind: a fit ends where a step promises less than this share of how far it is behind the best.
     """
-    return descend(places, rounds, session.bench.pool, session.cores, worth=WORTH, share=1e-4)
+    return descend(places, rounds, session.bench.pool, session.cores, worth=WORTH, share=1e-4, behind=behind)
 
 
 def fits_of_effects(
@@ -74,15 +78,16 @@ def fits_of_effects(
         moving = bench.movable((candidates[path],), place.problem.parameters)
         begun.append(Place(place.problem, moving, place.unit, place.residuals, slopes))
     led = descend(begun, LED, bench.pool, cores, worth=WORTH, share=1e-4, renewing=False)
-    ended = {
-        path: replace(place, slopes=start.slopes if place.slopes is None else place.slopes)
-        for path, place, start in zip(chosen, led, begun, strict=True)
-    }
+    ended = dict(zip(chosen, led, strict=True))
     near = sorted(ended, key=lambda path: ended[path].objective)[:FURTHER]
     again = [replace(ended[path], ended=False) for path in near]
-    raced = descend(again, RACED, bench.pool, cores, worth=WORTH, share=1e-4, behind=BEHIND)
-    for path, place in zip(near, raced, strict=True):
-        ended[path] = replace(place, slopes=ended[path].slopes if place.slopes is None else place.slopes)
+    raced = fitted_on(again, session, RACED, BEHIND)
+    ended |= dict(zip(near, raced, strict=True))
+    first = sorted(ended, key=lambda path: ended[path].objective)[:EXACT]
+    ended |= dict(zip(first, fitted_on([ended[path] for path in first], session), strict=True))
+    for path, place, start in zip(chosen, led, begun, strict=True):
+        told = (ended[path].slopes, place.slopes, start.slopes)
+        ended[path] = replace(ended[path], slopes=next(each for each in told if each is not None))
     return {path: place for path, place in ended.items() if place.objective < nominal.objective}
 
 
@@ -158,9 +163,10 @@ def with_own_slopes(session: Session, fits: Mapping[str, Place], known: int) -> 
 def without_effects(
     session: Session, nominal: Place, fits: Mapping[str, Place], scale: float
 ) -> Place | None:
-    """The nominal model where the best fits with an effect have its own numbers, if it is lower there; else None.
+    """The nominal model where the best fits with an effect have its own numbers, if that is what they gained; or None.
 
-    Over free rollouts the squares have local minima, and what led out of one may be the way, not the effect.
+    Over free rollouts the squares have local minima, and what led out of one may be the way, not the effect: then the
+    nominal model takes most of the gain there.
 
     Args:
         session: rig and reference.
@@ -179,6 +185,7 @@ def without_effects(
         return None
     led = descend(begun, LED, bench.pool, session.cores, worth=WORTH, share=1e-4, renewing=False)
     found = min(led, key=lambda place: place.objective)
-    if found.objective >= nominal.objective - TRIED * scale:
+    gained, taken = nominal.objective - best[0].objective, nominal.objective - found.objective
+    if taken < max(MOST_OF * gained, TRIED * scale):
         return None
     return fitted_on([replace(found, slopes=None, ended=False)], session)[0]

@@ -19,8 +19,8 @@ from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.acceptance import DIVERGED
 from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.identification.rolling import Request, residuals_at
+from hydrolek_drake.watching.fitting.likelihood import Branch
 from hydrolek_drake.watching.knowledge import Knowledge
-from hydrolek_drake.watching.likelihood import Branch
 from hydrolek_drake.watching.reference import Session
 from hydrolek_drake.watching.settings import BENT, FAINT, MOST_SUDDEN, MOST_TIMES
 
