@@ -24,7 +24,7 @@ CHANGED = 40
 """Marquardt steps of these at most: from elsewhere in the range of a load, twelve were not enough (bench, three of four
 recordings)."""
 
-ROUNDS = 16
+ROUNDS = 8
 """Marquardt steps of the best effect at most, which goes on from a race, and of other fits that go on."""
 
 LEFT_OUT = 6
@@ -37,7 +37,7 @@ race of the diagnosis."""
 CONTINUED = 32
 """Steps at the end of these at most."""
 
-LED = 4
+LED = 6
 """Steps of every fitted effect with slopes that are corrected by rollouts: it begins at the best of the sizes at which
 it was held."""
 
@@ -48,7 +48,7 @@ BEHIND = 0.2
 """One of them ends where a step promises less than this share of how far it is behind the best: it would need five more
 such steps to become the best."""
 
-FURTHER = 3
+FURTHER = 2
 
 WORTH = 0.5
 """A fit ends where a step promises less than so many squares: less than a standard deviation of any number."""
@@ -59,9 +59,6 @@ nothing, where the scan's own likelihood tells its size."""
 
 FITTED = 5
 """So many effects of a recording are fitted at most: the most promising ones."""
-
-EXACT = 1
-"""Of so many, the best ones, every slope is computed anew where the fit ended."""
 
 MOST_TIMES = 8
 """Places of an effect's own moment at which it is tried."""
@@ -102,8 +99,12 @@ DAMPED = 1e-4
 """Damping of the steps with which own numbers follow, over that of a fit's first one: their slopes are good, and they
 have begun at what those promise."""
 
-NEGLIGIBLE = 0.05
+NEGLIGIBLE = 0.1
 """They end where one promises less than this share of how far it is behind the best of all effects."""
+
+HOPELESS = 16.0
+"""An effect is not held at further sizes where another one gains more than so many squares, four standard deviations,
+and more than `FURTHER_OUT` times as much as it does or promises: it imitates that one at most."""
 
 SHORTER = 1e4
 """A step that leads up is tried again with so many times the damping: with that of a fit's first one."""

@@ -18,7 +18,6 @@ from hydrolek_drake.watching.reference import Session
 from hydrolek_drake.watching.settings import (
     BEHIND,
     CONTINUED,
-    EXACT,
     FITTED,
     FURTHER,
     LED,
@@ -83,8 +82,9 @@ def fits_of_effects(
     again = [replace(ended[path], ended=False) for path in near]
     raced = fitted_on(again, session, RACED, BEHIND)
     ended |= dict(zip(near, raced, strict=True))
-    first = sorted(ended, key=lambda path: ended[path].objective)[:EXACT]
-    ended |= dict(zip(first, fitted_on([ended[path] for path in first], session), strict=True))
+    if near:
+        first = min(near, key=lambda path: ended[path].objective)
+        [ended[first]] = fitted_on([ended[first]], session)
     for path, place, start in zip(chosen, led, begun, strict=True):
         told = (ended[path].slopes, place.slopes, start.slopes)
         ended[path] = replace(ended[path], slopes=next(each for each in told if each is not None))
@@ -142,19 +142,17 @@ def by_observers(
 
 
 def with_own_slopes(session: Session, fits: Mapping[str, Place], known: int) -> dict[str, Place]:
-    """Fits with slopes of where they ended: all of the best ones, and of the others those of the effect alone.
+    """Fits with slopes of the effect where they ended; those of own numbers are such as led there.
 
     Args:
         session: rig and reference.
         fits: by the effect's path.
         known: how many numbers are the machine's own.
     """
-    best = sorted(fits, key=lambda path: fits[path].objective)[:EXACT]
     begun = []
-    for path, place in fits.items():
-        slopes = None
-        if path not in best and place.slopes is not None:
-            slopes = place.slopes.copy()
+    for place in fits.values():
+        slopes = None if place.slopes is None else place.slopes.copy()
+        if slopes is not None:
             slopes[:, known:] = np.nan
         begun.append(replace(place, slopes=slopes))
     return dict(zip(fits, with_slopes(begun, session.bench.pool, session.cores), strict=True))

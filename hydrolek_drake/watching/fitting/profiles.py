@@ -26,6 +26,7 @@ from hydrolek_drake.watching.settings import (
     FITTED,
     FURTHER_OUT,
     HELD_AT,
+    HOPELESS,
     LIKELY,
     MOST_RISE,
     TRIED,
@@ -63,10 +64,16 @@ def rungs_of(
         own = {
             scan.candidate.size_path: [r for r in ended if r.candidate is scan.candidate] for scan in scans
         }
+        gains = {
+            path: none[path] - min((r.place.objective for r in each), default=np.inf)
+            for path, each in own.items()
+        }
+        most_gain = max(gains.values())
         farther = [
             (scan, strong)
             for scan in scans
             for path in [scan.candidate.size_path]
+            if most_gain < max(HOPELESS * scale, FURTHER_OUT * max(gains[path], scan.gain))
             for strong in _farther(scan, own[path], none[path], scale)
         ]
         if not farther:

@@ -91,6 +91,11 @@ def scanned(
     values = place.problem.parameters.values(place.unit)
     candidates = [c for c in session.candidates if c not in beside and not redundant(beside, c)]
     tried = {c.size_path: _tried(c) for c in candidates}
+    if beside:  # what is left there is small: the least of each size is near enough
+        tried = {
+            c.size_path: own if c.sudden else _least(c, own)
+            for c, own in zip(candidates, tried.values(), strict=True)
+        }
     # one step for all: what an effect changes must not be what a shorter step of its own does
     requests = [Request(place.problem.with_step(LOCATING.coarse), (place.unit,))]
     for candidate in candidates:
@@ -144,6 +149,13 @@ def _tried(candidate: Candidate) -> list[dict[str, float]]:
         if candidate.size.lower <= faint <= candidate.size.upper:
             found.append(at_size(candidate, starts[far], faint))
     return found
+
+
+def _least(candidate: Candidate, starts: list[dict[str, float]]) -> list[dict[str, float]]:
+    """Of the places that differ by their size alone, the least."""
+    size = candidate.size_path
+    groups = _groups(candidate, starts).values()
+    return [starts[min(own, key=lambda i: abs(strength(candidate, starts[i][size])))] for own in groups]
 
 
 def _faint(
