@@ -222,6 +222,17 @@ class Workbench:
             **known,
         )
 
+    def rig_in(self, hypothesis: Hypothesis, recording: str) -> Rig:
+        """The machine with a structure's values, as it was in a recording: in all alike.
+
+        Args:
+            hypothesis: the structure, fitted.
+            recording: its name.
+        """
+        from hydrolek_drake.diagnosis.structures.as_rig import rig_of  # which needs what a hypothesis is
+
+        return rig_of(self.rig, hypothesis)
+
     @staticmethod
     def movable(effects: Sequence[Addition], parameters: ParameterSet) -> np.ndarray:
         """Parameters that least squares can move: all but moments, see `intervals.last_numbers`. # (n,)."""
