@@ -214,7 +214,7 @@ def _told(
         low=low,
         high=high,
         unit=unit_at(session.rig, candidate.joint, unit),
-        gain=-profile.least,
+        gain=0.0 - profile.least,
         parameters=len(candidate.free),
         left=left,
         others=others,

@@ -104,7 +104,8 @@ def page(watched: Watched, limits: Sequence[Limit] = (), folder: Path | None = N
         "<div id='recording'><p class='other'>Click a point, or a recording of the table, to see it here.</p></div>",
         "<h2>Every effect, last recording</h2>",
         _last(watched),
-        "<h2>Recordings</h2>",
+        "<h2>Recordings</h2><p class='other'>Evidence: the largest of all effects, of this recording and those before "
+        "it, over what an alarm asks for.</p>",
         _recordings(watched),
         _broken(watched),
         "<h2>The rule</h2>",
@@ -182,7 +183,7 @@ def _recordings(watched: Watched) -> str:
     head = (
         "<tr><th>time</th><th class='text'>from</th><th class='text'>recording</th><th>left / noise</th>"
         "<th class='text'>best effect</th><th>gain</th><th class='text'>beyond</th>"
-        "<th class='text'>most evidence, over what an alarm asks for</th></tr>"
+        "<th>evidence</th><th class='text'>for</th></tr>"
     )
     rows, evidence = [], watched.evidence
     for each, judgement in zip(watched.asked, watched.judgements, strict=True):
@@ -196,7 +197,7 @@ def _recordings(watched: Watched) -> str:
             f"<a href='#recording' data-id='{each.digest}'>{html.escape(Path(each.recording).name)}</a></td>"
             f"<td>{ratio(each.answer.left)}</td><td class='text'>{html.escape(best.effect)}</td>"
             f"<td>{best.gain:.1f}</td><td class='text'>{'yes' if judgement.beyond else ''}</td>"
-            f"<td class='text'>{told}, {html.escape(key)}</td></tr>"
+            f"<td>{told}</td><td class='text path'>{html.escape(key)}</td></tr>"
         )
     return f"<table>{head}{''.join(rows)}</table>" if rows else "<p class='other'>None.</p>"
 
