@@ -180,21 +180,3 @@ def test_joints_that_move_together_have_records_of_their_own_in_each_recording(t
     assert np.array_equal(found[0], np.concatenate([first, second]))
     assert np.array_equal(found[1], np.concatenate([first, moved]))
     assert not np.allclose(moved, second)
-
-
-@pytest.mark.long("the reference of two joints that move together is fitted: minutes")
-def test_two_joints_that_move_together_carry_another_load_each_time(two_joints, recorded_together, tmp_path):
-    reference, later = [], []
-    for number, kilograms in enumerate((0.0, 8.0, 4.0, 10.0)):
-        payload = {"joints.right_j3.effects.load.payload.mass_kg": kilograms}
-        recording, _ = recorded_together(two_joints.with_values(payload), 20 + number, seconds=8.0)
-        path = tmp_path / f"run_2026-03-{number + 1:02d}.csv"
-        kept = {name: s for name, s in recording.signals.items() if not name.startswith("supply")}
-        units = {name: "V" if name.endswith("command") else "rad" for name in kept}
-        write_signals(path, recording.time, kept, units)
-        (later if number == 3 else reference).append(path)
-    watched = watch(two_joints, reference, later, cores=1, changes=("load.payload",))
-    assert watched.alarm is None
-    [answer] = watched.answers
-    mass = answer.own["joints.right_j3.effects.load.payload.mass_kg"]
-    assert mass == pytest.approx(10.0, abs=3.0)

@@ -210,7 +210,7 @@ class Workbench:
         prior[: len(self.nominal)] = SPREAD
         if kind is Problem and isinstance(parameters, WithWindows):
             kind = LostProblem
-        known = {"known": self._moving} if kind is ProblemTogether else {}
+        known = {"known": self._moving} if issubclass(kind, ProblemTogether) else {}
         return kind(
             parameters,
             experiments or self.training,
