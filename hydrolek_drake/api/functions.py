@@ -18,7 +18,7 @@ from hydrolek_drake.replay.comparison import compare
 from hydrolek_drake.replay.replay import replay as run_replay
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs import load_rig as load
-from hydrolek_drake.watching.settings import FALSE_ALARMS, PERSISTENCE
+from hydrolek_drake.watching.settings import FALSE_ALARMS
 
 if TYPE_CHECKING:
     from hydrolek_drake.api.recordings import Given
@@ -174,7 +174,6 @@ def watch(
     changes: Sequence[str] = (),
     limits: Mapping[str, float | str] | None = None,
     false_alarms: float = FALSE_ALARMS,
-    persistence: int = PERSISTENCE,
     workers: int | None = None,
     progress: bool = True,
 ) -> WatchResult:
@@ -190,7 +189,6 @@ def watch(
         changes: effects and own numbers that change between recordings of the healthy machine, such as its load.
         limits: effect -> size that it must not reach, in SI or as text with a unit.
         false_alarms: probability of any false alarm in the whole series.
-        persistence: recordings in a row beyond the threshold that are an alarm.
         workers: threads; as many as there are cores by default.
         progress: whether to show what is done.
 
@@ -215,7 +213,7 @@ def watch(
             folder=folder,
             drift=drifts,
             changes=changes,
-            rule=AlarmRule(false_alarms, persistence),
+            rule=AlarmRule(false_alarms),
             cores=workers,
             say=tell,
         )

@@ -41,7 +41,9 @@ class WatchResult(Result):
 
     def to_pandas(self) -> "pandas.DataFrame":
         """One row a recording and effect; columns as in `watch.parquet` (`watching.table.COLUMNS`)."""
-        return pandas_module().DataFrame(table_of([*self.watched.reference, *self.watched.seen]))
+        return pandas_module().DataFrame(
+            table_of([*self.watched.reference, *self.watched.seen], self.watched.evidence)
+        )
 
     def plot(self, effect: str | None = None) -> Any:
         """An effect's size over time with trend and limits, as a Plotly figure.

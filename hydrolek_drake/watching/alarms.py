@@ -1,22 +1,27 @@
-"""When a difference is an alarm: a test whose false alarms over a whole series are bounded.
+"""When a difference is an alarm: evidence over recordings, whose false alarms over a whole series are bounded.
 
-If nothing changed, twice the log-likelihood ratio of an effect with k numbers is at most distributed as chi squared
-with k degrees of freedom (Wilks, Annals of Mathematical Statistics 9, 1938; less where sizes are one-sided: Chernoff,
-the same 25, 1954).
-The n-th recording of a series is granted the share 1 / (n (n + 1)) of the false alarms, which sum to one however long
-it becomes, and every test of that recording an equal part of it (Bonferroni), which holds however the tests depend on
-each other: all lean on the same reference.
+What recordings say of each effect adds up (`evidence`), and an alarm is raised where it exceeds the number of effects
+over the probability of a false alarm that is granted (Bonferroni): this holds however the tests depend on each other,
+which all lean on the same reference.
+
+By itself a recording is beyond a threshold where its gain is more than chance brings. If nothing changed, twice the
+log-likelihood ratio of an effect with k numbers is at most distributed as chi squared with k degrees of freedom (Wilks,
+Annals of Mathematical Statistics 9, 1938; less where sizes are one-sided: Chernoff, the same 25, 1954). The n-th
+recording is granted the share 1 / (n (n + 1)) of the false alarms, which sum to one, and every test of it an equal
+part.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.stats import chi2, norm
 
-from hydrolek_drake.diagnosis.settings import NOISE
+from hydrolek_drake.diagnosis.settings import GAINS, NOISE
 from hydrolek_drake.watching.asking import OWN_NUMBERS, Answer, EffectTold
-from hydrolek_drake.watching.settings import FALSE_ALARMS, PERSISTENCE, TOGETHER
+from hydrolek_drake.watching.evidence import Evidence, as_one_number, bounded, by_chance, sizes_by
+from hydrolek_drake.watching.fitting.likelihood import Profile
+from hydrolek_drake.watching.settings import FALSE_ALARMS, LAST, TOGETHER
 
 UNLISTED = "unlisted"
 """Stands for: something grows that no single effect explains."""
@@ -28,15 +33,17 @@ class AlarmRule:
 
     Attributes:
         false_alarms: probability of any alarm in a whole series of a healthy machine.
-        persistence: recordings in a row that must be beyond the threshold.
     """
 
     false_alarms: float = FALSE_ALARMS
-    persistence: int = PERSISTENCE
 
     def granted(self, number: int) -> float:
         """Share of the false alarms that the n-th recording may have, counted from 1; all sum to `false_alarms`."""
         return self.false_alarms / (number * (number + 1))
+
+    def asked_for(self, tests: int) -> float:
+        """Evidence that one of so many tests must exceed."""
+        return tests / self.false_alarms
 
 
 @dataclass(frozen=True)
@@ -46,20 +53,23 @@ class Healthy:
     Attributes:
         inflation: by how much their largest gain exceeds what chance gives; 1 at least.
         left: times the noise that they leave, root mean square; 1 at least.
+        deviations: effect and joint -> standard deviation of its strength in one of them, and whether it has two signs.
     """
 
     inflation: float = 1.0
     left: float = 1.0
+    deviations: Mapping[str, tuple[float, bool]] = field(default_factory=dict)
 
 
 def healthy_by(answers: Sequence[Answer]) -> Healthy:
-    """What the reference recordings say of a machine in which nothing changed; of fewer than two, nothing.
+    """What the reference recordings say of a machine in which nothing changed; of one alone, not how it varies.
 
     Args:
         answers: of each, with what all others tell as the prior.
     """
+    deviations = _deviations(answers)
     if len(answers) < 2:
-        return Healthy(1.0, max([1.0, *(answer.left for answer in answers)]))
+        return Healthy(1.0, max([1.0, *(answer.left for answer in answers)]), deviations)
     tests = sum(len(answer.effects) for answer in answers)
     ratios = [
         told.gain / float(chi2.isf(1.0 / tests, told.parameters))
@@ -67,22 +77,39 @@ def healthy_by(answers: Sequence[Answer]) -> Healthy:
         for told in answer.effects
     ]
     left = float(np.sqrt(np.mean([answer.left**2 for answer in answers])))
-    return Healthy(max(1.0, *ratios), max(1.0, left))
+    return Healthy(max(1.0, *ratios), max(1.0, left), deviations)
+
+
+def _deviations(answers: Sequence[Answer]) -> dict[str, tuple[float, bool]]:
+    """Of each effect, the median over the recordings."""
+    found: dict[str, list[float]] = {}
+    both: set[str] = set()
+    for told in (told for answer in answers for told in answer.effects if len(told.strengths) > 1):
+        deviation = Profile(told.strengths, told.rises).deviation
+        if np.isfinite(deviation) and deviation > 0.0:
+            found.setdefault(key_of(told), []).append(deviation)
+        if min(told.strengths) < 0.0:
+            both.add(key_of(told))
+    return {key: (float(np.median(each)), key in both) for key, each in found.items()}
 
 
 @dataclass(frozen=True)
 class Judgement:
-    """One recording against the thresholds.
+    """One recording against the thresholds, and what it adds to the evidence.
 
     Attributes:
         beyond: effects that are beyond theirs, `UNLISTED` among them.
         thresholds: effect -> gain that it would have to exceed.
         most_left: times the noise that the best effect may leave.
+        number: of the recording in the series, from 1.
+        ratios: effect -> bounded likelihood ratios against none, of each of its sizes; `UNLISTED` among them.
     """
 
     beyond: tuple[str, ...]
     thresholds: dict[str, float]
     most_left: float
+    number: int = 1
+    ratios: Mapping[str, np.ndarray] = field(default_factory=dict, compare=False)
 
 
 @dataclass(frozen=True)
@@ -92,8 +119,8 @@ class Alarm:
     Attributes:
         effect: id of the effect that explains most, `OWN_NUMBERS`, or `UNLISTED`.
         joint: where; empty for the machine.
-        since: index of the first recording of those in a row that were beyond the threshold.
-        raised: index of the recording with which the alarm was raised.
+        since: index of the recording with which the evidence begins.
+        raised: index of the recording with which it exceeded what is asked for.
         as_well: effects that explain the recordings since then equally well.
         unlisted: whether something is left since then that no effect explains.
     """
@@ -111,6 +138,11 @@ def name_of(told: EffectTold) -> tuple[str, str]:
     return told.effect, told.joint
 
 
+def key_of(told: EffectTold) -> str:
+    """The same as one word."""
+    return f"{told.joint}.{told.effect}" if told.joint else told.effect
+
+
 def judged(answer: Answer, number: int, rule: AlarmRule, healthy: Healthy) -> Judgement:
     """Hold one recording against its thresholds.
 
@@ -120,21 +152,73 @@ def judged(answer: Answer, number: int, rule: AlarmRule, healthy: Healthy) -> Ju
         rule: of the alarm.
         healthy: what a healthy machine shows.
     """
-    share = rule.granted(number) / (len(answer.effects) + 1)
-    thresholds, beyond = {}, []
+    tests = len(answer.effects) + 1
+    share = rule.granted(number) / tests
+    thresholds, beyond, ratios = {}, [], {}
     counts = sorted({told.parameters for told in answer.effects})
-    by_chance = dict(zip(counts, chi2.isf(share, counts).tolist(), strict=True))
+    chances = dict(zip(counts, chi2.isf(share, counts).tolist(), strict=True))
+    tempered = max(healthy.inflation, answer.needed / GAINS.needed)
+    most = float(np.log(rule.asked_for(tests)))
     for told in answer.effects:
-        chance = healthy.inflation * by_chance[told.parameters]
-        key = f"{told.joint}.{told.effect}" if told.joint else told.effect
-        thresholds[key] = max(chance, answer.needed)
+        key = key_of(told)
+        thresholds[key] = max(healthy.inflation * chances[told.parameters], answer.needed)
         if told.gain > thresholds[key]:
             beyond.append(told.effect)
+        ratios[key] = bounded(_ratios(told, healthy.deviations.get(key), tempered), most)
     error = float(np.hypot(NOISE.known, 1.0 / np.sqrt(2.0 * max(answer.counted, 1))))
-    most = healthy.left * (1.0 + float(norm.isf(share)) * error)
-    if min(told.left for told in answer.effects) > most:
+    most_left = healthy.left * (1.0 + float(norm.isf(share)) * error)
+    left = min(told.left for told in answer.effects)
+    if left > most_left:
         beyond.append(UNLISTED)
-    return Judgement(tuple(beyond), thresholds, most)
+    by = by_chance(float(norm.sf((left / healthy.left - 1.0) / error)))
+    ratios[UNLISTED] = bounded(np.array([by]), most)
+    return Judgement(tuple(beyond), thresholds, most_left, number, ratios)
+
+
+def _ratios(told: EffectTold, healthy: tuple[float, bool] | None, tempered: float) -> np.ndarray:
+    """Logarithms of the likelihood ratios of an effect's sizes; of one number where sizes are not known.
+
+    Args:
+        told: what a recording says of it.
+        healthy: standard deviation of its strength in a recording of the reference, and whether it has two signs.
+        tempered: squares that count as one.
+    """
+    gain = told.gain / tempered
+    if healthy is None or len(told.strengths) < 2:
+        return np.array([by_chance(float(chi2.sf(gain, told.parameters)))])
+    share = as_one_number(gain, told.parameters) / gain if gain > 0.0 else 1.0
+    rises = tuple(rise * share if rise < 0.0 else rise for rise in told.rises)
+    return sizes_by(*healthy).ratios(Profile(told.strengths, rises), tempered)
+
+
+@dataclass(frozen=True)
+class Share:
+    """Evidence for one effect after a recording.
+
+    Attributes:
+        share: of what an alarm asks for; above 1 it is raised.
+        since: number of the recording with which it begins.
+    """
+
+    share: float
+    since: int
+
+
+def evidence_after(judgements: Sequence[Judgement], rule: AlarmRule) -> list[dict[str, Share]]:
+    """Evidence after each recording, by effect (`key_of`).
+
+    Args:
+        judgements: of the recordings, in the order of time.
+        rule: of the alarm.
+    """
+    evidence: dict[str, Evidence] = {}
+    found = []
+    for judgement in judgements:
+        for key, ratios in judgement.ratios.items():
+            evidence.setdefault(key, Evidence()).add(ratios, judgement.number)
+        asked_for = rule.asked_for(len(judgement.ratios))
+        found.append({key: Share(each.total / asked_for, each.since) for key, each in evidence.items()})
+    return found
 
 
 def alarm_of(answers: Sequence[Answer], judgements: Sequence[Judgement], rule: AlarmRule) -> Alarm | None:
@@ -145,23 +229,21 @@ def alarm_of(answers: Sequence[Answer], judgements: Sequence[Judgement], rule: A
         judgements: of them.
         rule: of the alarm.
     """
-    run = 0
-    raised = None
-    for index, judgement in enumerate(judgements):
-        run = run + 1 if judgement.beyond else 0
-        if run >= rule.persistence:
-            raised = index
-            break
+    after = evidence_after(judgements, rule)
+    raised = next((i for i, shares in enumerate(after) if any(s.share > 1.0 for s in shares.values())), None)
     if raised is None:
         return None
-    since = raised - rule.persistence + 1
-    later = [i for i in range(since, len(answers)) if judgements[i].beyond]
-    unlisted = all(UNLISTED in judgements[i].beyond for i in later[-rule.persistence :])
+    evidence = after[raised]
+    beyond = {key for key, each in evidence.items() if each.share > 1.0}
+    strongest = max(beyond, key=lambda key: evidence[key].share)
+    numbers = [judgement.number for judgement in judgements]
+    since = next(i for i, number in enumerate(numbers) if number >= evidence[strongest].since)
+    later = [i for i in range(since, len(answers)) if judgements[i].beyond] or list(range(since, raised + 1))
+    unlisted = all(UNLISTED in judgements[i].beyond for i in later[-LAST:])
+    if beyond == {UNLISTED}:
+        return Alarm(UNLISTED, "", since, raised, (), True)
     totals = _behind_the_best([answers[i] for i in later])
     best = max(totals, key=lambda name: totals[name])
-    explained = any(best[0] in judgements[i].beyond for i in later)
-    if not explained:
-        return Alarm(UNLISTED, "", since, raised, (), True)
     near = [name[0] for name in totals if name != best and totals[best] - totals[name] < TOGETHER]
     return Alarm(best[0], best[1], since, raised, tuple(near), unlisted)
 

@@ -15,14 +15,23 @@ from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.replay.display import display_unit
-from hydrolek_drake.watching.beginning import nominal_on
 from hydrolek_drake.watching.curves import curves_of
-from hydrolek_drake.watching.effect_fits import fits_of_effects, fitted_on
+from hydrolek_drake.watching.fitting.around import around
+from hydrolek_drake.watching.fitting.beginning import nominal_on
+from hydrolek_drake.watching.fitting.effect_fits import (
+    by_observers,
+    fits_of_effects,
+    fitted_on,
+    with_own_slopes,
+    without_effects,
+)
+from hydrolek_drake.watching.fitting.likelihood import SizeTold, of_branches
+from hydrolek_drake.watching.fitting.profiles import profile_of, rungs_of, without
+from hydrolek_drake.watching.fitting.rungs import Rung
+from hydrolek_drake.watching.fitting.scanning import Scan, scanned, size_of, strengths
 from hydrolek_drake.watching.knowledge import Knowledge
-from hydrolek_drake.watching.likelihood import SizeTold, of_branches, of_fit
 from hydrolek_drake.watching.reference import Session
-from hydrolek_drake.watching.scanning import Scan, scanned, size_of, strength, strengths
-from hydrolek_drake.watching.settings import TRIED
+from hydrolek_drake.watching.settings import BEGUN
 
 OWN_NUMBERS = "machine.own_numbers"
 """Stands for: no effect, but the machine's own numbers changed by more than they were said to drift."""
@@ -47,6 +56,8 @@ class EffectTold:
         beside_low: lower end of its 95 % interval.
         beside_high: upper end.
         beside_gain: squares by which it gains there.
+        strengths: sizes at which it was held, as strengths (`scanning.strength`), see `likelihood.Profile`.
+        rises: squares there less those without it, in units of what the reference leaves.
     """
 
     effect: str
@@ -63,6 +74,8 @@ class EffectTold:
     beside_low: float | None = None
     beside_high: float | None = None
     beside_gain: float | None = None
+    strengths: tuple[float, ...] = ()
+    rises: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -100,11 +113,31 @@ def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge 
     knowledge = known or session.knowledge
     weighted = weighted_by(bench, session.hypothesis, experiments)
     nominal = nominal_on(session, weighted, knowledge)
-    [nominal] = with_slopes([nominal], bench.pool, cores)
-    scans = scanned(session, nominal, weighted, knowledge)
-    fitted = fits_of_effects(session, nominal, scans, weighted, knowledge)
     scale = session.posterior.scale
-    told = [_told(scan, fitted.get(scan.candidate.size_path), nominal, session) for scan in scans]
+    for left in reversed(range(BEGUN)):
+        [nominal] = with_slopes([nominal], bench.pool, cores)
+        scans = scanned(session, nominal, weighted, knowledge)
+        none = without(session, nominal, [scan.candidate for scan in scans])
+        rungs = rungs_of(session, nominal, scans, none, weighted, knowledge)
+        fitted = fits_of_effects(session, nominal, scans, rungs, weighted, knowledge)
+        lower = without_effects(session, nominal, fitted, scale)
+        if lower is None:
+            led = by_observers(session, nominal, fitted, scans, weighted, knowledge)
+            fitted |= led
+            lower = without_effects(session, nominal, led, scale)
+        if lower is None or not left:
+            break
+        nominal = lower
+    fitted = with_own_slopes(session, fitted, nominal.unit.size)
+    candidates = {scan.candidate.size_path: scan.candidate for scan in scans}
+    fitted, held = around(session, fitted, candidates)
+    for path, own_rungs in held.items():
+        rungs[path] = [*rungs[path], *own_rungs]
+    told = [
+        _told(scan, rungs[path], fitted.get(path), nominal, none[path], session)
+        for scan in scans
+        if (path := scan.candidate.size_path)
+    ]
     own = _own_numbers(session, nominal, weighted, scale)
     ranked = sorted(told, key=lambda each: -each.gain)
     best = fitted.get(_path(session, ranked[0])) if ranked else None
@@ -160,23 +193,20 @@ def _path(session: Session, told: EffectTold) -> str:
     return next(c.size_path for c in session.candidates if (c.id, c.joint) == (told.effect, told.joint))
 
 
-def _told(scan: Scan, fitted: Place | None, nominal: Place, session: Session) -> EffectTold:
+def _told(
+    scan: Scan, rungs: Sequence[Rung], fitted: Place | None, nominal: Place, none: float, session: Session
+) -> EffectTold:
     candidate, scale = scan.candidate, session.posterior.scale
-    lower, upper = strengths(candidate)
     unit = next(p.unit for p in candidate.effect.parameters if p.name == candidate.effect.size)
-    nothing = {free.path: scan.start[free.path] for free in candidate.free}
+    free = [f.path for f in candidate.free]
+    profile = profile_of(scan, rungs, none, scale)
+    known = profile.told(*strengths(candidate))
     if fitted is None:
-        known = of_branches(list(scan.branches), lower, upper, scale) if scan.branches else None
-        known = known or SizeTold(0.0, lower, upper)
-        gain, left, values = min(scan.gain, TRIED) / scale, fit_of(nominal).over_noise, nothing
+        values, left = {path: scan.start[path] for path in free}, fit_of(nominal).over_noise
     else:
-        values = fitted.problem.parameters.values(fitted.unit)
-        strong = strength(candidate, values[candidate.size_path])
-        known = of_fit(strong, _deviation(scan, fitted, scale, strong), lower, upper)
-        gain = (nominal.objective - fitted.objective) / scale
-        left = fit_of(fitted).over_noise
+        values, left = fitted.problem.parameters.values(fitted.unit), fit_of(fitted).over_noise
     size, low, high = _sizes(candidate, known)
-    others = {p.rpartition(".")[2]: v for p, v in values.items() if p in nothing and p != candidate.size_path}
+    others = {p.rpartition(".")[2]: values[p] for p in free if p != candidate.size_path}
     return EffectTold(
         effect=candidate.id,
         joint=candidate.joint,
@@ -184,31 +214,13 @@ def _told(scan: Scan, fitted: Place | None, nominal: Place, session: Session) ->
         low=low,
         high=high,
         unit=unit_at(session.rig, candidate.joint, unit),
-        gain=gain,
+        gain=0.0 - profile.least,
         parameters=len(candidate.free),
         left=left,
         others=others,
+        strengths=profile.sizes,
+        rises=profile.rises,
     )
-
-
-def _deviation(scan: Scan, fitted: Place, scale: float, strong: float) -> float:
-    """Standard deviation of a fitted strength, from the curvature; by scans where the joint moves otherwise at once."""
-    assert fitted.slopes is not None
-    prior = fitted.problem.prior_jacobian()
-    square = fitted.slopes.T @ fitted.slopes + prior.T @ prior
-    told = fitted.moving & (np.diag(square) > 0.0)
-    at = list(fitted.problem.parameters.paths).index(scan.candidate.size_path)
-    index = np.flatnonzero(told)
-    if at not in index:
-        return np.sqrt(scale) * scan.deviation
-    covariance = np.linalg.pinv(square[np.ix_(index, index)])
-    number = int(np.flatnonzero(index == at)[0])
-    free = fitted.problem.parameters.free[at]
-    per_place = abs(free.slope(float(fitted.unit[at])))
-    if scan.candidate.weakens:
-        per_place *= strong**2
-    deviation = float(np.sqrt(scale * max(covariance[number, number], 0.0))) * per_place
-    return max(deviation, float(np.sqrt(scale)) * scan.deviation) if scan.candidate.sudden else deviation
 
 
 def _own_numbers(

@@ -15,7 +15,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
-from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.experiments.experiment import Experiment
@@ -36,24 +36,19 @@ class Changing:
     paths: tuple[str, ...] = ()
 
 
-def changing_of(
-    rig: Rig, names: Sequence[str], scales: Mapping[str, Scales], together: bool = False
-) -> Changing:
+def changing_of(rig: Rig, names: Sequence[str], scales: Mapping[str, Scales]) -> Changing:
     """What the user said may change.
 
     Args:
         rig: the machine.
         names: ids of effects, and paths, or parts of paths, of parameters that have a range.
         scales: joint -> natural scales.
-        together: whether joints move at the same time.
 
     Raises:
-        InputError: no such effect or parameter, or joints that move together.
+        InputError: no such effect or parameter.
     """
     if not names:
         return Changing(rig)
-    if together:
-        raise InputError("--changes is for joints that move alone; here joints move together")
     entries, paths = dict(rig.entries), []
     of_rig = [free.path for free in free_of_joints(rig, set(scales))]
     possible = {c.size_path: c for joint in scales for c in candidates_of(rig, joint, scales[joint])}
@@ -159,7 +154,7 @@ class ReferenceBench(Workbench):
             rig: the machine.
             free: its parameters.
             changing: paths of those that change.
-            training: the recordings, of joints that move alone.
+            training: the recordings.
             pool: threads.
             cores: that roll out at the same time.
         """
@@ -175,6 +170,13 @@ class ReferenceBench(Workbench):
     ) -> "ReferenceBench":
         """Another one for other recordings of the same machine."""
         return ReferenceBench(self.rig, self._free, self._changing, training, self.pool, self.cores)
+
+    def rig_in(self, hypothesis: Hypothesis, recording: str) -> Rig:
+        """The machine with a fit's values, as it was in a recording: its own of those that change."""
+        ending = f" in {recording}"
+        values = {p: v for p, v in hypothesis.values.items() if " in " not in p}
+        own = {p.removesuffix(ending): v for p, v in hypothesis.values.items() if p.endswith(ending)}
+        return self.rig.with_values({**values, **own})
 
     def parameters(self, effects: Sequence[Addition]) -> ParameterSet:
         """The searched parameters of the nominal model; there are none of effects."""

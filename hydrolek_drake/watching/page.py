@@ -104,7 +104,8 @@ def page(watched: Watched, limits: Sequence[Limit] = (), folder: Path | None = N
         "<div id='recording'><p class='other'>Click a point, or a recording of the table, to see it here.</p></div>",
         "<h2>Every effect, last recording</h2>",
         _last(watched),
-        "<h2>Recordings</h2>",
+        "<h2>Recordings</h2><p class='other'>Evidence: the largest of all effects, of this recording and those before "
+        "it, over what an alarm asks for.</p>",
         _recordings(watched),
         _broken(watched),
         "<h2>The rule</h2>",
@@ -181,18 +182,22 @@ def _last(watched: Watched) -> str:
 def _recordings(watched: Watched) -> str:
     head = (
         "<tr><th>time</th><th class='text'>from</th><th class='text'>recording</th><th>left / noise</th>"
-        "<th class='text'>best effect</th><th>gain</th><th class='text'>beyond</th></tr>"
+        "<th class='text'>best effect</th><th>gain</th><th class='text'>beyond</th>"
+        "<th>evidence</th><th class='text'>for</th></tr>"
     )
-    rows = []
+    rows, evidence = [], watched.evidence
     for each, judgement in zip(watched.asked, watched.judgements, strict=True):
         assert each.answer is not None
         best = each.answer.effects[0]
         beyond = " class='beyond'" if judgement.beyond else ""
+        key, share = max(evidence[each.digest].items(), key=lambda item: item[1])
+        told = f"{share:.2g}" if share < 100.0 else "over 100"
         rows.append(
             f"<tr{beyond}><td>{each.stamp.iso}</td><td class='text'>{each.stamp.source}</td><td class='text path'>"
             f"<a href='#recording' data-id='{each.digest}'>{html.escape(Path(each.recording).name)}</a></td>"
             f"<td>{ratio(each.answer.left)}</td><td class='text'>{html.escape(best.effect)}</td>"
-            f"<td>{best.gain:.1f}</td><td class='text'>{'yes' if judgement.beyond else ''}</td></tr>"
+            f"<td>{best.gain:.1f}</td><td class='text'>{'yes' if judgement.beyond else ''}</td>"
+            f"<td>{told}</td><td class='text path'>{html.escape(key)}</td></tr>"
         )
     return f"<table>{head}{''.join(rows)}</table>" if rows else "<p class='other'>None.</p>"
 
@@ -216,9 +221,11 @@ def _rule(watched: Watched) -> str:
         f"{ratio(healthy.inflation)} times what chance gives, by which thresholds are raised."
     )
     return (
-        f"<p class='other'>An effect is beyond its threshold where its gain, the fall of the squares against the "
-        f"reference, is more than chance would bring: all tests of all recordings together give a false alarm with a "
-        f"probability of {watched.rule.false_alarms:g} at most. {watched.rule.persistence} in a row are an alarm."
+        f"<p class='other'>The likelihood ratios of recordings with and without an effect add up; the alarm is raised "
+        f"where they exceed what leaves a healthy machine's series any alarm with a probability of "
+        f"{watched.rule.false_alarms:g} at most. One recording alone is no alarm, and one that tells nothing changes "
+        f"nothing. By itself a recording is beyond its threshold where its gain, the fall of the squares against the "
+        f"reference, is more than chance brings in all tests of all recordings."
         f"{lone}</p>"
     )
 

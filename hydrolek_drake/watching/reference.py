@@ -119,8 +119,7 @@ class Session:
         self._given, self._training, self._drift = rig, tuple(training), dict(drift)
         self._changes, self.cores, self.joints = tuple(changes), cores, tuple(joints)
         scales = {joint: natural_scales(rig, joint, training) for joint in joints}
-        together = any(e.others is not None for e in training)
-        changing = changing_of(rig, changes, scales, together)
+        changing = changing_of(rig, changes, scales)
         self.rig, self.changing = changing.rig, changing.paths
         nominal = free_of_joints(self.rig, set(joints))
         self.bench = Workbench(self.rig, nominal, training, pool, cores)

@@ -22,7 +22,7 @@ def write_watch(watched: Watched, folder: Path, limits: Sequence[Limit] = ()) ->
         InputError: the folder cannot be written to.
     """
     contents: dict[str, bytes | str] = {
-        "watch.parquet": as_parquet([*watched.reference, *watched.seen]),
+        "watch.parquet": as_parquet([*watched.reference, *watched.seen], watched.evidence),
         "watch.html": page(watched, limits, folder),
     }
     return write_results(folder, contents)

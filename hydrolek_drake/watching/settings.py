@@ -1,6 +1,6 @@
 """Every constant of the watch, with the principle or measurement it comes from."""
 
-METHOD = 2
+METHOD = 3
 """Number of the method: recordings that another one was asked of are asked again."""
 
 DRIFT = 0.02
@@ -24,8 +24,8 @@ CHANGED = 40
 """Marquardt steps of these at most: from elsewhere in the range of a load, twelve were not enough (bench, three of four
 recordings)."""
 
-ROUNDS = 5
-"""Marquardt steps of the best effects at most, which go on from other fits."""
+ROUNDS = 8
+"""Marquardt steps of the best effect at most, which goes on from a race, and of other fits that go on."""
 
 LEFT_OUT = 6
 """So many reference recordings are each asked by what the others tell: enough to see how a healthy machine varies."""
@@ -37,11 +37,18 @@ race of the diagnosis."""
 CONTINUED = 32
 """Steps at the end of these at most."""
 
-RACED = 3
-"""Steps of every fitted effect, and once more of the `FURTHER` best ones, which then tell the best of all: after three
-steps alone a fade of the amplifier's gain by 8 % was still behind another effect, with eight it left less."""
+LED = 6
+"""Steps of every fitted effect with slopes that are corrected by rollouts: it begins at the best of the sizes at which
+it was held."""
 
-FURTHER = 3
+RACED = 3
+"""Steps of the `FURTHER` best of these, with slopes computed anew where those do not hold."""
+
+BEHIND = 0.2
+"""One of them ends where a step promises less than this share of how far it is behind the best: it would need five more
+such steps to become the best."""
+
+FURTHER = 2
 
 WORTH = 0.5
 """A fit ends where a step promises less than so many squares: less than a standard deviation of any number."""
@@ -53,11 +60,63 @@ nothing, where the scan's own likelihood tells its size."""
 FITTED = 5
 """So many effects of a recording are fitted at most: the most promising ones."""
 
-EXACT = 2
-"""Of so many, the best ones, every slope is computed anew where the fit ended."""
-
 MOST_TIMES = 8
 """Places of an effect's own moment at which it is tried."""
+
+MOST_SUDDEN = 9
+"""Sizes at which an effect is tried that acts as soon as it is there: three a decade of those where searches begin."""
+
+FAINT = 1.0
+"""An effect is also tried at a size at which all that it changes is so much, in standard deviations of a number: what
+own numbers bend over so little is a small part of it, and rounding (1e-12) is far below it."""
+
+BENT = 1.5
+"""An effect is told by its slope alone where, at the next size, so many times as much is left across own numbers as
+in proportion to the sizes: more than half of what is left there is then not proportional to it."""
+
+BEGUN = 3
+"""So often at most effects are tried beside a nominal model: a fit with one may have led it to a lower place."""
+
+RETRIED = 3
+"""So many of the best fits lead the nominal model, ..."""
+
+MOST_OF = 0.5
+"""... which stays where it was if it takes less than this share of what the best of them gained: an effect is there."""
+
+HELD_AT = 2.0
+"""An effect is held so many standard deviations, by its slope, from where that has it: where its interval would end."""
+
+FURTHER_OUT = 4.0
+"""It is held at a size so many times as large where the squares do not rise so far, ..."""
+
+FARTHER = 4
+"""... so often at most: a bend so sharp that it hid an effect of 250 times the size that it seemed to show was seen."""
+
+LIKELY = 2.0
+"""... above those without an effect: half of what they should rise by."""
+
+DAMPED = 1e-4
+"""Damping of the steps with which own numbers follow, over that of a fit's first one: their slopes are good, and they
+have begun at what those promise."""
+
+NEGLIGIBLE = 0.1
+"""They end where one promises less than this share of how far it is behind the best of all effects."""
+
+HOPELESS = 16.0
+"""An effect is not held at further sizes where another one gains more than so many squares, four standard deviations,
+and more than `FURTHER_OUT` times as much as it does or promises: it imitates that one at most."""
+
+SHORTER = 1e4
+"""A step that leads up is tried again with so many times the damping: with that of a fit's first one."""
+
+AROUND = 2
+"""So often a fitted effect is held on both sides of its size, farther off or nearer each time, ..."""
+
+LEAST_RISE, MOST_RISE = 1.0, 16.0
+"""... until the squares rise by an amount between these: one and four standard deviations."""
+
+HELD = 4
+"""Steps of the own numbers at each of these sizes."""
 
 GRID = 4001
 """Places at which the likelihood of a size is tabulated."""
@@ -83,8 +142,23 @@ HUBER = 1.345
 NORMAL_MEDIAN = 0.6745
 """Median of the absolute value of a standard normal number."""
 
-PERSISTENCE = 2
-"""Recordings in a row that must be beyond the threshold before it is an alarm: one alone may be a mishap."""
+OCTAVES = 12
+"""Sizes of an effect, each twice the one before, among which evidence is mixed: from half a standard deviation of one
+recording, of which a hundred in a row make an alarm, to more than any wear."""
+
+BEYOND = 10.0
+"""The largest of them reaches so many octaves farther."""
+
+STAYS, GROWS, FALLS = 0.6, 0.3, 0.1
+"""Probabilities with which an effect's size is within the same factor of two in the next recording, the next larger
+one, or the next smaller one: what grows by as much each time doubles in its second recording, and ever more slowly
+then."""
+
+MISHAP = 0.1
+"""Probability that a recording says nothing of the machine: by it one alone cannot end an alarm's evidence."""
+
+LAST = 2
+"""Something is left beside the best effect where so many of the last recordings say so."""
 
 TOGETHER = 12.0
 """Effects whose total gains differ by less than so many squares are not told apart, see `search.gains.GAIN_NEEDED`; and

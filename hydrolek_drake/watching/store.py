@@ -148,6 +148,11 @@ def _as_json(seen: Seen) -> dict[str, Any]:
 def _seen_from(kept: dict[str, Any]) -> Seen:
     answer = kept["answer"]
     if answer is not None:
-        effects = tuple(EffectTold(**each) for each in answer["effects"])
+        effects = tuple(_effect_from(each) for each in answer["effects"])
         answer = Answer(**{**answer, "effects": effects})
     return Seen(**{**kept, "stamp": Stamp(**kept["stamp"]), "answer": answer})
+
+
+def _effect_from(kept: dict[str, Any]) -> EffectTold:
+    lists = {name: tuple(kept[name]) for name in ("strengths", "rises")}
+    return EffectTold(**{**kept, **lists})

@@ -18,6 +18,7 @@ from hydrolek_drake.watching.alarms import (
     Healthy,
     Judgement,
     alarm_of,
+    evidence_after,
     healthy_by,
     judged,
 )
@@ -68,6 +69,15 @@ class Watched:
     def broken(self) -> tuple[Seen, ...]:
         """Recordings that could not be asked."""
         return tuple(each for each in self.seen if each.answer is None)
+
+    @property
+    def evidence(self) -> dict[str, dict[str, float]]:
+        """Content hash of each that could be asked -> effect (`alarms.key_of`) -> evidence over what an alarm asks."""
+        after = evidence_after(self.judgements, self.rule)
+        return {
+            each.digest: {key: share.share for key, share in shares.items()}
+            for each, shares in zip(self.asked, after, strict=True)
+        }
 
     def trend(self, effect: str, joint: str) -> Trend:
         """The course of an effect's size."""

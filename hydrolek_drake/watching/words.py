@@ -77,8 +77,8 @@ def headline(watched: Watched) -> str:
         since = watched.asked[beyond[-1]].stamp.iso if beyond and beyond[-1] == count - 1 else ""
         if since:
             return (
-                f"No alarm yet: the last recording ({since}) is beyond its threshold, and "
-                f"{watched.rule.persistence} in a row are asked for."
+                f"No alarm yet: the last recording ({since}) is beyond its threshold, and one recording alone is no "
+                "alarm."
             )
         return f"No alarm: in {count} recordings nothing differs from the reference beyond what chance gives."
     since = watched.asked[alarm.since].stamp.iso

@@ -2,6 +2,7 @@
 
 import shutil
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,12 +13,13 @@ from hydrolek_drake.challenge.cases import driven, with_concealed
 from hydrolek_drake.challenge.drawing import SIZING_STEP_S
 from hydrolek_drake.challenge.driving import SAMPLE_S
 from hydrolek_drake.cli.app import run
-from hydrolek_drake.errors import InputError
+from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_of_joints
+from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.physics.records import flat
 from hydrolek_drake.recordings import write_signals
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.watching.changing import PerRecording, changing_of, kept_of
+from hydrolek_drake.watching.changing import PerRecording, kept_of
 from hydrolek_drake.watching.reference import Session
 from hydrolek_drake.watching.watch import drifts_of, training_of, watch
 
@@ -155,5 +157,26 @@ def test_what_cannot_change_is_refused(loaded, tmp_path, capsys):
     live = ["--live", str(tmp_path / "stream.csv"), "--changes", "load.payload"]
     assert run(["watch", "joint_bench", reference, *live]) == 2
     assert "--changes" in capsys.readouterr().err
-    with pytest.raises(InputError, match="move together"):
-        changing_of(load_rig("joint_bench"), ["load.payload"], {}, together=True)
+
+
+def test_joints_that_move_together_have_records_of_their_own_in_each_recording(two_joints, recorded_together):
+    """A number that changes in one recording of two changes that one's residuals, as it does alone; not the other's."""
+    recordings = [recorded_together(two_joints, seed, seconds=3.0)[0] for seed in (5, 6)]
+    groups = [experiments_of(two_joints, each) for each in recordings]
+    named = [
+        [replace(e, name=name) for e in group] for name, group in zip(("one", "other"), groups, strict=True)
+    ]
+    path = "joints.right_j2.cylinder.viscous_friction"
+    free = [f for f in free_of_joints(two_joints, {"right_j2", "right_j3"}) if f.path == path]
+    both = PerRecording(two_joints, free, (path,), ["one", "other"], {})
+    joints = len(two_joints.joints)
+    placed = [replace(e, index=e.index + joints * k) for k, group in enumerate(named) for e in group]
+    changed = both.unit()
+    changed[both.paths.index(f"{path} in other")] = 0.9
+    found = ProblemTogether(both, placed).residuals_of_all([both.unit(), changed])
+    alone = ParameterSet(two_joints, free)
+    first = ProblemTogether(alone, named[0]).residuals(alone.unit())
+    [second, moved] = ProblemTogether(alone, named[1]).residuals_of_all([alone.unit(), np.array([0.9])])
+    assert np.array_equal(found[0], np.concatenate([first, second]))
+    assert np.array_equal(found[1], np.concatenate([first, moved]))
+    assert not np.allclose(moved, second)

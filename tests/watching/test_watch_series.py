@@ -36,7 +36,7 @@ def test_a_growing_leakage_is_alarmed_by_name_since_its_first_recordings(leaking
     watched, _ = leaking
     assert watched.alarm is not None and watched.alarm.effect == "cylinder.cross_port_leakage"
     assert not watched.alarm.as_well and not watched.alarm.unlisted
-    assert 2 <= watched.alarm.since <= 3 and watched.alarm.raised == watched.alarm.since + 1
+    assert 2 <= watched.alarm.since <= 3 and watched.alarm.raised <= 4
     assert not any(judgement.beyond for judgement in watched.judgements[:2])
 
 

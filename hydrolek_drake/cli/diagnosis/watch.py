@@ -93,9 +93,6 @@ def watch(
     false_alarms: Annotated[
         float, typer.Option(help="probability of any false alarm in the whole series")
     ] = 0.01,
-    persistence: Annotated[
-        int, typer.Option(min=1, help="so many recordings in a row beyond the threshold are an alarm")
-    ] = 2,
     workers: Annotated[
         int | None, typer.Option(min=1, help="threads; as many as there are cores by default")
     ] = None,
@@ -158,7 +155,7 @@ def watch(
         from hydrolek_drake.cli.diagnosis.watch_live import watch_live
         from hydrolek_drake.watching.live.running import Options
 
-        rule = AlarmRule(false_alarms, persistence)
+        rule = AlarmRule(false_alarms)
         options = Options(live, out, drifts, rule, PAGE_PORT if port is None else port, foxglove, token, idle)
         if watch_live(loaded, reference, options, limits):
             raise typer.Exit(ALARM)
@@ -175,7 +172,7 @@ def watch(
             folder=out,
             drift=drifts,
             changes=tuple(changes or ()),
-            rule=AlarmRule(false_alarms, persistence),
+            rule=AlarmRule(false_alarms),
             cores=workers,
             cluster=jobs,
             say=lambda text: tell(f"{text} ..."),

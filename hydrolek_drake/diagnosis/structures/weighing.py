@@ -11,14 +11,14 @@ signal, as is most likely: by what the fitted model leaves of it (Kennedy, O'Hag
 models, J. Royal Statistical Society B 63, 2001). Only ratios count here, their common size is a parameter of the cost.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from hydrolek_drake.diagnosis.lost_commands.windows import arrivals
 from hydrolek_drake.diagnosis.settings import DATA, NOISE
-from hydrolek_drake.diagnosis.structures.as_rig import rig_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.channel import faithful
 from hydrolek_drake.identification.experiments.experiment import Experiment
@@ -46,7 +46,7 @@ def weighted_by(
     problem = bench.problem(hypothesis.effects, step, experiments)
     records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
     if hypothesis.fit.over_noise < NOISE.far and any(e.others is not None for e in experiments):
-        experiments = felt_together(rig_of(bench.rig, hypothesis), experiments)
+        experiments = felt_in_each(partial(bench.rig_in, hypothesis), experiments)
     better = []
     arrived = arrivals(hypothesis.effects, hypothesis.values, experiments)
     for recorded, experiment in zip(experiments, arrived, strict=True):
@@ -123,9 +123,27 @@ def felt_together(rig: Rig, experiments: Sequence[Experiment]) -> list[Experimen
         rig: the machine with the values of a fitted model.
         experiments: of one or more recordings.
     """
+    return felt_in_each(lambda recording: rig, experiments)
+
+
+def felt_in_each(rig_in: Callable[[str], Rig], experiments: Sequence[Experiment]) -> list[Experiment]:
+    """As `felt_together`, where the machine differs from recording to recording.
+
+    Args:
+        rig_in: name of a recording -> the machine with the values of a fitted model.
+        experiments: of one or more recordings.
+    """
     felt: list[Experiment] = []
     for group in recordings_of(experiments):
-        felt += group if group[0].others is None else _felt(rig, group)
+        if group[0].others is None:
+            felt += group
+            continue
+        rig = rig_in(group[0].name)
+        own = [replace(e, index=rig.joints.index(e.joint)) for e in group]
+        felt += [
+            e if there is alone else replace(there, index=e.index)
+            for e, alone, there in zip(group, own, _felt(rig, own), strict=True)
+        ]
     return felt
 
 

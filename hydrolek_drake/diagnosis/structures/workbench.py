@@ -210,7 +210,7 @@ class Workbench:
         prior[: len(self.nominal)] = SPREAD
         if kind is Problem and isinstance(parameters, WithWindows):
             kind = LostProblem
-        known = {"known": self._moving} if kind is ProblemTogether else {}
+        known = {"known": self._moving} if issubclass(kind, ProblemTogether) else {}
         return kind(
             parameters,
             experiments or self.training,
@@ -221,6 +221,17 @@ class Workbench:
             wide=FITS.wide if any(c.sudden for c in effects) else (),
             **known,
         )
+
+    def rig_in(self, hypothesis: Hypothesis, recording: str) -> Rig:
+        """The machine with a structure's values, as it was in a recording: in all alike.
+
+        Args:
+            hypothesis: the structure, fitted.
+            recording: its name.
+        """
+        from hydrolek_drake.diagnosis.structures.as_rig import rig_of  # which needs what a hypothesis is
+
+        return rig_of(self.rig, hypothesis)
 
     @staticmethod
     def movable(effects: Sequence[Addition], parameters: ParameterSet) -> np.ndarray:

@@ -51,7 +51,7 @@ class OneRecording:
 
     Attributes:
         group: its experiments.
-        places: of all joints that could move, and which alone matter, among the rig's.
+        places: of all joints that could move, and which alone matter, among the records.
     """
 
     def __init__(self, rig: Rig, group: Sequence[Experiment], joints: Sequence[str] | None = None) -> None:
@@ -61,11 +61,15 @@ class OneRecording:
             rig: the machine.
             group: experiments of one recording.
             joints: that move; None for all that can, see `moving_with`.
+
+        Records may be those of all joints for each of several recordings: this one's are the rig's count of joints
+        beginning with the place of its first joint, which its experiments' `index` tells.
         """
         self.group = tuple(group)
         self._rig = rig
+        self._first = len(rig.joints) * (group[0].index // len(rig.joints))
         can_move = moving_with(rig, [e.joint for e in group])
-        self.places = [rig.joints.index(joint) for joint in can_move]
+        self.places = [self._first + rig.joints.index(joint) for joint in can_move]
         self._moving = JointsTogether(rig, joints or can_move)
 
     def roll_out(self, records: np.ndarray, times: np.ndarray, longest_step: float | None = None) -> Together:
@@ -76,16 +80,19 @@ class OneRecording:
         """All joints under the recorded commands, from where they were measured to rest.
 
         Args:
-            records: of all joints of the rig. # (joints,)
+            records: of all joints of the rig, for each recording that there are records of. # (joints,)
             times: when signals are wanted [s]. # (k,)
             longest_step: of the integration [s]; None for the rig's own.
         """
+        first = self._first
+        records = records[first : first + len(self._rig.joints)]
         places = records["load"]["initial_position"].copy()
         volts = np.tile(records["command"]["neutral"], (self.group[0].command_times.size, 1))
         for e in self.group:
-            volts[:, e.index] = e.command
+            at = e.index - first
+            volts[:, at] = e.command
             if e.start is not None:
-                places[e.index] = rest_state_at_reading(records[e.index : e.index + 1], e.start)[4]
+                places[at] = rest_state_at_reading(records[at : at + 1], e.start)[4]
         moving = [self._rig.joints.index(joint) for joint in self._moving.joints]
         return self._moving.run(
             records,

@@ -32,6 +32,7 @@ def descend(
     share: float = 1e-3,
     behind: float = 0.0,
     leading: float = 2.0,
+    renewing: bool = True,
     stop: Callable[[], None] = lambda: None,
 ) -> list[Place]:
     """Go down from several places at once.
@@ -47,12 +48,16 @@ def descend(
             by thousands of squares need not be known to one.
         leading: Jacobians are told by rollouts with steps so many times as long, which is enough to lead a fit; 1 for
             the problem's own.
+        renewing: whether slopes are computed where a place has none that hold; without, a fit ends there, and costs
+            a rollout a step.
         stop: asked before each round; it raises what ends the descent.
     """
     now = list(places)
     for _ in range(rounds):
         stop()
-        going = [i for i, place in enumerate(now) if not place.ended]
+        going = [
+            i for i, place in enumerate(now) if not place.ended and (renewing or place.slopes is not None)
+        ]
         if not going:
             break
         for i, place in zip(going, with_slopes([now[i] for i in going], pool, cores, leading), strict=True):

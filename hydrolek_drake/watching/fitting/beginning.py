@@ -6,6 +6,7 @@ numbers as the reference has them; the best ones are fitted in the changing numb
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.stats import qmc
@@ -13,10 +14,10 @@ from scipy.stats import qmc
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.rolling import Request, residuals_at
-from hydrolek_drake.watching.effect_fits import fitted_on
+from hydrolek_drake.watching.fitting.effect_fits import fitted_on
 from hydrolek_drake.watching.knowledge import Knowledge
 from hydrolek_drake.watching.reference import Session
-from hydrolek_drake.watching.settings import CHANGED, CHANGED_KEPT, CHANGED_LOG2, NOMINAL
+from hydrolek_drake.watching.settings import BEHIND, CHANGED, CHANGED_KEPT, CHANGED_LOG2, NOMINAL
 
 
 def nominal_on(session: Session, experiments: Sequence[Experiment], known: Knowledge) -> Place:
@@ -38,6 +39,7 @@ def nominal_on(session: Session, experiments: Sequence[Experiment], known: Knowl
     [found] = residuals_at([Request(problem, tuple(units))], session.bench.pool, session.cores)
     squares = [r @ r + np.sum(problem.prior_residuals(u) ** 2) for r, u in zip(found, units, strict=True)]
     best = units[np.argsort(squares)[:CHANGED_KEPT]]
-    alone = fitted_on([Place(problem, changes, unit) for unit in best], session, CHANGED)
+    alone = fitted_on([Place(problem, changes, unit) for unit in best], session, CHANGED, BEHIND)
     begun = [Place(problem, every, place.unit) for place in alone]
-    return min(fitted_on(begun, session, CHANGED), key=lambda place: place.objective)
+    lowest = min(fitted_on(begun, session, CHANGED, BEHIND), key=lambda place: place.objective)
+    return fitted_on([replace(lowest, ended=False)], session, CHANGED)[0]

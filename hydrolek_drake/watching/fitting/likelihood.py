@@ -109,13 +109,83 @@ def _mirrored(branch: Branch) -> Branch:
     return Branch(np.abs(branch.sizes), branch.gram, branch.along)
 
 
-def of_fit(size: float, deviation: float, lower: float, upper: float) -> SizeTold:
-    """A fitted size with its standard deviation, cut at what is possible."""
-    if not deviation > 0.0 or not np.isfinite(deviation):
-        return SizeTold(size, lower, upper)
-    low, high = max(lower, size - REACH * deviation), min(upper, size + REACH * deviation)
-    if not low < high:
-        return SizeTold(size, low, high)
-    sizes = np.linspace(low, high, GRID)
-    told = told_by(sizes, ((sizes - size) / deviation) ** 2)
-    return SizeTold(size, min(told.low, size), max(told.high, size))
+@dataclass(frozen=True)
+class Profile:
+    """The profile likelihood of a size: how far the squares rise where it is held and all other numbers are fitted.
+
+    Between the sizes that were tried the signed root of the rise above the least is straight, as it is throughout where
+    the model is linear (Bates, Watts, Nonlinear Regression Analysis, 1988, section 6.1). A rise that a size farther out
+    is below is one of a fit that did not get there, and counts no more than that one.
+
+    Attributes:
+        sizes: strengths, growing. # (k,)
+        rises: squares there less those without the effect, in units of what the reference leaves. # (k,)
+    """
+
+    sizes: tuple[float, ...]
+    rises: tuple[float, ...]
+
+    @property
+    def best(self) -> float:
+        """The likeliest size."""
+        return self.sizes[int(np.argmin(self.rises))]
+
+    @property
+    def least(self) -> float:
+        """The rise there."""
+        return min(self.rises)
+
+    @property
+    def course(self) -> tuple[np.ndarray, np.ndarray]:
+        """Sizes between which the root is straight, and the roots, both growing. # (m,), (m,)."""
+        sizes, rises = np.array(self.sizes), np.array(self.rises)
+        best = int(np.argmin(rises))
+        found = np.sqrt(rises - rises[best])
+        kept = [best]
+        for side in (range(best - 1, -1, -1), range(best + 1, sizes.size)):
+            inner: list[int] = []
+            for i in side:
+                while inner and found[inner[-1]] >= found[i]:
+                    inner.pop()
+                inner.append(i)
+            kept += inner
+        index = np.array(sorted(kept))
+        return sizes[index], np.sign(index - best) * found[index]
+
+    def roots(self, at: np.ndarray) -> np.ndarray:
+        """Standard deviations from the likeliest size, signed; straight on beyond the ends. # (m,)."""
+        sizes, roots = self.course
+        if sizes.size == 1:
+            return np.zeros_like(np.asarray(at, dtype=float))
+        first, last = (
+            (roots[1] - roots[0]) / (sizes[1] - sizes[0]),
+            (roots[-1] - roots[-2]) / (sizes[-1] - sizes[-2]),
+        )
+        beyond = first * np.minimum(at - sizes[0], 0.0) + last * np.maximum(at - sizes[-1], 0.0)
+        return np.asarray(np.interp(at, sizes, roots) + beyond)
+
+    @property
+    def deviation(self) -> float:
+        """How far from the likeliest size the squares have risen by one, on the nearer side; infinite for unknown."""
+        sizes, roots = self.course
+        best = int(np.flatnonzero(roots == 0.0)[0])
+        beside = [
+            abs((sizes[i] - sizes[best]) / roots[i])
+            for i in (best - 1, best + 1)
+            if 0 <= i < sizes.size and roots[i]
+        ]
+        return float(min(beside, default=np.inf))
+
+    def told(self, lower: float, upper: float) -> SizeTold:
+        """The likeliest size with its interval, of sizes between two ends."""
+        ends = []
+        for end, sign in ((lower, -1.0), (upper, 1.0)):
+            places = self.best + sign * abs(end - self.best) * np.append(np.geomspace(1e-9, 1.0, 361), 1.0)
+            far = np.flatnonzero(np.abs(self.roots(places)) >= REACH)
+            ends.append(float(places[far[0]]) if far.size else end)
+        low, high = max(ends[0], lower), min(ends[1], upper)
+        if not low < high:
+            return SizeTold(self.best, low, high)
+        sizes = np.linspace(low, high, GRID)
+        told = told_by(sizes, self.roots(sizes) ** 2)
+        return SizeTold(self.best, min(told.low, self.best), max(told.high, self.best))
