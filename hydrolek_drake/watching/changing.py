@@ -171,12 +171,12 @@ class ReferenceBench(Workbench):
         """Another one for other recordings of the same machine."""
         return ReferenceBench(self.rig, self._free, self._changing, training, self.pool, self.cores)
 
-    def rig_in(self, hypothesis: Hypothesis, recording: str) -> Rig:
-        """The machine with a fit's values, as it was in a recording: its own of those that change."""
+    def values_in(self, hypothesis: Hypothesis, recording: str) -> dict[str, float]:
+        """Full path -> value of a fit in a recording: its own of those that change."""
         ending = f" in {recording}"
         values = {p: v for p, v in hypothesis.values.items() if " in " not in p}
         own = {p.removesuffix(ending): v for p, v in hypothesis.values.items() if p.endswith(ending)}
-        return self.rig.with_values({**values, **own})
+        return {**values, **own}
 
     def parameters(self, effects: Sequence[Addition]) -> ParameterSet:
         """The searched parameters of the nominal model; there are none of effects."""

@@ -126,7 +126,10 @@ def test_joints_that_move_together_are_pulled_as_one_by_itself(rig):
         for machine in (alone, together):
             machine.advance(volts[i : i + 1], float(time[i + 1]), (0.2, measured))
     ranges = np.array([1.0, 1.0, 10.0, 1e7, 1e7, 1e-3, 1e7, 1e5])
-    assert np.abs((alone.signals - together.signals) / ranges).max() < 1e-6
+    assert (
+        np.abs((alone.signals[..., : ranges.size] - together.signals[..., : ranges.size]) / ranges).max()
+        < 1e-6
+    )
     assert alone.signals[0, 0] == pytest.approx(reading[-1] + 0.01, abs=0.02)
 
 

@@ -19,6 +19,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.lost_commands.windows import arrivals
 from hydrolek_drake.diagnosis.settings import DATA, NOISE
+from hydrolek_drake.diagnosis.structures.as_rig import rig_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.channel import faithful
 from hydrolek_drake.identification.experiments.experiment import Experiment
@@ -46,7 +47,7 @@ def weighted_by(
     problem = bench.problem(hypothesis.effects, step, experiments)
     records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
     if hypothesis.fit.over_noise < NOISE.far and any(e.others is not None for e in experiments):
-        experiments = felt_in_each(partial(bench.rig_in, hypothesis), experiments)
+        experiments = felt_in_each(partial(_rig_in, bench, hypothesis), experiments)
     better = []
     arrived = arrivals(hypothesis.effects, hypothesis.values, experiments)
     for recorded, experiment in zip(experiments, arrived, strict=True):
@@ -124,6 +125,11 @@ def felt_together(rig: Rig, experiments: Sequence[Experiment]) -> list[Experimen
         experiments: of one or more recordings.
     """
     return felt_in_each(lambda recording: rig, experiments)
+
+
+def _rig_in(bench: Workbench, hypothesis: Hypothesis, recording: str) -> Rig:
+    """The machine with a structure's values as it was in a recording."""
+    return rig_of(bench.rig, replace(hypothesis, values=bench.values_in(hypothesis, recording)))
 
 
 def felt_in_each(rig_in: Callable[[str], Rig], experiments: Sequence[Experiment]) -> list[Experiment]:

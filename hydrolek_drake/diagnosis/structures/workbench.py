@@ -222,16 +222,14 @@ class Workbench:
             **known,
         )
 
-    def rig_in(self, hypothesis: Hypothesis, recording: str) -> Rig:
-        """The machine with a structure's values, as it was in a recording: in all alike.
+    def values_in(self, hypothesis: Hypothesis, recording: str) -> dict[str, float]:
+        """Full path -> value of a fitted structure in a recording; the same in all of them.
 
         Args:
-            hypothesis: the structure, fitted.
+            hypothesis: the structure.
             recording: its name.
         """
-        from hydrolek_drake.diagnosis.structures.as_rig import rig_of  # which needs what a hypothesis is
-
-        return rig_of(self.rig, hypothesis)
+        return hypothesis.values
 
     @staticmethod
     def movable(effects: Sequence[Addition], parameters: ParameterSet) -> np.ndarray:

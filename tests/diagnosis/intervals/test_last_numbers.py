@@ -32,6 +32,7 @@ class Drawn:
     """
 
     evaluations, counted, unsure, longest_step = 0, 16, 0.0, 5e-4
+    experiments = ()  # curvature alone: of no recording there are blocks
     parameters = SimpleNamespace(
         paths=[OWN, SIZE],
         free=[
