@@ -26,20 +26,13 @@ def can_be_cut(bench: Workbench) -> bool:
 def enough_for(bench: Workbench) -> float:
     """Times the noise that need not be explained unless something promises to.
 
-    What a recorded supply pressure does between its samples, and what fits by parts leave of a line that rings, is no
-    missing physics.
+    What a recorded supply pressure does between its samples is no missing physics. Nor is what fits by parts leave of a
+    line that rings, which no model tells for long: held-out data are held to as much (`Judged.explains_ahead`), and
+    what lies behind the recorded pressure was explained without it.
     """
-    return NOISE.explained if bench.cut or can_be_cut(bench) else NOISE.at
-
-
-def left_of_line(bench: Workbench, effects: Sequence[Addition]) -> float:
-    """Times the noise that all of the machine may leave before something is looked for before the cut.
-
-    A line that rings is told by no model for long: held-out data are held to as much (`Judged.explains_ahead`), and
-    what lies behind the recorded pressure was explained without it. What is added before the cut is fitted to the end.
-    """
-    added = any(not acts_behind(bench.rig, c.size_path) for c in effects)
-    return NOISE.explained if added or bench.cut else NOISE.far
+    if bench.cut:
+        return NOISE.explained
+    return NOISE.far if can_be_cut(bench) else NOISE.at
 
 
 def acts_behind(rig: Rig, path: str) -> bool:

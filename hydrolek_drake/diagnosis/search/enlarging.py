@@ -16,7 +16,7 @@ from hydrolek_drake.diagnosis.search.by_continuation import (
     steps_for,
     traced,
 )
-from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut, enough_for
+from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.search.openings import Opening
 from hydrolek_drake.diagnosis.search.standing_in import standing_in
@@ -47,8 +47,7 @@ def enlarged(
     Returns:
         Whether the structure itself was fitted so much better meanwhile that it should be enlarged again.
     """
-    parent = opening.parent
-    enough = min(opening.enough, max(enough_for(bench), NOISE.ahead))
+    parent, enough = opening.parent, opening.enough
     runners = _led_on(bench, opening, candidates, settings, cores)
     if runners and over_noise_of(runners[0]) > enough:
         runners = [*_farther(bench, runners[0], settings, cores), *runners]

@@ -10,7 +10,7 @@ from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.problems import problem_of
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
-from hydrolek_drake.diagnosis.search.by_parts import enough_for, left_of_line
+from hydrolek_drake.diagnosis.search.by_parts import enough_for
 from hydrolek_drake.diagnosis.search.cost import dispersion, gain_needed
 from hydrolek_drake.diagnosis.search.promise import Promise, promises_at
 from hydrolek_drake.diagnosis.search.tried import Tried
@@ -144,8 +144,9 @@ def surely_above(bench: Workbench, structure: Hypothesis) -> float:
     one with an addition that leaves less than what would be called missing, and beside which nothing promises anything,
     is right. A model that was fitted by parts is no more bent than one that explains the data, see `by_parts`.
     """
-    if enough_for(bench) > NOISE.at:
-        return left_of_line(bench, structure.effects)
+    enough = enough_for(bench)
+    if enough > NOISE.at:
+        return enough
     return NOISE.ahead if structure.effects else NOISE.at
 
 
