@@ -14,7 +14,7 @@ from hydrolek_drake.diagnosis.locating.terms_for import estimates_for, terms_for
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.lost_commands.search import lost_in
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
-from hydrolek_drake.diagnosis.search.from_the_cut import behind_cut, search_machine
+from hydrolek_drake.diagnosis.search.from_the_cut import BehindCut, behind_cut, search_machine
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
@@ -120,8 +120,10 @@ class Inquiry:
         chosen, kept = halves(held_out)
         known, found = self._known(bench, chosen, Tried())
         remarks: tuple[str, ...] = ()
+        behind: BehindCut | None = None
         try:
-            astray, far = self.apart and self._astray(known), _far_in_all(known)
+            behind = self._behind(known)
+            astray, far = self.apart and _astray(known, behind), _far_in_all(known)
         except KeyboardInterrupt:
             bench.resume()
             known = replace(known, interrupted=True)
@@ -133,16 +135,19 @@ class Inquiry:
                 remarks = (BY_BOTH,)
             again = known.bench.with_training(training, signals_apart=far)
             known, found = self._known(again, chosen, _begun_from(found))
+            behind = None
             if far and (told := _told_apart(known.bench)):
                 remarks = (*remarks, SIGNALS_APART.format(told=told))
         best = likeliest_side(known.judged).hypothesis
-        known = self._reported(known, kept)
+        known = self._reported(known, kept, behind)
         first = known.judged[0]
         if first.fitted_too is not None:
-            behind = first.left_behind_cut
-            predicted = first.over_noise if behind is None else behind
+            left = first.left_behind_cut
+            predicted = first.over_noise if left is None else left
             remarks = (*remarks, ASKED_FOR.format(predicted=predicted, fitted=first.fitted_too))
-        elif first.left_behind_cut is not None and first.explains_ahead:
+        elif (
+            first.left_behind_cut is not None and first.explains_ahead and first.over_noise > NOISE.explained
+        ):
             remarks = (*remarks, BEHIND_THE_CUT.format(left=first.left_behind_cut))
         conclusion, law = self._told(known, next(j for j in known.judged if j.hypothesis is best))
         if known.interrupted:
@@ -191,27 +196,18 @@ class Inquiry:
         known = Known(bench, found, weighted, tuple(judged), conclude(judged), interrupted)
         return known, found
 
-    def _astray(self, known: Known) -> bool:
-        """Whether the best structure leaves more of the held-out data than the training data lead one to expect.
+    def _behind(self, known: Known) -> BehindCut | None:
+        """The best structure behind the recorded pressure of a pump; who has interrupted waits for no further fit."""
+        if known.interrupted:
+            return None
+        return behind_cut(known.bench, known.judged[0].hypothesis, self.settings, self.cores)
 
-        That is as much, to what noise is known to; where it does not explain these, what it leaves is its own
-        discrepancy, which differs between movements by more. What a pump's line does is not told for long
-        (`Judged.explains_ahead`), but what lies behind its recorded pressure is.
-        """
-        best = known.judged[0]
-        left, ahead = best.hypothesis.fit.over_noise, best.over_noise
-        behind = behind_cut(known.bench, best.hypothesis, self.settings, self.cores)
-        if behind is not None:
-            left, ahead = behind.left(known.bench.training), behind.left(known.held_out)
-            if not replace(best, left_behind_cut=ahead).explains_ahead:
-                return True
-        return ahead > max(left, 1.0) * (NOISE.ahead if left <= NOISE.ahead else NOISE.explained_ahead)
-
-    def _reported(self, known: Known, kept: Sequence[Experiment]) -> Known:
+    def _reported(self, known: Known, kept: Sequence[Experiment], behind: BehindCut | None) -> Known:
         """The same with what structures leave of data by which none was chosen, which have the verdict's last word."""
         try:
             weighted = tuple(weighted_by(known.bench, known.judged[0].hypothesis, kept))
-            judged = left_of(known.bench, known.judged, weighted, self.settings, self.cores)
+            behind = behind or self._behind(known)
+            judged = left_of(known.bench, known.judged, weighted, self.settings, self.cores, behind)
         except KeyboardInterrupt:
             return replace(known, interrupted=True)
         return replace(known, held_out=weighted, judged=judged, conclusion=conclude(judged))
@@ -257,6 +253,22 @@ def _beside(known: Known, best: Judged) -> Judged:
         if judged.hypothesis.ids == effects:
             return judged
     return next(j for j in known.judged if not j.hypothesis.effects)
+
+
+def _astray(known: Known, behind: BehindCut | None) -> bool:
+    """Whether the best structure leaves more of the held-out data than the training data lead one to expect.
+
+    That is as much, to what noise is known to; where it does not explain these, what it leaves is its own discrepancy,
+    which differs between movements by more. What a pump's line does is not told for long (`Judged.explains_ahead`), but
+    what lies behind its recorded pressure is.
+    """
+    best = known.judged[0]
+    left, ahead = best.hypothesis.fit.over_noise, best.over_noise
+    if behind is not None:
+        left, ahead = behind.left(known.bench.training), behind.left(known.held_out)
+        if not replace(best, left_behind_cut=ahead).explains_ahead:
+            return True
+    return ahead > max(left, 1.0) * (NOISE.ahead if left <= NOISE.ahead else NOISE.explained_ahead)
 
 
 def _far_in_all(known: Known) -> bool:

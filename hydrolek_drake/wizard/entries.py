@@ -63,6 +63,30 @@ def asked(sheet: Sheet, key: str, name: str = "") -> str:
     return entry(name or key, value, unit, source, limits)
 
 
+def beginning(name: str, step: float, spool_steps: str) -> list[str]:
+    """How every rig file that is written begins.
+
+    Args:
+        name: of the machine.
+        step: longest step of the integration [s].
+        spool_steps: why one step of the spool is enough.
+    """
+    return [
+        "# Written by `hydrolek rig new`. A value with a range is searched by a fit; one without is taken as it is.",
+        f'# Sources: "{SHEET}" is what was said; "assumed" what nobody said, with a wide range: mend it if you know.',
+        "schema: 1",
+        f"name: {name}",
+        f"title: {name.replace('_', ' ')}",
+        "",
+        "integration:",
+        f"  {entry('longest_step', 1e3 * step, 'ms', 'the longest that agrees with finer ones on this machine')}",
+        f'  spool_steps: {{value: 1, unit: "1", source: "{spool_steps}"}}',
+        "",
+        "recording:",
+        "  initial_position: recording  # where a replay starts",
+    ]
+
+
 def kept(name: str, key: str = "") -> str:
     """The entry of a number that no data sheet has, as `questions.yaml` has it, with its range if it has one."""
     known = fixed(key or name)

@@ -3,7 +3,7 @@
 import math
 
 from hydrolek_drake.units import si_factor
-from hydrolek_drake.wizard.entries import SHEET, asked, entry, kept
+from hydrolek_drake.wizard.entries import SHEET, asked, beginning, entry, kept
 from hydrolek_drake.wizard.questions import fixed, questions
 from hydrolek_drake.wizard.sheet import Sheet
 
@@ -21,18 +21,7 @@ def screw_text(name: str, sheet: Sheet, step: float) -> str:
     nothing = f'source: "{_NO_OIL}"'
     travel = 1e3 * sheet["travel"]
     lines = [
-        "# Written by `hydrolek rig new`. A value with a range is searched by a fit; one without is taken as it is.",
-        f'# Sources: "{SHEET}" is what was said; "assumed" what nobody said, with a wide range: mend it if you know.',
-        "schema: 1",
-        f"name: {name}",
-        f"title: {name.replace('_', ' ')}",
-        "",
-        "integration:",
-        f"  {entry('longest_step', 1e3 * step, 'ms', 'the longest that agrees with finer ones on this machine')}",
-        '  spool_steps: {value: 1, unit: "1", source: "there is no spool"}',
-        "",
-        "recording:",
-        "  initial_position: recording  # where a replay starts",
+        *beginning(name, step, "there is no spool"),
         f"  # columns: {{their name: {sheet['joint']}.current_A}}  # names of your file's columns, if they differ; the",
         f"  # set point is {sheet['joint']}.command_V, of which each volt is set_point_gain",
         "",

@@ -4,7 +4,7 @@ import math
 
 from hydrolek_drake.units import si_factor
 from hydrolek_drake.wizard.components import accumulator, holding, hose, slew_rate
-from hydrolek_drake.wizard.entries import SHEET, asked, entry, kept
+from hydrolek_drake.wizard.entries import SHEET, asked, beginning, entry, kept
 from hydrolek_drake.wizard.questions import fixed, questions
 from hydrolek_drake.wizard.sheet import EDGES, Sheet
 
@@ -19,18 +19,7 @@ def rig_text(name: str, sheet: Sheet, step: float) -> str:
     """
     pump = _pump(sheet) if sheet.pump else [kept("flow_time_constant")]
     lines = [
-        "# Written by `hydrolek rig new`. A value with a range is searched by a fit; one without is taken as it is.",
-        f'# Sources: "{SHEET}" is what was said; "assumed" what nobody said, with a wide range: mend it if you know.',
-        "schema: 1",
-        f"name: {name}",
-        f"title: {name.replace('_', ' ')}",
-        "",
-        "integration:",
-        f"  {entry('longest_step', 1e3 * step, 'ms', 'the longest that agrees with finer ones on this machine')}",
-        '  spool_steps: {value: 1, unit: "1", source: "the spool\'s step is stable at any stiffness"}',
-        "",
-        "recording:",
-        "  initial_position: recording  # where a replay starts",
+        *beginning(name, step, "the spool's step is stable at any stiffness"),
         "  # columns: {their name: joint.angle_deg}  # names of your file's columns, if they differ",
         "",
         "supply:",

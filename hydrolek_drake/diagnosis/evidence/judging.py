@@ -23,7 +23,7 @@ from hydrolek_drake.diagnosis.fitting.problems import problem_with
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
 from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
-from hydrolek_drake.diagnosis.search.from_the_cut import behind_cut
+from hydrolek_drake.diagnosis.search.from_the_cut import BehindCut
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
@@ -218,6 +218,7 @@ def left_of(
     held_out: Sequence[Experiment],
     settings: Settings,
     cores: int,
+    behind: BehindCut | None = None,
 ) -> tuple[Judged, ...]:
     """The same structures with what they leave of other data than those by which they were judged.
 
@@ -231,6 +232,7 @@ def left_of(
         held_out: data that nothing was fitted to, and by which nothing was chosen.
         settings: of the search.
         cores: that roll out at the same time.
+        behind: the best one behind the recorded pressure of a pump; None where there is none.
     """
     judged = [with_stands(bench, j, held_out, settings, cores) for j in judged]
     requests = []
@@ -250,7 +252,6 @@ def left_of(
         for j in judged
     )
     told = with_differences(told, held_out)
-    behind = behind_cut(bench, told[0].hypothesis, settings, cores)
     if behind is not None:
         left, trained = behind.left(held_out), behind.left(bench.training)
         told = (replace(told[0], left_behind_cut=left, trained_behind_cut=trained), *told[1:])
