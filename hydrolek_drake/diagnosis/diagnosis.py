@@ -173,7 +173,8 @@ def _diagnosed(
             judged = tuple(last if j is conclusion.best else j for j in judged)
             conclusion, best = replace(conclusion, best=last), last.hypothesis
         say("locating what was found, and what would have been seen")
-        places = locate(bench, best, found.baseline, bench.training)
+        # uncut, since a position shows what the supply lacks only where its own pressure acts
+        places = locate(bench, best, found.baseline, tuple(e.uncut() for e in bench.training))
         if law is not None:
             places = (locate_law(bench, best, found.baseline, law), *places)
         proposal = propose(bench, conclusion, [j.hypothesis for j in judged], cores)

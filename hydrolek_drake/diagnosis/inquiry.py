@@ -1,11 +1,12 @@
 """From data to a verdict: the search, the evidence, and what is told of the best structure."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.judged import Conclusion, Judged, conclude
+from hydrolek_drake.diagnosis.evidence.judged import Conclusion, Judged, conclude, with_behind_cut
 from hydrolek_drake.diagnosis.evidence.judging import judge_as_fitted, judge_structures, left_of
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.laws.found import law_of, likeliest_side, lost_of, terms_of
@@ -14,7 +15,8 @@ from hydrolek_drake.diagnosis.locating.terms_for import estimates_for, terms_for
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.lost_commands.search import lost_in
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
-from hydrolek_drake.diagnosis.search.from_the_cut import BehindCut, behind_cut, search_machine
+from hydrolek_drake.diagnosis.search.by_parts import cut
+from hydrolek_drake.diagnosis.search.from_the_cut import search_machine
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
@@ -36,9 +38,10 @@ ASKED_FOR = (
     "missed by {predicted:.3g} times the noise, fitted too by {fitted:.3g} times"
 )
 
-BEHIND_THE_CUT = (
-    "behind the recorded supply pressure, fitted for itself, the model leaves {left:.3g} times the noise of the "
-    "held-out data; what all of the machine leaves beyond that is in the pump's line, which no model tells for long"
+AT_THE_CUT = (
+    "the recorded supply pressure drives what lies behind it, of which {behind:.3g} times the noise of the held-out "
+    "data are left, and the supply is held against it under the flow that this draws; with the supply's own pressure "
+    "in its place, where every error of a line that rings stays, all signals together leave {uncut:.3g} times"
 )
 
 SIGNALS_APART = (
@@ -117,16 +120,11 @@ class Inquiry:
         Raises:
             KeyboardInterrupt: before the nominal model was fitted.
         """
+        bench.training, held_out = cut(bench, bench.training), cut(bench, held_out)
         chosen, kept = halves(held_out)
         known, found = self._known(bench, chosen, Tried())
         remarks: tuple[str, ...] = ()
-        behind: BehindCut | None = None
-        try:
-            behind = self._behind(known)
-            astray, far = self.apart and _astray(known, behind), _far_in_all(known)
-        except KeyboardInterrupt:
-            bench.resume()
-            known = replace(known, interrupted=True)
+        astray, far = self.apart and _astray(known), _far_in_all(known)
         if not known.interrupted and (astray or far):
             # numbers that the training data do not tell, the held-out ones ask for
             training = known.bench.training
@@ -135,20 +133,18 @@ class Inquiry:
                 remarks = (BY_BOTH,)
             again = known.bench.with_training(training, signals_apart=far)
             known, found = self._known(again, chosen, _begun_from(found))
-            behind = None
             if far and (told := _told_apart(known.bench)):
                 remarks = (*remarks, SIGNALS_APART.format(told=told))
         best = likeliest_side(known.judged).hypothesis
-        known = self._reported(known, kept, behind)
+        known = self._reported(known, kept)
         first = known.judged[0]
         if first.fitted_too is not None:
             left = first.left_behind_cut
             predicted = first.over_noise if left is None else left
             remarks = (*remarks, ASKED_FOR.format(predicted=predicted, fitted=first.fitted_too))
-        elif (
-            first.left_behind_cut is not None and first.explains_ahead and first.over_noise > NOISE.explained
-        ):
-            remarks = (*remarks, BEHIND_THE_CUT.format(left=first.left_behind_cut))
+        elif first.left_behind_cut is not None and not known.interrupted:
+            uncut = _uncut_over_noise(known)
+            remarks = (*remarks, AT_THE_CUT.format(behind=first.left_behind_cut, uncut=uncut))
         conclusion, law = self._told(known, next(j for j in known.judged if j.hypothesis is best))
         if known.interrupted:
             remarks = (*remarks, INTERRUPTED)
@@ -196,18 +192,11 @@ class Inquiry:
         known = Known(bench, found, weighted, tuple(judged), conclude(judged), interrupted)
         return known, found
 
-    def _behind(self, known: Known) -> BehindCut | None:
-        """The best structure behind the recorded pressure of a pump; who has interrupted waits for no further fit."""
-        if known.interrupted:
-            return None
-        return behind_cut(known.bench, known.judged[0].hypothesis, self.settings, self.cores)
-
-    def _reported(self, known: Known, kept: Sequence[Experiment], behind: BehindCut | None) -> Known:
+    def _reported(self, known: Known, kept: Sequence[Experiment]) -> Known:
         """The same with what structures leave of data by which none was chosen, which have the verdict's last word."""
         try:
             weighted = tuple(weighted_by(known.bench, known.judged[0].hypothesis, kept))
-            behind = behind or self._behind(known)
-            judged = left_of(known.bench, known.judged, weighted, self.settings, self.cores, behind)
+            judged = left_of(known.bench, known.judged, weighted, self.settings, self.cores)
         except KeyboardInterrupt:
             return replace(known, interrupted=True)
         return replace(known, held_out=weighted, judged=judged, conclusion=conclude(judged))
@@ -255,18 +244,26 @@ def _beside(known: Known, best: Judged) -> Judged:
     return next(j for j in known.judged if not j.hypothesis.effects)
 
 
-def _astray(known: Known, behind: BehindCut | None) -> bool:
+def _uncut_over_noise(known: Known) -> float:
+    """Times the noise that the best structure leaves of the held-out data where the supply's own pressure acts."""
+    best, bench = known.judged[0].hypothesis, known.bench
+    whole = [e.uncut() for e in known.held_out]
+    residuals = bench.residuals(best, whole, bench.step_for(best.effects))
+    return math.sqrt(float(residuals @ residuals) / max(sum(e.counted for e in whole), 1))
+
+
+def _astray(known: Known) -> bool:
     """Whether the best structure leaves more of the held-out data than the training data lead one to expect.
 
     That is as much, to what noise is known to; where it does not explain these, what it leaves is its own discrepancy,
     which differs between movements by more. What a pump's line does is not told for long (`Judged.explains_ahead`), but
     what lies behind its recorded pressure is.
     """
-    best = known.judged[0]
+    best = with_behind_cut(known.judged[0], known.bench.training, known.held_out)
     left, ahead = best.hypothesis.fit.over_noise, best.over_noise
-    if behind is not None:
-        left, ahead = behind.left(known.bench.training), behind.left(known.held_out)
-        if not replace(best, left_behind_cut=ahead).explains_ahead:
+    if best.trained_behind_cut is not None and best.left_behind_cut is not None:
+        left, ahead = best.trained_behind_cut, best.left_behind_cut
+        if not best.explains_ahead:
             return True
     return ahead > max(left, 1.0) * (NOISE.ahead if left <= NOISE.ahead else NOISE.explained_ahead)
 

@@ -13,10 +13,26 @@ from hydrolek_drake.effects.effect import Search
 SLOWED = 5.0
 """A payload with which the joint swings so many times slower is a large one."""
 
+# Sizes that make no difference in practice (region of practical equivalence; Kruschke, Advances in Methods and
+# Practices in Psychological Science 1, 2018): no machine and no model is better than these, so they are no finding.
+
 TIGHT = 1e-4
 """What leaks less than this share of the full flow is tight: new spools leak more (Merritt 1967, ch. 5: clearances of
 some micrometres), and a joint that creeps so slowly takes hours for its stroke. The equations' closed edge, which lets
 through nothing at all, simplifies as much."""
+
+RUBBING = 1e-3
+"""Friction of this share of the actuator's force: seals and bearings rub more, since cylinders have efficiencies of 0.9
+to 0.98 (Watton, Fundamentals of Fluid Power Control, 2009, section 3.8)."""
+
+GROUND = 1e-3
+"""Share of a spool's opening to which its edges are ground: a micrometre of a millimetre (Merritt 1967, ch. 5)."""
+
+BIT = 2.0**-12
+"""Share of the travel that one bit of a sensor with 12 bits tells; potentiometers are true to ten times that."""
+
+DISSOLVED = 1e-3
+"""Volume of free air in oil, at the atmosphere's pressure over all: oil in use holds more (Merritt 1967, ch. 1)."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +58,7 @@ class Scales:
         payload: mass at the tool whose weight is the load force or, if that is less, whose inertia makes the load
             swing `SLOWED` times slower on the oil [kg]: about a vertical axis nothing weighs. Infinite without either.
         capacity: volume that a full chamber's travel takes over the supply pressure [m^3/Pa].
+        opening: of the spool's widest edge at full travel [m]; NaN where it is not known as a length.
         rod_payload: mass at the tool with the moment of inertia by which the rod's own differs between places of what
             was recorded, where the model has that of mid-travel [kg].
     """
@@ -63,6 +80,7 @@ class Scales:
     inertia: float
     payload: float
     capacity: float
+    opening: float = math.nan
     rod_payload: float = 0.0
     unity: float = 1.0
 
@@ -70,6 +88,31 @@ class Scales:
     def tightness(self) -> float:
         """Conductance of what counts as tight [m^3/(s Pa)]."""
         return TIGHT * self.conductance
+
+    @property
+    def rubbing(self) -> float:
+        """Friction at the actuator that makes no difference [N or N m]."""
+        return RUBBING * self.force
+
+    @property
+    def load_rubbing(self) -> float:
+        """The same at the joint [N m or N]."""
+        return RUBBING * self.load_force
+
+    @property
+    def ground(self) -> float:
+        """Shift of a spool's null that makes no difference [m]; none where its opening is not known."""
+        return 0.0 if math.isnan(self.opening) else GROUND * self.opening
+
+    @property
+    def bit(self) -> float:
+        """Deviation of a reading that makes no difference [rad or m]."""
+        return BIT * self.travel
+
+    @property
+    def dissolved(self) -> float:
+        """Air content that makes no difference."""
+        return DISSOLVED
 
     @property
     def damping(self) -> float:
@@ -187,6 +230,7 @@ def hydraulic_scales(
             SLOWED**2 * inertia / spun if spun > 0.0 else math.inf,
         ),
         capacity=area * travel * lever / pressure,
+        opening=full_opening,
         rod_payload=float(joint["cylinder"]["rod_mass"]) * (levers[1] ** 2 - levers[0] ** 2) / spun
         if spun > 0.0
         else 0.0,

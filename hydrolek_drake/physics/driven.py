@@ -18,7 +18,12 @@ from hydrolek_drake.physics.usual import rare
 DRIVEN = np.dtype(
     [("supply_pressure", np.float64), ("spool_position", np.float64), ("chamber_pressures", np.float64)]
 )
-"""Part of a joint's record: 1 where a recording drives the joint, else 0."""
+"""Part of a joint's record: 1 where a recording drives the joint, else 0; `FOLLOWED` where a supply is followed."""
+
+FOLLOWED = 2.0
+"""Of a recorded supply pressure: it drives what lies behind the valves, and what is told is the supply's own, which the
+flow acts on that the valves would draw at that one. The chain is cut so where it is measured, and both parts are held
+against the measurement. A pump whose relief valve is closed would integrate what is drawn at another pressure."""
 
 INPUTS: dict[str, tuple[int, ...]] = {
     "supply_pressure": (SUPPLY,),
@@ -51,17 +56,40 @@ def driven_by(recorded: Probe, outside: Probe) -> Probe:
 
 
 @njit
-def pressure_at_valves(remembered: float, probe: Probe, joint: Any) -> float:
+def pressure_at_valves(remembered: float, outside: Probe, probe: Probe, joint: Any) -> float:
     """Supply pressure [Pa]: as recorded, or the supply's with what is added to it.
 
     Args:
         remembered: see `supply.supply_pressure`.
-        probe: inputs from outside.
+        outside: inputs from outside.
+        probe: the same with what a law adds.
         joint: parameter record.
     """
     if rare(joint) and joint.driven.supply_pressure > 0.0:
-        return probe.supply
+        return outside.supply if is_followed(joint) else probe.supply
     return supply_pressure(remembered, joint) + probe.supply
+
+
+@njit
+def is_followed(joint: Any) -> bool:
+    """Whether the supply is followed beside its recorded pressure."""
+    return rare(joint) and joint.driven.supply_pressure == FOLLOWED
+
+
+@njit
+def pressure_told(remembered: float, at_valves: float, outside: Probe, probe: Probe, joint: Any) -> float:
+    """Supply pressure that is held against what was measured [Pa]: that at the valves, or of a supply that is followed.
+
+    Args:
+        remembered: see `supply.supply_pressure`.
+        at_valves: see `pressure_at_valves` [Pa].
+        outside: inputs from outside.
+        probe: the same with what a law adds.
+        joint: parameter record.
+    """
+    if is_followed(joint):
+        return supply_pressure(remembered, joint) + probe.supply - outside.supply
+    return at_valves
 
 
 @njit

@@ -66,7 +66,7 @@ def driven_on(
     gain += 1.0 + 0.5 * (probe.amplifier + probe_next.amplifier)
     p_a, p_b = _beside_the_spool(s, probe, ports, joint)
     closing_a, closing_b = valve.flow_forces(
-        pressure_at_valves(s.supply, now, joint), p_a, p_b, now.flow_force, joint
+        pressure_at_valves(s.supply, probe, now, joint), p_a, p_b, now.flow_force, joint
     )
     x, xd = solenoid.advanced(
         d.x, d.xd, gain * driving.a, gain * driving.b, h, spool_steps, joint, closing_a, closing_b

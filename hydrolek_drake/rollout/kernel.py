@@ -12,9 +12,11 @@ import numpy as np
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import command, cylinder, hooks, linkage, load, sensor
 from hydrolek_drake.physics.amplifier import Currents
+from hydrolek_drake.physics.driven import is_followed, pressure_told
 from hydrolek_drake.physics.lines.long_line import Lines, lines_in, put_lines
 from hydrolek_drake.physics.probes import Probe, probe_at
 from hydrolek_drake.physics.solenoid import steps_needed
+from hydrolek_drake.physics.supply import supply_pressure
 from hydrolek_drake.physics.usual import rare
 from hydrolek_drake.rollout.drive import Drive, acts_early, driven_on
 from hydrolek_drake.rollout.lines import fed_now, lines_advanced
@@ -120,11 +122,12 @@ def written(
     if lines is None:
         fed = None
     else:
-        fed = fed_now(lines, s, x, time, now, joint)
+        fed = fed_now(lines, s, x, time, probe, now, joint)
     _, _, p_supply, force, drawn = rates(s, x, drive, time, inertia, probe, law, near, 0.0, None, fed, joint)
     out[0] = sensor.reading(play, time, joint) + now.sensor
     out[1], out[2], out[3], out[4], out[5] = s.q, s.w, s.p_a, s.p_b, x
-    out[6], out[7], out[8] = p_supply, force, current_read(s, drive, joint)
+    out[6] = pressure_told(s.supply, p_supply, probe, now, joint)
+    out[7], out[8] = force, current_read(s, drive, joint)
     return drawn
 
 
@@ -147,6 +150,15 @@ def pulled(s: State, share: float, reading: float, measured: np.ndarray) -> tupl
         s.relief,
     )
     return moved, by
+
+
+@njit
+def supply_pulled(s: State, share: float, outside: Probe, joint: Any) -> State:
+    """The state with a share of what the recorded supply pressure is beyond that of a supply that is followed."""
+    if not is_followed(joint):
+        return s
+    supply = s.supply + share * (outside.supply - supply_pressure(s.supply, joint))
+    return State(s.p_a, s.p_b, s.q, s.w, supply, s.tilt, s.tilt_rate, s.lead_q, s.lead_w, s.relief)
 
 
 @njit(cache=True, nogil=True)
@@ -248,7 +260,7 @@ def integrate(
                     if lines is not None:
                         middle = 0.5 * (x + d.x)
                         acting = felt_at(probe, law, time, s, middle, joint)
-                        line, fed = lines_advanced(line, s, middle, time, h, acting, joint)
+                        line, fed = lines_advanced(line, s, middle, time, h, probe, acting, joint)
                     inertia = inertia_at(time, rod, joint)
                     s = one_step(s, x, d.x, drive, time, h, inertia, probe, probe_next, law, near, fed, joint)
                     near = carried_on(near, s, joint)
@@ -264,6 +276,7 @@ def integrate(
         if pull_time > 0.0 and row + 1 < len(times):
             share = 1.0 - math.exp((t - times[row + 1]) / pull_time)
             s, by = pulled(s, share, out[row, 0], measured[row])
+            s = supply_pulled(s, share, probe, joint)
             play += by
     if not playing:
         s = State(s.p_a, s.p_b, s.q, s.w, s.supply, s.tilt, s.tilt_rate, s.q, s.w, s.relief)

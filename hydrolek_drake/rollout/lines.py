@@ -9,7 +9,7 @@ from typing import Any
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import cylinder, fluid, linkage, valve
-from hydrolek_drake.physics.driven import pressure_at_valves
+from hydrolek_drake.physics.driven import is_followed, pressure_at_valves, pressure_told
 from hydrolek_drake.physics.lines.long_line import (
     Ended,
     Fed,
@@ -28,7 +28,7 @@ from hydrolek_drake.rollout.rates import State, rod_side
 
 
 @njit
-def fed_now(lines: Lines, s: State, x: float, time: float, probe: Probe, joint: Any) -> Fed:
+def fed_now(lines: Lines, s: State, x: float, time: float, outside: Probe, probe: Probe, joint: Any) -> Fed:
     """What the chambers are fed at one moment.
 
     Args:
@@ -36,25 +36,32 @@ def fed_now(lines: Lines, s: State, x: float, time: float, probe: Probe, joint: 
         s: the rest of the state.
         x: spool position [m].
         time: since switching on [s].
-        probe: inputs from outside, with what a law adds.
+        outside: inputs from outside.
+        probe: the same with what a law adds.
         joint: parameter record.
     """
-    _, _, drawn = _sources(lines.a.p_0, lines.b.p_0, s, x, time, probe, joint)
+    _, _, drawn = _sources(lines.a.p_0, lines.b.p_0, s, x, time, outside, probe, joint)
     return Fed(lines.a.q_4, lines.b.q_4, drawn)
 
 
 @njit
 def _sources(
-    p_a: float, p_b: float, s: State, x: float, time: float, probe: Probe, joint: Any
+    p_a: float, p_b: float, s: State, x: float, time: float, outside: Probe, probe: Probe, joint: Any
 ) -> tuple[Source, Source, float]:
-    p_supply = pressure_at_valves(s.supply, probe, joint)
+    p_supply = pressure_at_valves(s.supply, outside, probe, joint)
     opened = valve.widened(valve.openings(x, joint), probe.valve)
-    return valve.port_sources(opened, p_supply, p_a, p_b, time, joint, probe.back_a, probe.back_b)
+    at_a, at_b, drawn = valve.port_sources(
+        opened, p_supply, p_a, p_b, time, joint, probe.back_a, probe.back_b
+    )
+    if is_followed(joint):
+        own = pressure_told(s.supply, p_supply, outside, probe, joint)
+        _, _, drawn = valve.port_sources(opened, own, p_a, p_b, time, joint)
+    return at_a, at_b, drawn
 
 
 @njit
 def lines_advanced(
-    lines: Lines, s: State, x: float, time: float, h: float, probe: Probe, joint: Any
+    lines: Lines, s: State, x: float, time: float, h: float, outside: Probe, probe: Probe, joint: Any
 ) -> tuple[Lines, Fed]:
     """The lines after a step, and what they feed the chambers in its mean.
 
@@ -64,7 +71,8 @@ def lines_advanced(
         x: mean position of the spool over the step [m].
         time: since switching on [s].
         h: step [s], more than none.
-        probe: inputs from outside, with what a law adds.
+        outside: inputs from outside.
+        probe: the same with what a law adds.
         joint: parameter record.
     """
     q, w = rod_side(s, joint)
@@ -76,13 +84,13 @@ def lines_advanced(
     of_a, of_b = pipes(joint)
     taken_a, taken_b = joint.cylinder.area_a * v, -joint.cylinder.area_b * v
     a, b = Ended(lines.a, s.p_a), Ended(lines.b, s.p_b)
-    source_a, source_b, drawn = _sources(lines.a.p_0, lines.b.p_0, s, x, time, probe, joint)
+    source_a, source_b, drawn = _sources(lines.a.p_0, lines.b.p_0, s, x, time, outside, probe, joint)
     part, open_a, open_b = GAMMA * h, source_a.conductance, source_b.conductance
     k_a = stage(lines.a, _rates(a, source_a, taken_a, stiff_a, of_a), open_a, 1.0 / stiff_a, part, of_a)
     k_b = stage(lines.b, _rates(b, source_b, taken_b, stiff_b, of_b), open_b, 1.0 / stiff_b, part, of_b)
     next_a, next_b = moved(a, k_a, h), moved(b, k_b, h)
     source_a, source_b, later = _sources(
-        max(next_a.line.p_0, 0.0), max(next_b.line.p_0, 0.0), s, x, time + h, probe, joint
+        max(next_a.line.p_0, 0.0), max(next_b.line.p_0, 0.0), s, x, time + h, outside, probe, joint
     )
     m_a = moved(_rates(next_a, source_a, taken_a, stiff_a, of_a), k_a, -2.0)
     m_b = moved(_rates(next_b, source_b, taken_b, stiff_b, of_b), k_b, -2.0)

@@ -12,7 +12,9 @@ from hydrolek_drake.physics import base, cylinder, end_stops, fluid, hooks, link
 from hydrolek_drake.physics.angle import Angle, AngleKept, angle, angle_near
 from hydrolek_drake.physics.driven import (
     chamber_pressures,
+    is_followed,
     pressure_at_valves,
+    pressure_told,
     pressures_are_driven,
     spool_position,
 )
@@ -180,12 +182,15 @@ def rates(
     elif not oil:
         force = cylinder.motor_force(voltage, joint)
     else:
-        p_supply = pressure_at_valves(s.supply, probe, joint)
+        p_supply = pressure_at_valves(s.supply, outside, probe, joint)
         if fed is None:
             opened = valve.widened(valve.openings(x, joint), probe.valve)
             flow_a, flow_b, drawn, settle_a, settle_b = valve.chamber_flows(
                 opened, p_supply, s.p_a, s.p_b, time, joint, probe.back_a, probe.back_b
             )
+            if is_followed(joint):
+                own = pressure_told(s.supply, p_supply, outside, probe, joint)
+                _, _, drawn, _, _ = valve.chamber_flows(opened, own, s.p_a, s.p_b, time, joint)
         else:
             flow_a, flow_b, settle_a, settle_b = valve.beside_lines(fed.a, fed.b, s.p_a, s.p_b, joint)
             drawn = fed.drawn

@@ -56,7 +56,7 @@ def recorded(numbers: dict[str, str], seconds: float) -> Recording:
 def test_behind_the_cut_nothing_depends_on_the_supply(recording) -> None:
     rig = load_rig("hopsan_link")
     (experiment,) = experiments_of(rig, recording)
-    part = experiment.with_recorded_supply()
+    part = experiment.cut_at_supply().behind_cut()
     assert [c.model for c in part.channels] == ["reading", "pressure_a", "pressure_b"]
     parameters = ParameterSet(rig, free_parameters(rig))
     unit = parameters.unit()
@@ -65,7 +65,33 @@ def test_behind_the_cut_nothing_depends_on_the_supply(recording) -> None:
     own = problem.residuals(unit)
     assert np.array_equal(problem.residuals(np.where(supply, 0.3, unit)), own)
     assert not np.array_equal(problem.residuals(np.where(supply, unit, 0.3)), own)
-    assert part.with_recorded_supply() is part
+    assert part.cut_at_supply() is part
+
+
+def test_before_the_cut_nothing_depends_on_the_supply_s_pressure() -> None:
+    """The supply under the flow that is drawn of it is at the noise with its own numbers.
+
+    A pressure that is off stays the supply's own, so that the signals behind the cut stay as they are. The relief valve
+    is one that does not stick: where one does depends on all before.
+    """
+    numbers = {**TRUE, "supply.relief_hysteresis": "0 bar"}
+    rig = load_rig("hopsan_link", numbers)
+    (experiment,) = experiments_of(rig, recorded(numbers, seconds=3.0))
+    cut = experiment.cut_at_supply()
+    assert [c.model for c in cut.before_cut().channels] == ["supply_pressure"]
+    assert cut.cut_at_supply() is cut and cut.uncut().cut is None
+    records = rig.records()
+    own = cut.simulate(records, 2.5e-4).signals
+    left = cut.before_cut().residuals(own)
+    # 300 values tell the noise to 4 %, and the recorded pressure, noise included, drives the chambers
+    assert np.sqrt(left @ left / cut.before_cut().counted) < 1.15
+    other = load_rig("hopsan_link", {**numbers, "supply.displacement": "24 cm^3/rev"})
+    off = cut.simulate(other.records(), 2.5e-4).signals
+    assert np.array_equal(off.pressure_a, own.pressure_a) and np.array_equal(off.reading, own.reading)
+    rise = 3e8 * (29.0 - 24.0) * 1e-6 * rig.value("supply.speed") / (2.0 * np.pi)  # slope times flow
+    assert np.abs(off.supply_pressure - own.supply_pressure).max() > 0.9 * rise
+    whole = cut.uncut().simulate(records, 2.5e-4).signals
+    assert np.array_equal(whole.reading, experiment.simulate(records, 2.5e-4).signals.reading)
 
 
 @pytest.mark.thorough

@@ -29,13 +29,14 @@ class Judged:
         held_out_counted: how many of them count.
         probability: among all that were judged.
         chi_squared: r' (I + J S J')^-1 r; None for r' r.
+        shares: of each value in it; None for those in r' r. # (values,)
         spread: log det (I + J S J').
         behind: log-density of the held-out data less than that of the most probable (`with_differences`).
         behind_error: standard error of that.
         fitted_too: times the noise that it leaves of these data beyond what it leaves of the others, fitted to both;
             behind the recorded pressure of a pump where there is one; None where nobody asked.
         left_behind_cut: times the noise that it leaves of these data behind the recorded pressure of a pump
-            (`search.from_the_cut`); None where there is none, or nobody asked.
+            (`over_noise_behind`); None where there is none, or nobody asked.
         trained_behind_cut: the same of the training data.
         stands: recording (`windows.recording_of`) -> additions and place in the unit cube there (`nuisance`).
     """
@@ -45,6 +46,7 @@ class Judged:
     held_out_counted: int
     probability: float = math.nan
     chi_squared: float | None = None
+    shares: np.ndarray | None = None
     spread: float = 0.0
     behind: float = 0.0
     behind_error: float = math.nan
@@ -107,6 +109,13 @@ class Judged:
             return 0.5 * self.chi_squared
         return 0.5 * float(self.held_out @ self.held_out)
 
+    @property
+    def lost(self) -> np.ndarray:
+        """What each value contributes to `half_chi_squared`. # (values,)."""
+        if self.shares is None:
+            return 0.5 * self.held_out**2
+        return self.shares * self.half_chi_squared / max(float(self.shares.sum()), 1.0)
+
 
 def with_probabilities(judged: Sequence[Judged]) -> list[Judged]:
     """The same, with probabilities, the most probable first."""
@@ -137,19 +146,54 @@ def with_differences(judged: Sequence[Judged], held_out: Sequence[Experiment]) -
         judged: structures with residuals on the held-out data, the most probable first.
         held_out: these data.
     """
-    blocks = _blocks(held_out)
-    best = 0.5 * judged[0].held_out ** 2
-    told = []
+    told, blocks = [], blocks_of(held_out)
     for each in judged:
-        sums = np.bincount(blocks[blocks >= 0], (0.5 * each.held_out**2 - best)[blocks >= 0])
-        sums = sums[np.unique(blocks[blocks >= 0])]
-        error = math.sqrt(sums.size * float(np.var(sums, ddof=1))) if sums.size > 1 else math.inf
-        told.append(replace(each, behind=float(sums.sum()), behind_error=error))
+        behind, error = difference(judged[0], each, blocks)
+        told.append(replace(each, behind=behind, behind_error=error))
     return tuple(told)
 
 
-def _blocks(held_out: Sequence[Experiment]) -> np.ndarray:
-    """Number of the block of each residual; -1 of one that does not count. # (values,)."""
+def difference(better: Judged, other: Judged, blocks: np.ndarray) -> tuple[float, float]:
+    """By how much the log-density of held-out data is less given another structure, and its standard error over blocks.
+
+    Args:
+        better: a structure with residuals on the held-out data.
+        other: another one.
+        blocks: see `blocks_of`. # (values,)
+    """
+    lost = other.lost - better.lost
+    sums = np.bincount(blocks[blocks >= 0], lost[blocks >= 0])[np.unique(blocks[blocks >= 0])]
+    error = math.sqrt(sums.size * float(np.var(sums, ddof=1))) if sums.size > 1 else math.inf
+    return float(sums.sum()), error
+
+
+def with_behind_cut(judged: Judged, training: Sequence[Experiment], held_out: Sequence[Experiment]) -> Judged:
+    """The same with what it leaves behind the recorded pressure of a pump, where the chain is cut there."""
+    return replace(
+        judged,
+        left_behind_cut=over_noise_behind(judged.held_out, held_out),
+        trained_behind_cut=over_noise_behind(judged.hypothesis.fit.residuals, training),
+    )
+
+
+def over_noise_behind(residuals: np.ndarray, experiments: Sequence[Experiment]) -> float | None:
+    """Times the noise that is left behind the recorded pressure of a pump; None where the chain is not cut.
+
+    Args:
+        residuals: of all channels. # (values,)
+        experiments: whose.
+    """
+    if not any(e.cut for e in experiments):
+        return None
+    behind = np.concatenate(
+        [np.repeat([c.model != "supply_pressure" for c in e.channels], e.time.size) for e in experiments]
+    )
+    counted = sum(e.behind_cut().counted for e in experiments)
+    return math.sqrt(float(residuals[behind] @ residuals[behind]) / max(counted, 1))
+
+
+def blocks_of(held_out: Sequence[Experiment]) -> np.ndarray:
+    """Number of the block of each value of held-out data; -1 of one that does not count. # (values,)."""
     parts, first = [], 0
     for experiment in held_out:
         own = np.where(experiment.used, short_blocks(experiment) + first, -1)

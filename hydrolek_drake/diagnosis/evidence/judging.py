@@ -16,14 +16,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.judged import Judged, with_differences, with_probabilities
+from hydrolek_drake.diagnosis.evidence.judged import (
+    Judged,
+    blocks_of,
+    difference,
+    with_behind_cut,
+    with_differences,
+    with_probabilities,
+)
 from hydrolek_drake.diagnosis.evidence.nuisance import own_of_recordings, with_stands
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.problems import problem_with
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
 from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
-from hydrolek_drake.diagnosis.search.from_the_cut import BehindCut
+from hydrolek_drake.diagnosis.search.from_the_cut import fitted_behind
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
@@ -63,23 +70,26 @@ def _looked_at(
     )
 
 
-def predictive(residuals: np.ndarray, jacobian: np.ndarray, fit: Fit) -> tuple[float, float]:
-    """Squared residuals r' (I + J S J')^-1 r and spread log det (I + J S J') of held-out data.
+def predictive(residuals: np.ndarray, jacobian: np.ndarray, fit: Fit) -> tuple[np.ndarray, float]:
+    """What each value contributes to r' (I + J S J')^-1 r of held-out data, and the spread log det (I + J S J').
 
     Args:
         residuals: r. # (values,)
         jacobian: J. # (values, n)
         fit: to the training data; S is the inverse of its information, with a range's variance for a parameter of
             which nothing else is known.
+
+    Returns:
+        The contributions, some of which may be less than nothing, and the spread. # (values,)
     """
     known = fit.jacobian.T @ fit.jacobian + fit.prior_jacobian.T @ fit.prior_jacobian
     free = np.diag(fit.prior_jacobian) == 0.0
     known[free, free] += 1.0 / SPREAD**2
     both = known + jacobian.T @ jacobian
     pulled = jacobian.T @ residuals
-    chi_squared = float(residuals @ residuals - pulled @ np.linalg.solve(both, pulled))
+    shares = residuals * (residuals - jacobian @ np.linalg.solve(both, pulled))
     spread = float(np.linalg.slogdet(both)[1] - np.linalg.slogdet(known)[1])
-    return chi_squared, spread
+    return shares, spread
 
 
 def pays(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
@@ -93,13 +103,21 @@ def pays(hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
     )
 
 
-def predicts(judged: Judged, others: Sequence[Judged]) -> bool:
+def predicts(judged: Judged, others: Sequence[Judged], blocks: np.ndarray) -> bool:
     """Whether the held-out data are denser given a hypothesis than given everything that it contains.
 
-    What lowers the error of the training data alone stands for something else there, such as an error of the step.
+    What lowers the error of the training data alone stands for something else there, such as an error of the step. The
+    simpler one is kept also where it is behind by less than a standard error of the difference over blocks (Breiman,
+    Friedman, Olshen, Stone, Classification and regression trees, 1984, section 3.4.3): what soaks up what every model
+    leaves out gains in some blocks and loses in others.
+
+    Args:
+        judged: the hypothesis.
+        others: all that were judged.
+        blocks: of the data by which they were, see `judged.blocks_of`. # (values,)
     """
     return all(
-        other.log_density < judged.log_density
+        judged.log_density - other.log_density > difference(judged, other, blocks)[1]
         for other in others
         if _to_pay(judged.hypothesis, other.hypothesis) > -math.inf
     )
@@ -136,7 +154,8 @@ def judge_structures(
             refined += race(bench, entrants, (replace(last, rounds=rounds, keep=len(entrants)),), cores)
     refined = [h for h in refined if pays(h, refined) and all(c.says_something(h.values) for c in h.effects)]
     judged = _predicted(bench, refined, held_out, settings, cores)
-    return with_probabilities([j for j in judged if predicts(j, judged)])
+    blocks = blocks_of(held_out)
+    return with_probabilities([j for j in judged if predicts(j, judged, blocks)])
 
 
 def _contenders(found: Tried) -> list[Hypothesis]:
@@ -183,8 +202,9 @@ def _predicted(
         some = [next(told) for _ in held_out]
         residuals = np.concatenate([place.residuals for place in some])
         slopes = np.concatenate([_of_the_machine(place, h) for place in some])
-        chi_squared, spread = predictive(residuals, slopes, h.fit)
-        one = replace(own, held_out=residuals, chi_squared=chi_squared, spread=spread)
+        shares, spread = predictive(residuals, slopes, h.fit)
+        chi_squared = float(shares.sum())
+        one = replace(own, held_out=residuals, chi_squared=chi_squared, shares=shares, spread=spread)
         is_far = one.over_noise > NOISE.far or float(residuals @ residuals) - chi_squared > EVIDENCE.nearby
         far.append(is_far and any(h is d for d in doubtful) and not own_of_recordings(h).any())
         judged.append(one)
@@ -218,7 +238,6 @@ def left_of(
     held_out: Sequence[Experiment],
     settings: Settings,
     cores: int,
-    behind: BehindCut | None = None,
 ) -> tuple[Judged, ...]:
     """The same structures with what they leave of other data than those by which they were judged.
 
@@ -232,7 +251,6 @@ def left_of(
         held_out: data that nothing was fitted to, and by which nothing was chosen.
         settings: of the search.
         cores: that roll out at the same time.
-        behind: the best one behind the recorded pressure of a pump; None where there is none.
     """
     judged = [with_stands(bench, j, held_out, settings, cores) for j in judged]
     requests = []
@@ -248,18 +266,23 @@ def left_of(
     answers = iter(residuals_at(requests, bench.pool, cores))
     counted = sum(experiment.counted for experiment in held_out)
     told = tuple(
-        replace(j, held_out=np.concatenate([next(answers)[0] for _ in held_out]), held_out_counted=counted)
+        replace(
+            j,
+            held_out=np.concatenate([next(answers)[0] for _ in held_out]),
+            held_out_counted=counted,
+            chi_squared=None,
+            shares=None,
+        )
         for j in judged
     )
     told = with_differences(told, held_out)
-    if behind is not None:
-        left, trained = behind.left(held_out), behind.left(bench.training)
-        told = (replace(told[0], left_behind_cut=left, trained_behind_cut=trained), *told[1:])
+    told = (with_behind_cut(told[0], bench.training, held_out), *told[1:])
     if not told[0].fails_ahead_alone or own_of_recordings(told[0].hypothesis).any():
         return told
     asked, best, ahead = bench, told[0].hypothesis, list(held_out)
+    behind = fitted_behind(bench, best, settings, cores)
     if behind is not None:
-        asked, best, ahead = behind.part, behind.structure, behind.weighted(held_out)
+        (asked, best), ahead = behind, [e.behind_cut() for e in held_out]
     [squares] = _beyond(asked, [best], ahead, settings, cores)
     counted = max(sum(e.counted for e in ahead), 1)
     return (replace(told[0], fitted_too=math.sqrt(squares / counted)), *told[1:])

@@ -1,38 +1,34 @@
-"""Structures fitted part by part where a pump's pressure was recorded: behind the cut first, and then the supply."""
+"""The two parts of a machine whose pump's pressure was recorded: what lies behind it, and the supply before it.
+
+The chain is cut there (`Experiment.cut_at_supply`): the recorded pressure drives what lies behind it, and the supply is
+followed under the flow that this draws.
+"""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from hydrolek_drake.diagnosis import trace
-from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.settings import NOISE
 from hydrolek_drake.diagnosis.structures.addition import Addition
-from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
-from hydrolek_drake.identification.least_squares.continuation import Continuation
+from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Workbench
+from hydrolek_drake.identification.experiments.experiment import Experiment
+from hydrolek_drake.identification.least_squares.continuation import Continuation, cut_where_measured
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.driven_by import SUPPLY, counts
 
 
-def can_be_cut(bench: Workbench) -> bool:
-    """Whether a pump's pressure is followed, and something of the supply is searched.
-
-    What is left above the noise then is no local minimum of the supply's numbers once they are fitted by parts, so that
-    a model that explains the data well enough to be called right need not be searched for others.
-    """
-    return _way(bench, ()).parts() is not None
+def cut(bench: Workbench, experiments: Sequence[Experiment]) -> tuple[Experiment, ...]:
+    """Experiments cut where a pump's pressure was recorded; themselves where none was."""
+    return cut_where_measured(bench.parameters(()), experiments)
 
 
 def enough_for(bench: Workbench) -> float:
     """Times the noise that need not be explained unless something promises to.
 
-    What a recorded supply pressure does between its samples is no missing physics. Nor is what fits by parts leave of a
-    line that rings, which no model tells for long: held-out data are held to as much (`Judged.explains_ahead`), and
-    what lies behind the recorded pressure was explained without it.
+    What a recorded supply pressure does between its samples is no missing physics.
     """
-    if bench.cut:
-        return NOISE.explained
-    return NOISE.far if can_be_cut(bench) else NOISE.at
+    return NOISE.explained if bench.cut else NOISE.at
 
 
 def acts_behind(rig: Rig, path: str) -> bool:
@@ -41,71 +37,41 @@ def acts_behind(rig: Rig, path: str) -> bool:
 
 
 def behind_supply(bench: Workbench) -> Workbench | None:
-    """The machine behind the recorded pressure of its pump, without the supply's numbers; None where none is.
-
-    Joints that move together are rolled out with the supply that they share.
-    """
-    parts = None if bench.together else _way(bench, ()).parts()
-    if parts is None:
+    """The machine behind the recorded pressure of its pump, without the supply's numbers; None where it is not cut."""
+    if not bench.cut:
         return None
     own = [free for free in bench.nominal if acts_behind(bench.rig, free.path)]
+    parts = [e.behind_cut() for e in bench.training]
     return Workbench(
         bench.rig, own, parts, bench.pool, bench.cores, bench.progress, signals_apart=bench.signals_apart
     )
 
 
 def supply_before(
-    bench: Workbench, structure: Hypothesis, known: Sequence[Mapping[str, float]], cores: int
-) -> dict[str, float]:
-    """Numbers of the supply before a structure that was fitted behind its recorded pressure: full path -> value.
+    bench: Workbench,
+    effects: tuple[Addition, ...],
+    values: Mapping[str, float],
+    known: Sequence[Mapping[str, float]],
+    cores: int,
+) -> list[dict[str, float]]:
+    """Numbers of the supply before a structure whose others are known, the best first: full path -> value.
 
     Args:
         bench: data and problems.
-        structure: as fitted behind the pressure.
-        known: numbers of the supply as fitted to other data.
+        effects: of the structure; what it adds to the supply is found too.
+        values: full path -> value of the others.
+        known: numbers of the supply as fitted before.
         cores: that roll out at the same time.
     """
-    way = _way(bench, structure.effects, cores)
-    starts = [way.parameters.unit({**structure.values, **supply}) for supply in ({}, *known)]
-    found = way.parameters.values(way.supply_before(starts))
-    return {path: value for path, value in found.items() if not acts_behind(bench.rig, path)}
-
-
-def by_parts(
-    bench: Workbench, effects: tuple[Addition, ...], values: Mapping[str, float], cores: int
-) -> dict[str, float]:
-    """Numbers of a structure by a fit that is cut at the recorded supply pressure; see `least_squares.continuation`.
-
-    Args:
-        bench: data and problems.
-        effects: of the structure.
-        values: full path -> value where it begins; also with no more than those of what it adds.
-        cores: that roll out at the same time.
-
-    Returns:
-        Full path -> value.
-    """
-    way = _way(bench, effects, cores)
-    parameters = way.parameters
-    starts = [parameters.unit(dict(values)), parameters.unit(of_additions(values))]
-    if not effects:
-        starts[1] = np.full(len(parameters), 0.5)
-    unit = way.from_the_cut(starts)
-    assert unit is not None
-    return parameters.values(unit)
-
-
-def _way(bench: Workbench, effects: tuple[Addition, ...], cores: int = 1) -> Continuation:
-    """Fits of a structure by continuation."""
     parameters = bench.parameters(effects)
     prior = np.full(len(parameters), np.inf)
     prior[: len(bench.nominal)] = SPREAD
 
     def told(evaluations: int, over_noise: float, unit: np.ndarray) -> None:
         bench.evaluations += evaluations
-        trace(f"  by parts {over_noise:.4f}")
+        trace(f"  supply {over_noise:.4f}")
 
-    return Continuation(
+    way = Continuation(
         parameters,
         tuple(bench.training),
         bench.pool,
@@ -115,3 +81,6 @@ def _way(bench: Workbench, effects: tuple[Addition, ...], cores: int = 1) -> Con
         bench.alive,
         told,
     )
+    starts = [parameters.unit({**values, **supply}) for supply in ({}, *known)]
+    found = [parameters.values(unit) for unit in way.supply_before(starts)]
+    return [{path: v for path, v in each.items() if not acts_behind(bench.rig, path)} for each in found]

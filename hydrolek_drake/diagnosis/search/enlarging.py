@@ -16,7 +16,7 @@ from hydrolek_drake.diagnosis.search.by_continuation import (
     steps_for,
     traced,
 )
-from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
+from hydrolek_drake.diagnosis.search.by_parts import supply_before
 from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.search.openings import Opening
 from hydrolek_drake.diagnosis.search.standing_in import standing_in
@@ -51,19 +51,27 @@ def enlarged(
     runners = _led_on(bench, opening, candidates, settings, cores)
     if runners and over_noise_of(runners[0]) > enough:
         runners = [*_farther(bench, runners[0], settings, cores), *runners]
-        if can_be_cut(bench) and parent.fit.over_noise > enough:
-            runners = [*_by_parts(bench, runners, enough, settings, cores), *runners]
+    if runners and bench.cut and bench.follows_supply and parent.fit.over_noise > enough:
+        runners = sorted(
+            [*_with_supply(bench, runners, NOISE.explained, settings, cores), *runners], key=over_noise_of
+        )
     if runners and over_noise_of(runners[0]) > enough and not runners[0].place.ended:
         runners = [*run(bench, runners[:1], settings.ended, cores, traced("first to the end")), *runners[1:]]
-    better = None
     reached = min((over_noise_of(r) for r in runners), default=math.inf)
     if reached > enough and parent.fit.over_noise > enough:
-        if not parent.effects and not found.nominal_continued:
-            better = continued_nominal(bench, parent, found, settings, cores)
-            if better is not None:
-                found.keep(better)
         runners += continued(bench, opening, settings, cores)
     ended = run(bench, runners, settings.ended, cores, traced("end")) if runners else []
+    better = None
+    reached = min((over_noise_of(r) for r in ended), default=math.inf)
+    if (
+        reached > enough
+        and parent.fit.over_noise > enough
+        and not parent.effects
+        and not found.nominal_continued
+    ):
+        better = continued_nominal(bench, parent, found, settings, cores)
+        if better is not None:
+            found.keep(better)
     fits = hypotheses_of(bench, ended, settings.ended[-1])
     for each in fits:
         found.keep(each)
@@ -111,10 +119,10 @@ def _farther(bench: Workbench, runner: Runner, settings: Settings, cores: int) -
     return run(bench, entered(bench, [Entrant(wide, values)], rungs[0], cores), rungs, cores, traced("wider"))
 
 
-def _by_parts(
+def _with_supply(
     bench: Workbench, runners: Sequence[Runner], enough: float, settings: Settings, cores: int
 ) -> list[Runner]:
-    """Structures fitted part by part, one after the other until one leaves no more than is enough; the best first."""
+    """Structures whose supply is found anew, one after the other until one leaves no more than is enough."""
     first: dict[frozenset[str], Runner] = {}
     for runner in runners:
         if over_noise_of(runner) <= NOISE.far * over_noise_of(runners[0]):
@@ -122,12 +130,13 @@ def _by_parts(
     ended: list[Runner] = []
     for runner in list(first.values())[: settings.parted]:
         values = runner.place.problem.parameters.values(runner.place.unit)
-        parted = Entrant(runner.effects, by_parts(bench, runner.effects, values, cores))
-        begun = entered(bench, [parted], settings.again, cores)
-        ended += run(bench, begun, (settings.again,), cores, traced("by parts"))
+        places = supply_before(bench, runner.effects, values, [], cores)
+        anew = [Entrant(runner.effects, {**values, **supply}) for supply in places]
+        rung = replace(settings.again, keep=1)
+        ended += run(bench, entered(bench, anew, rung, cores), (rung,), cores, traced("supply"))
         if over_noise_of(ended[-1]) <= enough:
             break
-    return sorted(ended, key=over_noise_of)
+    return ended
 
 
 def _lessened(

@@ -1,12 +1,11 @@
-"""A search that begins where the chain is cut: behind the recorded pressure of a pump, and then all of the machine.
+"""A search that begins where the chain is cut: behind the recorded pressure of a pump, and then the supply too.
 
-A line between a pump and its relief valve rings, so that rollouts of all of the machine have local minima for every
-oscillation that the supply's numbers are off. With the recorded pressure in place of the supply there are none of
-these, and what lies behind it shows what it lacks. What was found there goes on into all of the machine, whose supply
-may lack something too.
+A line between a pump and its relief valve rings, so that uncut rollouts have local minima for every oscillation that
+the supply's numbers are off. With the recorded pressure in place of the supply there are none of these, and what lies
+behind it shows what it lacks. Then the supply's numbers are found under the flow that this draws, and the search goes
+on among what the supply may lack.
 """
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -19,9 +18,7 @@ from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
-from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench, key_of
-from hydrolek_drake.identification.experiments.experiment import Experiment
 
 
 def search_machine(
@@ -90,48 +87,27 @@ def _behind_of(bench: Workbench, seeds: Sequence[Hypothesis]) -> list[Hypothesis
     return list(kept.values())
 
 
-@dataclass(frozen=True)
-class BehindCut:
-    """What lies behind the recorded pressure of a pump, fitted for itself.
-
-    Numbers that were fitted to all of the machine are bent by what the line does otherwise than its model.
-
-    Attributes:
-        part: data and problems.
-        structure: fitted to them.
-    """
-
-    part: Workbench
-    structure: Hypothesis
-
-    def weighted(self, experiments: Sequence[Experiment]) -> list[Experiment]:
-        """Recordings of all of the machine, cut off and weighed by what the structure leaves of them."""
-        return weighted_by(self.part, self.structure, [e.with_recorded_supply() for e in experiments])
-
-    def left(self, experiments: Sequence[Experiment]) -> float:
-        """Times the noise that it leaves of recordings of all of the machine."""
-        weighted = self.weighted(experiments)
-        residuals = self.part.residuals(self.structure, weighted, self.part.step_for(self.structure.effects))
-        return math.sqrt(float(residuals @ residuals) / max(sum(e.counted for e in weighted), 1))
-
-
-def behind_cut(bench: Workbench, structure: Hypothesis, settings: Settings, cores: int) -> BehindCut | None:
-    """A structure behind the cut, fitted from where all of the machine was; None where there is no cut.
+def fitted_behind(
+    bench: Workbench, structure: Hypothesis, settings: Settings, cores: int
+) -> tuple[Workbench, Hypothesis] | None:
+    """What lies behind the recorded pressure of a pump, fitted for itself from where all of the machine was.
 
     Args:
         bench: data and problems of all of the machine.
         structure: fitted to all of the machine.
         settings: of the search.
         cores: that roll out at the same time.
+
+    Returns:
+        Data and problems, and the structure; None where there is no cut.
     """
     part = behind_supply(bench)
     if part is None:
         return None
     [behind] = _behind_of(bench, [structure])
-    part.training = tuple(weighted_by(part, behind, part.training))
     [fitted] = race(part, [Entrant(behind.effects, behind.values)], (settings.again,), cores)
     bench.evaluations += part.evaluations
-    return BehindCut(part, fitted)
+    return part, fitted
 
 
 def _with_supply(
@@ -157,7 +133,7 @@ def _with_supply(
     known = [
         {path: value for path, value in h.values.items() if not acts_behind(bench.rig, path)} for h in nearest
     ]
-    supply = supply_before(bench, best, known, cores)
+    supply = supply_before(bench, best.effects, best.values, known, cores)[0]
     return [replace(h, values={**h.values, **supply}) for h in chosen.values()]
 
 

@@ -6,7 +6,6 @@ from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal, out_of_local_minima
-from hydrolek_drake.diagnosis.search.by_parts import by_parts, can_be_cut
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import FITS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
@@ -14,39 +13,43 @@ from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
 
 def fit_nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
-    """The nominal model by free rollouts from the rig's own numbers.
+    """The nominal model by free rollouts from the rig's own numbers; or where a search goes on, what that one found.
 
     Nothing is below the noise, so that a fit that reaches it needs no other starts. Where one is near it, so that
     what is missing is small beside what a wrong local minimum leaves, it is fitted by continuation too; where it is
-    far, only if no addition to it reaches the noise (`openings`). Where a pump's pressure was recorded it is fitted
-    part by part instead: a line that rings has many local minima.
+    far, only if no addition to it reaches the noise (`enlarging`).
     """
-    known = next((h.values for h in found.seeds if not h.effects), {})
-    if not known and can_be_cut(bench):
-        known = by_parts(bench, (), {}, cores)
-    rungs = (settings.led,) if known else (*settings.free, settings.ended[0])
-    best = as_weighed(bench, race(bench, [Entrant((), known)], rungs, cores)[0], settings, cores)
+    if found.seeds:
+        _go_on(bench, found, settings, cores)
+        return
+    rungs = (*settings.free, settings.ended[0])
+    best = as_weighed(bench, race(bench, [Entrant((), {})], rungs, cores)[0], settings, cores)
     trace(f"nominal {best.fit.over_noise:.4f}")
-    if not known and NOISE.at < best.fit.over_noise < NOISE.far:
+    if NOISE.at < best.fit.over_noise < NOISE.far:
         better = continued_nominal(bench, best, found, settings, cores)
         best = best if better is None else as_weighed(bench, better, settings, cores)
-    found.nominal_continued = found.nominal_continued or bool(known)
     found.keep(best)
     found.weighed_at = best.fit.over_noise
-    if found.seeds:
-        rung = replace(settings.again, keep=len(found.seeds))
-        fits = race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (rung,), cores)
-        for each in fits:
+
+
+def _go_on(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
+    """Structures that were fitted to other data, the nominal model among them, the data weighed by the best one."""
+    first = min(found.seeds, key=lambda h: h.fit.over_noise)
+    bench.training = tuple(weighted_by(bench, first, bench.training))
+    rung = replace(settings.again, keep=len(found.seeds))
+    fits = race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (rung,), cores)
+    for each in fits:
+        found.keep(each)
+    best = found.best  # what it contains may only have been fitted in another local minimum
+    trace(f"nominal {found.baseline.fit.over_noise:.4f}, best {best.fit.over_noise:.4f}")
+    found.nominal_continued = True
+    found.weighed_at = best.fit.over_noise
+    without = [Entrant(best.without(c), best.values_without(c)) for c in best.effects]
+    if without:
+        for each in race(bench, without, (replace(settings.again, keep=len(without)),), cores):
             found.keep(each)
-        best = found.best  # what it contains may only have been fitted in another local minimum
-        without = [Entrant(best.without(c), best.values_without(c)) for c in best.effects]
-        if without:
-            for each in race(bench, without, (replace(settings.again, keep=len(without)),), cores):
-                found.keep(each)
-        if (
-            found.best.effects
-        ):  # where a fit to other data ended is another local minimum of it, so both are told
-            out_of_local_minima(bench, [*fits, *found.seeds], found, settings, cores)
+    if best.effects:  # where a fit to other data ended is another local minimum of it, so both are told
+        out_of_local_minima(bench, [*fits, *found.seeds], found, settings, cores)
 
 
 def as_weighed(bench: Workbench, structure: Hypothesis, settings: Settings, cores: int) -> Hypothesis:

@@ -33,7 +33,9 @@ class Tried:
     lessened: Hypothesis | None = None
 
     def keep(self, hypothesis: Hypothesis) -> None:
-        """Remember it if it is the best fit of its structure."""
+        """Remember it if it is the best fit of its structure, and all that it adds makes a difference in practice."""
+        if not all(c.says_something(hypothesis.values) for c in hypothesis.effects):
+            return
         known = self.hypotheses.get(hypothesis.ids)
         if known is None or hypothesis.fit.objective < known.fit.objective:
             self.hypotheses[hypothesis.ids] = hypothesis

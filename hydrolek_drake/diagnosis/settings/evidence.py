@@ -64,7 +64,7 @@ class Gains:
     needed: float = 12.0
     """Smallest gain that is followed up: 3.5 standard deviations of one size."""
 
-    promising: float = 0.5
+    promising: float = 0.75
     """An effect is tried if it promises this share of what it must bring: the sizes at which it was tried may be
     wrong."""
 

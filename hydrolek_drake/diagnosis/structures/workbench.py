@@ -180,6 +180,11 @@ class Workbench:
         """Whether a recorded signal stands in place of a part of the machine, which the rig does not say."""
         return any(experiment.cut for experiment in self.training)
 
+    @property
+    def follows_supply(self) -> bool:
+        """Whether a supply's pressure is among what is followed."""
+        return any(channel.model == "supply_pressure" for e in self.training for channel in e.channels)
+
     def parameters(self, effects: Sequence[Addition]) -> ParameterSet:
         """The searched parameters of the nominal model with these effects."""
         own = [p for candidate in effects for p in candidate.free]

@@ -1,5 +1,6 @@
 """One recording of one joint, prepared so that a rollout can be held against it again and again."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,6 +9,7 @@ from hydrolek_drake.identification.experiments.channel import Channel, faithful
 from hydrolek_drake.identification.experiments.neighbours import rows_at, with_recorded
 from hydrolek_drake.identification.experiments.start import without_offset
 from hydrolek_drake.identification.experiments.thinning import Blocks, block_size
+from hydrolek_drake.physics.driven import FOLLOWED
 from hydrolek_drake.physics.probes import PROBES, SUPPLY
 from hydrolek_drake.rollout.kernel import PULLED
 from hydrolek_drake.rollout.rest import rest_state_at_reading, state_at_reading
@@ -41,7 +43,8 @@ class Experiment:
         others_error: by how much each channel of a rollout is wrong since `others` is not quite what they do; None if
             that is not known. # (channels, n)
         recorded: what is recorded in place of a part of the model, as probes of the rollout; None for nothing.
-        cut: part of the model that `recorded` replaces besides those that the rig names, see `physics.driven`.
+        cut: part of the model that `recorded` replaces for what lies behind it, besides those that the rig names, while
+            the part itself is followed under what is drawn of it (`physics.driven.FOLLOWED`).
         state: where a joint that does not rest at the beginning is, as an observer left it, see `kernel.integrate`; it
             is moved to where the sensor reads `start`. None for one that rests. # (17,)
     """
@@ -104,7 +107,7 @@ class Experiment:
         record = records[self.index : self.index + 1]
         if self.cut is not None:
             record = record.copy()
-            record["driven"][self.cut] = 1.0
+            record["driven"][self.cut] = FOLLOWED
         return Run(
             record,
             self.command_times,
@@ -177,22 +180,47 @@ class Experiment:
             command = np.concatenate([command[:before], [neutral, command[resumed]], command[after:]])
         return replace(self, command_times=times, command=command)
 
-    def with_recorded_supply(self) -> "Experiment":
-        """The same with the recorded supply pressure in place of the supply, cut in two where it is measured.
+    def cut_at_supply(self) -> "Experiment":
+        """The same, cut in two where the supply pressure is measured; itself where it is not, or is cut already.
 
-        What the chain behind it is then does not depend on the supply's numbers; itself where no supply pressure is
-        followed.
+        The recorded pressure drives what lies behind it, which then does not depend on the supply's numbers, and the
+        supply is followed under the flow that is drawn, which then does not depend on its pressure.
         """
         measured = next((c.measured for c in self.channels if c.model == "supply_pressure"), None)
-        if measured is None:
+        if measured is None or self.cut is not None:
             return self
         known = np.isfinite(measured)
         rows = np.zeros((max(self.time.size, 2), len(PROBES)))
         at = np.linspace(self.time[0], self.time[-1], len(rows))
         rows[:, SUPPLY] = np.interp(at, self.time[known], measured[known])
-        channels = tuple(c for c in self.channels if c.model != "supply_pressure")
         recorded = with_recorded(self.recorded, (float(at[1] - at[0]), rows))
-        return replace(self, channels=channels, recorded=recorded, cut="supply_pressure")
+        return replace(self, recorded=recorded, cut="supply_pressure")
+
+    def behind_cut(self) -> "Experiment":
+        """What lies behind the cut alone, the supply not followed."""
+        return self._with_channels(self.cut is None or c.model != "supply_pressure" for c in self.channels)
+
+    def before_cut(self) -> "Experiment":
+        """The supply alone, under the flow that is drawn of it."""
+        return self._with_channels(self.cut is None or c.model == "supply_pressure" for c in self.channels)
+
+    def uncut(self) -> "Experiment":
+        """The whole chain again, with the supply's own pressure."""
+        if self.cut is None or self.recorded is None:
+            return self
+        spacing, rows = self.recorded
+        others = rows * (np.arange(len(PROBES)) != SUPPLY)
+        return replace(self, recorded=(spacing, others) if others.any() else None, cut=None)
+
+    def _with_channels(self, chosen: Iterable[bool]) -> "Experiment":
+        """The same with some of its channels."""
+        which = np.fromiter(chosen, dtype=bool)
+        return replace(
+            self,
+            channels=tuple(c for c, is_one in zip(self.channels, which, strict=True) if is_one),
+            start_response=None if self.start_response is None else self.start_response[which],
+            others_error=None if self.others_error is None else self.others_error[which],
+        )
 
     def with_every_other_of_recorded(self) -> "Experiment":
         """The same with half of the samples of what is recorded in place of a part of the model.

@@ -23,30 +23,27 @@ from hydrolek_drake.identification.least_squares.lockstep import descend
 from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.rigs.driven_by import counts
+from hydrolek_drake.rigs.driven_by import SUPPLY, counts
 
 RUNGS: tuple[tuple[float | None, int], ...] = ((0.1, 8), (0.5, 8), (None, 10))
 """Time constants of the observer [s], and steps of a fit with it; the last one is free."""
 
-HORIZONS = (8, 6, 4, 4, 3, 2, 1)
+HORIZONS = (8, 6, 4, 4, 4, 4, 4)
 """So many places go on from each horizon; each is twice as long as the one before, the last one is all."""
 
 FEWEST = 50
 """Samples of the shortest horizon, at least: fewer do not tell a supply's numbers apart."""
 
-SHORT_STEPS, LONG_STEPS = 10, 20
-"""Steps of a fit over a part of the time, and over all of it."""
+STEPS = 10
+"""Of a fit over each horizon: what is near the noise then is fitted on with all other numbers."""
 
 SEED = 1
 """Of the sequence: the same starts each time."""
 
-TRIED, STARTS, MOST_ROUNDS, FOLLOWED = 1024, 24, 6, 1.2
-"""So many places are tried over the shortest horizon in a round, and from the best of them it is fitted; so many rounds
-at most, until one place leaves so many times the noise or less: over few samples chance moves it by 5 %, and what is
-left beyond that the longer horizons take."""
-
-AGAIN = 2
-"""So often the rounds that are left are tried where the first ones do not lead to the noise over all of the time."""
+TRIED, STARTS, ATTEMPTS, FOLLOWED = 1024, 24, 3, 2.0
+"""So many places are tried over the shortest horizon, and the best of them are fitted there; what these lead to over
+all of the time is attempted so often until it leaves so many times the noise or less, since what is drawn is not quite
+right either. Over the shortest horizon few of them reach it, and longer ones lead on."""
 
 FAR = 3.0
 """A chain that leaves so many times the noise behind the cut lacks something there: the supply is left as it is."""
@@ -109,40 +106,38 @@ class Continuation:
         Returns:
             None where no pump's pressure is followed, or nothing of the supply is searched. # (n,)
         """
-        parts, supply = self.parts(), self._supply
+        parts, supply = self._behind(), self._supply
         if parts is None:
             return None
         behind = self._by_observers(parts, starts, ~supply)[0]
         if behind.objective > FAR**2 * behind.problem.counted:
             # what it lacks, the supply's numbers would make up for
             return np.where(supply, starts[0], behind.unit)
-        return self.supply_before([np.where(supply, start, behind.unit) for start in starts])
+        return self.supply_before([np.where(supply, start, behind.unit) for start in starts])[0]
 
-    def supply_before(self, starts: Sequence[np.ndarray]) -> np.ndarray:
-        """A place where the supply's numbers have been found, what lies behind it staying as it is.
+    def supply_before(self, starts: Sequence[np.ndarray]) -> list[np.ndarray]:
+        """Places where the supply's numbers have been found under the flow that is drawn of it, the best first.
+
+        What lies behind it stays as it is. While its numbers are not quite right either, it is not told which of the
+        places is.
 
         Args:
             starts: places in the unit cube, which differ in the supply's numbers. # (n,) each
         """
         supply = self._supply
-        spread = np.tile(starts[0], (MOST_ROUNDS * TRIED, 1))
-        spread[:, supply] = spread_evenly(MOST_ROUNDS * TRIED, int(supply.sum()))
-        return self._over_growing_horizons(starts, np.split(spread, MOST_ROUNDS), supply)
+        spread = np.tile(starts[0], (ATTEMPTS * TRIED, 1))
+        spread[:, supply] = spread_evenly(ATTEMPTS * TRIED, int(supply.sum()))
+        return self._over_growing_horizons(starts, np.split(spread, ATTEMPTS), supply)
 
-    def parts(self) -> tuple[Experiment, ...] | None:
-        """The experiments with the chain cut at the recorded supply pressure; None as above."""
-        parts = tuple(e.with_recorded_supply() for e in self.experiments)
-        uncut = all(part is e for part, e in zip(parts, self.experiments, strict=True))
-        if uncut or not self._supply.any() or self.parameters.rig.variants["supply"] != "pump":
-            return None
-        return parts
+    def _behind(self) -> tuple[Experiment, ...] | None:
+        """The experiments behind the recorded supply pressure; None as above."""
+        cut = cut_where_measured(self.parameters, self.experiments)
+        return tuple(e.behind_cut() for e in cut) if any(e.cut for e in cut) else None
 
     @property
     def _supply(self) -> np.ndarray:
         """Which parameters only act on what lies before the recorded supply pressure. # (n,) truth values."""
-        joints = self.parameters.rig.joints
-        behind = [counts(path, ("supply.pressure",), joints) for path in self.parameters.paths]
-        return ~np.array(behind, dtype=bool)
+        return of_the_supply(self.parameters)
 
     def _by_observers(
         self, experiments: tuple[Experiment, ...], starts: Sequence[np.ndarray], moving: np.ndarray
@@ -157,51 +152,39 @@ class Continuation:
         return places
 
     def _over_growing_horizons(
-        self, own: Sequence[np.ndarray], rounds: Sequence[np.ndarray], moving: np.ndarray
-    ) -> np.ndarray:
-        """Where the numbers that move end, from short horizons to all of the time. # (n,).
+        self, own: Sequence[np.ndarray], others: Sequence[np.ndarray], moving: np.ndarray
+    ) -> list[np.ndarray]:
+        """Where the numbers that move end, from short horizons to all of the time, the best first. # (n,) each.
 
-        The shortest one is fitted from the starts themselves, and from others in rounds as long as none of them follows
-        it to the noise: of the places of a round those that leave least. Where they do not lead to the noise over all
-        of the time, which the shortest one could not tell, the rounds that are left are tried too.
+        They begin at the starts themselves and at the best of some others, and again at the best of others as long as
+        none is followed to the noise and none is far from it, as where the supply lacks something.
         """
-        left = list(rounds)
-        places = self._led_over_horizons(own, left, moving)
-        for _ in range(AGAIN):
-            if not left or places[0].objective <= FOLLOWED**2 * places[0].problem.counted:
-                break
-            places += self._led_over_horizons([], left, moving)
+        places: list[Place] = []
+        for tried in others:
+            places += self._led_over_horizons([] if places else own, tried, moving)
             places.sort(key=_objective)
-        return places[0].unit
+            left = places[0].objective / places[0].problem.counted
+            if left <= FOLLOWED**2 or left > FAR**2:
+                break
+        return [place.unit for place in places[: HORIZONS[-1]]]
 
     def _led_over_horizons(
-        self, own: Sequence[np.ndarray], rounds: list[np.ndarray], moving: np.ndarray
+        self, own: Sequence[np.ndarray], tried: np.ndarray, moving: np.ndarray
     ) -> list[Place]:
-        """The best place over all of the time, from starts and from rounds, which are used up."""
+        """The best places over all of the time, from starts and from the best of those that are tried."""
         whole = max(float(e.time[-1] - e.time[0]) for e in self.experiments)
         samples = min(e.time.size for e in self.experiments)
+        before = tuple(e.cut_at_supply().before_cut() for e in self.experiments)
         most = min(int(math.log2(max(samples / FEWEST, 1.0))), len(HORIZONS) - 1)
-        places: list[Place] = []
+        units = list(own)
         for halvings in range(most, -1, -1):
-            keep = HORIZONS[len(HORIZONS) - 1 - halvings]
-            parts = tuple(e.until(whole / 2**halvings) if halvings else e for e in self.experiments)
-            steps, share = (SHORT_STEPS, 1e-3) if halvings else (LONG_STEPS, 1e-4)
+            parts = tuple(e.until(whole / 2**halvings) if halvings else e for e in before)
             if halvings == most:
-                if own:
-                    places = self._descended(parts, own, moving, None, steps, share=share)
-                while rounds and not (
-                    places and places[0].objective <= FOLLOWED**2 * places[0].problem.counted
-                ):
-                    tried = self._descended(parts, list(rounds.pop(0)), moving, None, 0)
-                    units = [place.unit for place in tried[:STARTS]]
-                    places += self._descended(parts, units, moving, None, steps, share=share)
-                    places.sort(key=_objective)
-            else:
-                units = [place.unit for place in places]
-                places = sorted(
-                    self._descended(parts, units, moving, None, steps, share=share), key=_objective
-                )
-            places = places[:keep]
+                looked_at = self._descended(parts, list(tried), moving, None, 0)
+                units += [place.unit for place in looked_at[:STARTS]]
+            places = self._descended(parts, units, moving, None, STEPS, share=1e-3)
+            places = places[: HORIZONS[len(HORIZONS) - 1 - halvings]]
+            units = [place.unit for place in places]
         return places
 
     def _descended(
@@ -233,6 +216,19 @@ class Continuation:
         over_noise = float(np.sqrt(best.residuals @ best.residuals / max(best.problem.counted, 1)))
         self.told(sum(problem.evaluations for problem in problems), over_noise, best.unit)
         return places
+
+
+def of_the_supply(parameters: ParameterSet) -> np.ndarray:
+    """Which parameters only act on what lies before the recorded supply pressure. # (n,) truth values."""
+    behind = [counts(path, (SUPPLY,), parameters.rig.joints) for path in parameters.paths]
+    return ~np.array(behind, dtype=bool)
+
+
+def cut_where_measured(parameters: ParameterSet, experiments: Sequence[Experiment]) -> tuple[Experiment, ...]:
+    """Experiments cut at the supply pressure of a pump, where it was recorded and something of the pump is searched."""
+    if parameters.rig.variants["supply"] != "pump" or not of_the_supply(parameters).any():
+        return tuple(experiments)
+    return tuple(e.cut_at_supply() for e in experiments)
 
 
 def _objective(place: Place) -> float:

@@ -16,6 +16,7 @@ from hydrolek_drake.rollout.kernel import (
     inertia_at,
     out_of_bounds,
     pulled,
+    supply_pulled,
     written,
 )
 from hydrolek_drake.rollout.lanes.table import (
@@ -181,6 +182,7 @@ def write(
         if pull_time[lane] > 0.0 and row < last:
             share = 1.0 - math.exp((t - times[lane, row + 1]) / pull_time[lane])
             s, by = pulled(s, share, out[lane, row, 0], measured[lane, row])
+            s = supply_pulled(s, share, probe, joint)
             put(b, STATE, lane, s, d, play + by)
 
 

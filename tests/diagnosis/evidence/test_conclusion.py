@@ -18,6 +18,7 @@ from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 from hydrolek_drake.identification.least_squares.least_squares import Fit
 
 COUNTED = 4000
+BLOCKS = np.repeat(np.arange(10), COUNTED // 10)
 
 
 def _judged(effects, over_noise: float, ahead: float | None = None) -> Judged:
@@ -94,28 +95,40 @@ def test_what_does_not_predict_better_is_not_named(effect) -> None:
     better, worse = _judged((leak,), 0.95, ahead=1.04), _judged((gap,), 0.90, ahead=1.06)
     both = _judged((leak, gap), 0.80, ahead=1.045)
     judged = [nominal, better, worse, both]
-    assert [predicts(j, judged) for j in judged] == [True, True, False, False]
-    assert predicts(both, [nominal, worse, both])  # of what it contains
+    assert [predicts(j, judged, BLOCKS) for j in judged] == [True, True, False, False]
+    assert predicts(both, [nominal, worse, both], BLOCKS)  # of what it contains
+
+
+def test_what_gains_in_some_blocks_and_loses_in_others_is_not_named(effect) -> None:
+    """The simpler one within a standard error; a gain of the same size that every block shows is one."""
+    nominal = _judged((), 1.05)
+    leak = _judged((effect["cylinder.cross_port_leakage"],), 1.0)
+    for scatter, named in ((0.01, True), (0.2, False)):
+        swings = scatter * np.tile(np.repeat([1.0, -1.0], COUNTED // 10), 5)
+        uneven = replace(leak, held_out=np.sqrt(1.05**2 - 0.02 + swings))
+        gain = uneven.log_density - nominal.log_density
+        assert gain == pytest.approx(0.01 * COUNTED)  # whatever the scatter
+        assert predicts(uneven, [nominal, uneven], BLOCKS) == named
 
 
 def test_what_strayed_far_off_ahead_predicts_by_what_it_leaves_of_both(effect) -> None:
     """A joint stuck where a hair decides: fitted to both data the model leaves the noise, see `NOISE.far`."""
     nominal = _judged((), 2.9, ahead=3.7)
     strayed = _judged((effect["sensor.hysteresis"],), 0.9, ahead=5.5)
-    assert not predicts(strayed, [nominal, strayed])
+    assert not predicts(strayed, [nominal, strayed], BLOCKS)
     fitted_to_both = replace(strayed, chi_squared=0.9**2 * COUNTED)
-    assert predicts(fitted_to_both, [nominal, fitted_to_both])
+    assert predicts(fitted_to_both, [nominal, fitted_to_both], BLOCKS)
 
 
 def test_what_parameters_leave_uncertain_is_no_error_ahead(effect) -> None:
     """What counts is the density of the held-out data, parameters integrated out, and not what one value leaves."""
     nominal = replace(_judged((), 1.0, ahead=1.05), chi_squared=1.05**2 * COUNTED, spread=9.0)
     true = _judged((effect["sensor.hysteresis"],), 0.98, ahead=1.06)
-    assert not predicts(true, [nominal, true])
+    assert not predicts(true, [nominal, true], BLOCKS)
     known_to = replace(true, chi_squared=1.03**2 * COUNTED, spread=11.0)
-    assert predicts(known_to, [nominal, known_to])
+    assert predicts(known_to, [nominal, known_to], BLOCKS)
     vague = replace(known_to, spread=9.0 + 2.0 * (1.05**2 - 1.03**2) * COUNTED)
-    assert not predicts(vague, [nominal, vague])
+    assert not predicts(vague, [nominal, vague], BLOCKS)
 
 
 def test_what_is_named_beside_unlisted_physics_may_have_rivals(effect) -> None:

@@ -24,8 +24,8 @@ def test_it_is_the_likelihood_of_a_normal_distribution() -> None:
     fitted, ahead = rng.normal(size=(80, PARAMETERS)), 5.0 * rng.normal(size=(VALUES, PARAMETERS))
     residuals = rng.normal(size=VALUES)
     covariance = np.eye(VALUES) + ahead @ _covariance(fitted) @ ahead.T
-    chi_squared, spread = predictive(residuals, ahead, _fit(fitted, np.full(PARAMETERS, 0.5)))
-    assert chi_squared == pytest.approx(residuals @ np.linalg.solve(covariance, residuals), rel=1e-9)
+    shares, spread = predictive(residuals, ahead, _fit(fitted, np.full(PARAMETERS, 0.5)))
+    assert shares.sum() == pytest.approx(residuals @ np.linalg.solve(covariance, residuals), rel=1e-9)
     assert spread == pytest.approx(np.linalg.slogdet(covariance)[1], rel=1e-9)
 
 
@@ -39,7 +39,7 @@ def test_a_model_that_is_right_leaves_one_for_each_value_however_uncertain_its_p
         off = rng.multivariate_normal(np.zeros(PARAMETERS), covariance)
         residuals = rng.normal(size=VALUES) + ahead @ off
         plain.append(float(residuals @ residuals) / VALUES)
-        judged.append(predictive(residuals, ahead, _fit(fitted, np.full(PARAMETERS, 0.5)))[0] / VALUES)
+        judged.append(predictive(residuals, ahead, _fit(fitted, np.full(PARAMETERS, 0.5)))[0].sum() / VALUES)
     assert np.mean(plain) > 5.0
     # the mean of 400 * 60 squared normal values is known to 1.414 / sqrt(24 000) = 0.9 %
     assert np.mean(judged) == pytest.approx(1.0, abs=0.03)

@@ -1,4 +1,4 @@
-"""A pump's line that rings: what lies behind its recorded pressure is searched first, and then all of the machine."""
+"""A pump's line that rings: what lies behind its recorded pressure is searched first, and then the supply too."""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.inquiry import Answer, Inquiry
-from hydrolek_drake.diagnosis.search.by_parts import acts_behind, behind_supply
+from hydrolek_drake.diagnosis.search.by_parts import acts_behind, behind_supply, cut
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
@@ -84,7 +84,7 @@ def test_behind_the_cut_there_is_no_supply(rig) -> None:
     """Neither its numbers nor its signal; effects are on the one side or on the other."""
     experiment = played(rig, {}, 1, seconds=2.0)
     with ThreadPoolExecutor(1) as pool:
-        part = behind_supply(Workbench(rig, free_parameters(rig), [experiment], pool))
+        part = behind_supply(Workbench(rig, free_parameters(rig), [experiment.cut_at_supply()], pool))
     assert part is not None
     assert not [free.path for free in part.nominal if free.path.startswith("supply.")]
     assert "supply_pressure" not in [c.model for e in part.training for c in e.channels]
@@ -96,12 +96,13 @@ def test_a_constant_supply_is_not_cut(bench, recorded) -> None:
     """There is nothing that rings."""
     with ThreadPoolExecutor(1) as pool:
         workbench = Workbench(bench, free_parameters(bench), recorded(bench, bench), pool)
+        workbench.training = cut(workbench, workbench.training)
         assert behind_supply(workbench) is None
 
 
 def test_what_a_recorded_pressure_does_between_samples_is_part_of_the_error(rig) -> None:
     """Every other sample is enough where it is straight; where it rings it is not."""
-    experiment = played(rig, {}, 1, seconds=2.0).with_recorded_supply()
+    experiment = played(rig, {}, 1, seconds=2.0).cut_at_supply()
     spacing, rows = experiment.recorded
     straight = np.linspace(0.0, 1.0, len(rows))[:, None] * np.ones_like(rows)
     for course, differs in ((straight, False), (rows, True)):

@@ -107,8 +107,33 @@ def test_a_joint_that_creeps_for_hours_is_tight(leak, recorded) -> None:
     assert effect.says_something({effect.size_path: 1.1e-4 * full_flow / pressure})
 
 
+@pytest.mark.parametrize(
+    ("effect", "makes_no_difference"),
+    [
+        ("valve.asymmetric_overlap", lambda rig, travel: 1e-3 * rig.value("valve.full_opening")),
+        (
+            "cylinder.coulomb_friction",
+            lambda rig, travel: (
+                1e-3 * rig.value("cylinder.area_a") * (12e6 - rig.value("supply.tank_pressure"))
+            ),
+        ),
+        ("sensor.hysteresis", lambda rig, travel: travel / 4096),
+        ("fluid.entrained_air", lambda rig, travel: 1e-3),
+    ],
+)
+def test_what_makes_no_difference_in_practice_is_no_finding(effect, makes_no_difference) -> None:
+    """A micrometre of a spool of a millimetre, a thousandth of the force, a bit of twelve, a thousandth of air."""
+    rig = load_rig("hopsan_link", {"supply.pressure": "12 MPa"})
+    travel = 0.5
+    scales = hydraulic_scales(rig.records()[0], 1e-4, 0.2, travel, 40.0, 0.0, (0.2, 0.2))
+    [own] = [c for c in candidates_of(rig, "joint", scales) if c.id == effect]
+    size = makes_no_difference(rig, travel)
+    assert not own.says_something({own.size_path: 0.98 * size})
+    assert own.says_something({own.size_path: 1.02 * size})
+
+
 def test_every_effect_says_how_far_it_is_searched() -> None:
-    scaled = {"damping", "load_damping", "load_stiffness", "drift_per_min", "tightness"}
+    scaled = {name for name, kind in vars(Scales).items() if isinstance(kind, property)}
     fields = {*Scales.__dataclass_fields__, *scaled}
     for effect in EFFECTS.values():
         assert set(effect.search) == {p.name for p in effect.parameters}, effect.id

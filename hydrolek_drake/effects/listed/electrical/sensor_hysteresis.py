@@ -21,6 +21,7 @@ EFFECT = Effect(
         "play."
     ),
     size="half_width_rad",
+    beneath="bit",
     search={
         "half_width_rad": Search("travel", 0.05, (0.002, 0.008)),
     },

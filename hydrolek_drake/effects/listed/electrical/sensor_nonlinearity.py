@@ -25,6 +25,7 @@ EFFECT = Effect(
         "worn track, an eccentric mount or a load on the wiper."
     ),
     size="amplitude_rad",
+    beneath="bit",
     search={
         "amplitude_rad": Search("travel", 0.1, (0.01, -0.01), lowest=-0.1),
     },

@@ -34,6 +34,7 @@ EFFECT = Effect(
     ),
     step_share=STICKS_AND_SLIPS,
     size="stribeck_N",
+    beneath="rubbing",
     contains=("cylinder.coulomb_friction",),
     search={
         "coulomb_N": Search("force", 0.4, (0.01, 0.05)),

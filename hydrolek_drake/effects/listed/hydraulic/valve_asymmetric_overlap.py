@@ -21,6 +21,7 @@ EFFECT = Effect(
         "springs, lock nut, zero of the amplifier."
     ),
     size="shift_m",
+    beneath="ground",
     search={
         "shift_m": Search("overlap", 0.8, (0.1, -0.1), lowest=-0.8),
     },

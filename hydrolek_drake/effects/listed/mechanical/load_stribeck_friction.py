@@ -36,6 +36,7 @@ EFFECT = Effect(
     ),
     step_share=STICKS_AND_SLIPS,
     size="stribeck_N",
+    beneath="load_rubbing",
     contains=("load.coulomb_friction",),
     search={
         "force_N": Search("load_force", 0.4, (0.01, 0.05)),
