@@ -31,8 +31,9 @@ GROUND = 1e-3
 BIT = 2.0**-12
 """Share of the travel that one bit of a sensor with 12 bits tells; potentiometers are true to ten times that."""
 
-DISSOLVED = 1e-3
-"""Volume of free air in oil, at the atmosphere's pressure over all: oil in use holds more (Merritt 1967, ch. 1)."""
+SOME_AIR = 5e-3
+"""Volume of free air over all at the atmosphere's pressure: a rig's bulk modulus is that of oil with some air (Merritt
+1967, section 2.4), and half a percent comes and goes between rest and running."""
 
 
 @dataclass(frozen=True)
@@ -110,9 +111,9 @@ class Scales:
         return BIT * self.travel
 
     @property
-    def dissolved(self) -> float:
+    def some_air(self) -> float:
         """Air content that makes no difference."""
-        return DISSOLVED
+        return SOME_AIR
 
     @property
     def damping(self) -> float:

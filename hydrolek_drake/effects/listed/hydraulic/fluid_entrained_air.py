@@ -28,7 +28,7 @@ EFFECT = Effect(
         "cylinders."
     ),
     size="air_fraction",
-    beneath="dissolved",
+    beneath="some_air",
     search={
         "air_fraction": Search("air_fraction", 6, (0.1, 1.0)),
     },
