@@ -11,6 +11,16 @@ SPOOL_STEPS = Parameter(
     "spool_steps", "1", "steps of the spool within one step of the rest", lowest=1.0, highest=10_000.0
 )
 
+MODEL_ERROR = Parameter(
+    "model_error",
+    "1",
+    "share of a signal's range that the equations leave at best, as what nobody described",
+    neutral=0.0,
+    lowest=0.0,
+    highest=0.1,
+)
+OF_INTEGRATION = (LONGEST_STEP, SPOOL_STEPS, MODEL_ERROR)
+
 
 def declared(full_path: str, variants: Mapping[str, str]) -> Parameter:
     """Unit, meaning and bounds of a parameter.
@@ -20,7 +30,7 @@ def declared(full_path: str, variants: Mapping[str, str]) -> Parameter:
         variants: of a rig, see `rig.Rig`.
     """
     if full_path.startswith("integration."):
-        return LONGEST_STEP if full_path.endswith("longest_step") else SPOOL_STEPS
+        return next(p for p in OF_INTEGRATION if p.name == full_path.partition(".")[2])
     section, _, name = full_path.rpartition(".")
     if ".effects." in section:
         effect = effect_named(section.split(".effects.")[1])

@@ -6,7 +6,7 @@ from typing import Any
 from hydrolek_drake.effects.catalogue import EFFECTS
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.records import JOINT_STAGES, SHARED_STAGES
-from hydrolek_drake.rigs.declarations import LONGEST_STEP, SPOOL_STEPS
+from hydrolek_drake.rigs.declarations import OF_INTEGRATION
 from hydrolek_drake.rigs.parts import USES
 
 _TEXT = {"type": "string"}
@@ -67,7 +67,7 @@ def rig_schema() -> dict[str, Any]:
                     },
                 },
             },
-            "integration": _parameters((LONGEST_STEP, SPOOL_STEPS)),
+            "integration": _parameters(OF_INTEGRATION),
         },
     }
 

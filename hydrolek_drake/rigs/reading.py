@@ -11,7 +11,7 @@ from hydrolek_drake.physics.parameters import Stage
 from hydrolek_drake.physics.records import JOINT_STAGES, SHARED_STAGES
 from hydrolek_drake.rigs.arm_loads import FROM_ARM, arm_entries
 from hydrolek_drake.rigs.checks import across
-from hydrolek_drake.rigs.declarations import LONGEST_STEP, SPOOL_STEPS
+from hydrolek_drake.rigs.declarations import OF_INTEGRATION
 from hydrolek_drake.rigs.driven_by import read_driven_by
 from hydrolek_drake.rigs.entries import Entry, parse_entry
 from hydrolek_drake.rigs.keys import refuse_unknown
@@ -49,12 +49,15 @@ def rig_from_tree(tree: dict[str, Any], path: Path) -> Rig:
         if law := read_law(sections.get("law"), f"joints.{joint}.law", path):
             laws[joint] = law
     integration = tree.get("integration") or {}
-    refuse_unknown(integration, ("longest_step", "spool_steps"), f"{path}: integration")
-    for parameter in (LONGEST_STEP, SPOOL_STEPS):
-        if parameter.name not in integration:
-            raise InputError(f"{path}: integration.{parameter.name} is missing")
+    refuse_unknown(integration, tuple(p.name for p in OF_INTEGRATION), f"{path}: integration")
+    for parameter in OF_INTEGRATION:
         where = f"integration.{parameter.name}"
-        entries[where] = parse_entry(integration[parameter.name], parameter, f"{path}: {where}")
+        if parameter.name in integration:
+            entries[where] = parse_entry(integration[parameter.name], parameter, f"{path}: {where}")
+        elif parameter.neutral is not None:
+            entries[where] = Entry(parameter.neutral, parameter.unit, "neutral: not part of this machine")
+        else:
+            raise InputError(f"{path}: {where} is missing")
     recording = tree.get("recording") or {}
     refuse_unknown(recording, ("columns", "initial_position", "driven_by"), f"{path}: recording")
     columns = recording.get("columns") or {}

@@ -33,7 +33,7 @@ def entry(
     """
     log = log and limits is not None and limits[0] > 0.0
     fitted = f", range: [{_number(limits[0])}, {_number(limits[1])}]" if limits else ""
-    spelled = '"1"' if unit == "1" else unit
+    spelled = f'"{unit}"' if unit in ("1", "%") else unit
     scale = ", scale: log" if log else ""
     return f'{name}: {{value: {_number(value)}, unit: {spelled}, source: "{source}"{fitted}{scale}}}'
 
@@ -81,6 +81,7 @@ def beginning(name: str, step: float, spool_steps: str) -> list[str]:
         "integration:",
         f"  {entry('longest_step', 1e3 * step, 'ms', 'the longest that agrees with finer ones on this machine')}",
         f'  spool_steps: {{value: 1, unit: "1", source: "{spool_steps}"}}',
+        f"  {kept('model_error')}",
         "",
         "recording:",
         "  initial_position: recording  # where a replay starts",

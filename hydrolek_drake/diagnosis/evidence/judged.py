@@ -98,7 +98,9 @@ class Judged:
     @property
     def support(self) -> float:
         """Log-likelihood of held-out and training data, less the cost of its effects and parameters in each."""
-        effect = max(EVIDENCE.effect_cost, 0.5 * GAINS.fidelity * self.held_out_counted)
+        fit = self.hypothesis.fit
+        share = max(GAINS.fidelity, fit.unsure / max(fit.counted, 1))
+        effect = max(EVIDENCE.effect_cost, 0.5 * share * self.held_out_counted)
         added = effect * len(self.hypothesis.effects) + EVIDENCE.parameter_cost * self.hypothesis.extra
         return self.log_density - added - 0.5 * cost(self.hypothesis)
 

@@ -4,6 +4,7 @@ The chain is cut there (`Experiment.cut_at_supply`): the recorded pressure drive
 followed under the flow that this draws.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -26,9 +27,12 @@ def cut(bench: Workbench, experiments: Sequence[Experiment]) -> tuple[Experiment
 def enough_for(bench: Workbench) -> float:
     """Times the noise that need not be explained unless something promises to.
 
-    What a recorded supply pressure does between its samples is no missing physics.
+    What a recorded supply pressure does between its samples is no missing physics, nor is what the rig says that its
+    equations leave at best.
     """
-    return NOISE.explained if bench.cut else NOISE.at
+    counted = max(sum(e.counted for e in bench.training), 1)
+    own_error = math.sqrt(1.0 + sum(e.unsure for e in bench.training) / counted)
+    return max(NOISE.explained if bench.cut else NOISE.at, 0.0 if bench.together else own_error)
 
 
 def acts_behind(rig: Rig, path: str) -> bool:

@@ -24,6 +24,8 @@ class Channel:
         noise: standard deviation of its noise.
         model_error: standard deviation of what the model's integration adds, sample by sample; None for
             nothing. # (n,)
+        least_error: of a model at best, as what its rig states nobody described; it is told from missing physics by no
+            more than what is left beyond it.
         discrepancy: what every model leaves of it, as a multiple of what it leaves of the signal that it follows best;
             1 where models reach the noise.
         blur: what averaging over blocks of samples adds, sample by sample; None for a recording that is kept as
@@ -38,6 +40,7 @@ class Channel:
     model_error: np.ndarray | None = None
     blur: np.ndarray | None = None
     discrepancy: float = 1.0
+    least_error: float = 0.0
 
     @property
     def deviation(self) -> np.ndarray | float:
@@ -55,6 +58,11 @@ class Channel:
             return np.zeros(self.measured.size)
         return (self.discrepancy * self.model_error / self.deviation) ** 2
 
+    @property
+    def least_left(self) -> np.ndarray:
+        """Squared residual that a model leaves at best, sample by sample. # (n,)."""
+        return np.broadcast_to((self.least_error / self.deviation) ** 2, self.measured.shape)
+
     def until(self, count: int) -> "Channel":
         """Its first so many samples."""
         error, blur = (None if v is None else v[:count] for v in (self.model_error, self.blur))
@@ -69,4 +77,9 @@ class Channel:
 
 def faithful(measured: np.ndarray) -> float:
     """Smallest deviation that counts for a signal, see `FAITHFUL`."""
-    return FAITHFUL * float(np.nanmax(measured) - np.nanmin(measured))
+    return FAITHFUL * spanned(measured)
+
+
+def spanned(measured: np.ndarray) -> float:
+    """Range of a signal."""
+    return float(np.nanmax(measured) - np.nanmin(measured))

@@ -271,13 +271,14 @@ class Experiment:
 
     @property
     def unsure(self) -> float:
-        """Squared residuals, in units of the noise, that the uncertainty of what other joints do may leave.
+        """Squared residuals, in units of the noise, that a model's own error and what other joints do may leave.
 
-        It is one error over the whole recording and not one of each sample, so a wrong model may take all of it.
+        These are errors over the whole recording and not of each sample, so a wrong model may take all of them.
         """
-        if self.others is None:
-            return 0.0
-        return float(sum(np.sum(c.model_share[self._counts(c)]) for c in self.channels))
+        left = sum(np.sum(c.least_left[self._counts(c)]) for c in self.channels)
+        if self.others is not None:
+            left += sum(np.sum(c.model_share[self._counts(c)]) for c in self.channels)
+        return float(left)
 
     def counted_of(self, channel: Channel) -> int:
         """How many measured values of one of its channels count."""

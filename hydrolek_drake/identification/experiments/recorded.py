@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from hydrolek_drake.errors import UninformativeError
-from hydrolek_drake.identification.experiments.channel import Channel, faithful
+from hydrolek_drake.identification.experiments.channel import Channel, faithful, spanned
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.experiments.neighbours import effects_of_others
 from hydrolek_drake.identification.experiments.start import resting_position
@@ -90,6 +90,7 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
         channels.append(
             Channel(name, "A", "current", measured, _noise(measured, rig, joint, "current_noise"))
         )
+    share = rig.value("integration.model_error")
     start, start_error = None, 0.0
     if rig.initial_position == "recording":
         start, start_error = resting_position(position, command, _noise(position, rig, joint, "noise"))
@@ -100,7 +101,7 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
         time=np.ascontiguousarray(recording.time, dtype=float),
         command_times=np.ascontiguousarray(recording.time, dtype=float),
         command=command,
-        channels=tuple(channels),
+        channels=tuple(replace(c, least_error=share * spanned(c.measured)) for c in channels),
         start=start,
         start_error=start_error,
         longest_step=rig.value("integration.longest_step"),
