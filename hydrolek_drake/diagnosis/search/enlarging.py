@@ -16,9 +16,9 @@ from hydrolek_drake.diagnosis.search.by_continuation import (
     steps_for,
     traced,
 )
-from hydrolek_drake.diagnosis.search.by_parts import supply_before
 from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.search.openings import Opening
+from hydrolek_drake.diagnosis.search.parts import supply_before
 from hydrolek_drake.diagnosis.search.standing_in import standing_in
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import GAINS, NOISE, Settings
@@ -128,7 +128,7 @@ def _with_supply(
         if over_noise_of(runner) <= NOISE.far * over_noise_of(runners[0]):
             first.setdefault(runner.key, runner)
     ended: list[Runner] = []
-    for runner in list(first.values())[: settings.parted]:
+    for runner in list(first.values())[: settings.supplied]:
         values = runner.place.problem.parameters.values(runner.place.unit)
         places = supply_before(bench, runner.effects, values, [], cores)
         anew = [Entrant(runner.effects, {**values, **supply}) for supply in places]

@@ -13,7 +13,7 @@ from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.best_first import Unlisted, search_structures
-from hydrolek_drake.diagnosis.search.by_parts import acts_behind, behind_supply, supply_before
+from hydrolek_drake.diagnosis.search.parts import acts_behind, behind_supply, supply_before
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.addition import Sized

@@ -10,8 +10,8 @@ from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.problems import problem_of
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
-from hydrolek_drake.diagnosis.search.by_parts import enough_for
 from hydrolek_drake.diagnosis.search.cost import dispersion, gain_needed
+from hydrolek_drake.diagnosis.search.parts import enough_for
 from hydrolek_drake.diagnosis.search.promise import Promise, promises_at
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS, GAINS, NOISE, Rung, Settings
@@ -142,7 +142,7 @@ def surely_above(bench: Workbench, structure: Hypothesis) -> float:
 
     Noise is known to but a share. A nominal model that leaves more may be bent so that what it lacks promises nothing;
     one with an addition that leaves less than what would be called missing, and beside which nothing promises anything,
-    is right. A model that was fitted by parts is no more bent than one that explains the data, see `by_parts`.
+    is right. A machine that is cut at its supply, or whose equations leave more at best, is held to that (`parts`).
     """
     enough = enough_for(bench)
     if enough > NOISE.at:

@@ -99,8 +99,8 @@ class Settings:
     scanned: int = 4
     """The same of those without a slope."""
 
-    parted: int = 3
-    """So many structures of a race are fitted part by part at most."""
+    supplied: int = 3
+    """So many structures of a race have their supply found anew at most."""
 
     entrants: int = 24
     """So many additions of those that promise most are fitted; there are fewer effects, and more terms of laws."""

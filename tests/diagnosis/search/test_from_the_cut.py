@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.inquiry import Answer, Inquiry
-from hydrolek_drake.diagnosis.search.by_parts import acts_behind, behind_supply, cut
+from hydrolek_drake.diagnosis.search.parts import acts_behind, behind_supply, cut
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
