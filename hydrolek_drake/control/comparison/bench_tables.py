@@ -1,11 +1,11 @@
 """Results of a comparison as rows of text, beside the thesis's where it prints them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import isnan
 
 from hydrolek_drake.control.catalogue import CONTROLLERS
-from hydrolek_drake.control.comparison.bench import Bench, JointMeasures, Trial
+from hydrolek_drake.control.comparison.bench import Bench, JointMeasures
 from hydrolek_drake.control.comparison.thesis_tables import printed
 
 
@@ -208,9 +208,3 @@ def sentence(bench: Bench) -> str:
         f"On {plant}, rise time under {RISE_S:g} s, overshoot under {OVERSHOOT_PERCENT:g} % and steady-state error "
         f"under {ERROR_DEG:g} deg are met {said}."
     )
-
-
-def controllers_of(bench: Bench) -> Sequence[Trial]:
-    """Step trials, for plots; all trials where there is no step."""
-    steps = [trial for trial in bench.trials if trial.sequence == "step"]
-    return steps or bench.trials
