@@ -71,7 +71,7 @@ def _ringing(lines, s, steps, h, joint, out):
     """Pressures of chamber A and of its valve's port [Pa], step by step, with the piston held and the valve shut."""
     stroke, _ = linkage.stroke_and_lever(s.q, joint)
     for i in range(steps):
-        lines, fed = lines_advanced(lines, s, 0.0, 0.0, h, no_probe(), joint)
+        lines, fed = lines_advanced(lines, s, 0.0, 0.0, h, no_probe(), no_probe(), joint)
         rate_a, rate_b, _, _ = cylinder.pressure_rates(s.p_a, s.p_b, fed.a, fed.b, stroke, 0.0, joint)
         s = State(s.p_a + h * rate_a, s.p_b + h * rate_b, s.q, 0.0, s.supply, 0.0, 0.0, s.q, 0.0, s.relief)
         out[i, 0], out[i, 1] = s.p_a, lines.a.p_0

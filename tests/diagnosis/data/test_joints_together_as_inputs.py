@@ -57,11 +57,13 @@ def test_recordings_are_told_apart_by_name_and_by_their_joints(two_joints, healt
         assert np.array_equal(experiment.others[1], again[MOVING.index(experiment.joint)].others[1])
 
 
+@pytest.mark.thorough
 def test_joints_that_move_alone_stay_as_they_are(two_joints, healthy):
     experiments = [replace(e, others=None) for e in healthy[0]]
     assert all(a is b for a, b in zip(felt_together(two_joints, experiments), experiments, strict=True))
 
 
+@pytest.mark.thorough
 def test_where_the_joints_leave_all_bounds_measured_angles_must_do(two_joints, healthy):
     experiments, _ = healthy
     wild = two_joints.with_values({"supply.pressure": 1e16})
@@ -69,6 +71,7 @@ def test_where_the_joints_leave_all_bounds_measured_angles_must_do(two_joints, h
     assert all(a is b for a, b in zip(again, experiments, strict=True))
 
 
+@pytest.mark.thorough
 def test_the_beginning_of_an_experiment_keeps_the_beginning_of_its_error(two_joints, healthy):
     experiment = felt_together(two_joints, healthy[0])[0]
     early = experiment.until(2.0)

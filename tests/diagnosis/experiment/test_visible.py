@@ -36,7 +36,7 @@ def healthy(bench, recorded, fitted):
         work = Workbench(bench, free_parameters(bench), experiments, pool)
         nominal = fitted(work)
         candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
-        simplified = [replace(c, beneath=SIMPLIFIED) if c.id == "sensor.drift" else c for c in candidates]
+        simplified = [replace(c, beneath=SIMPLIFIED if c.id == "sensor.drift" else 0.0) for c in candidates]
         promises = opened(work, nominal, "effects", simplified, Tried(), Settings(), 2).free
         return nominal, {v.candidate.id: v.size for v in visible_sizes(work, nominal, promises)}
 
