@@ -54,28 +54,29 @@ def search_machine(
     def told(text: str) -> None:
         say(f"behind the recorded supply pressure: {text}")
 
-    cut_off = False
+    before = [c for c in candidates if not acts_behind(bench.rig, c.size_path)]
+    lawful = None if unlisted is None else _BeforeTheCut(unlisted)
     try:
         search_structures(part, behind, seen, told, settings, cores, unlisted)
+        say("finding the supply's numbers")
+        found.seeds = _with_supply(bench, seen, found.seeds, settings, cores)
+        search_structures(bench, before, found, say, settings, cores, lawful)
     except KeyboardInterrupt:
-        if not seen.hypotheses:
-            raise
-        cut_off = True
-    bench.evaluations += part.evaluations
-    say("finding the supply's numbers")
-    found.seeds = _with_supply(bench, seen, found.seeds, settings, cores)
-    if cut_off:
-        as_they_are = replace(settings.again, rounds=0, keep=len(found.seeds))
-        for each in race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (as_they_are,), cores):
-            found.keep(each)
-        raise KeyboardInterrupt
-    before = [c for c in candidates if not acts_behind(bench.rig, c.size_path)]
-    try:
-        search_structures(
-            bench, before, found, say, settings, cores, None if unlisted is None else _BeforeTheCut(unlisted)
-        )
+        if not found.hypotheses:
+            bench.resume()
+            _keep_as_they_are(bench, seen, found, settings, cores)
+        raise
     finally:
+        bench.evaluations += part.evaluations
         found.left = [*found.left, *seen.left]
+
+
+def _keep_as_they_are(bench: Workbench, seen: Tried, found: Tried, settings: Settings, cores: int) -> None:
+    """What was found behind the cut by then, with the rig's own supply, which acts on nothing there."""
+    ended = [Entrant(h.effects, h.values) for h in seen.hypotheses.values()]
+    if ended:
+        for each in race(bench, ended, (replace(settings.again, rounds=0, keep=len(ended)),), cores):
+            found.keep(each)
 
 
 def _behind_of(bench: Workbench, seeds: Sequence[Hypothesis]) -> list[Hypothesis]:
