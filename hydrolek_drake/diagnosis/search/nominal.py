@@ -48,7 +48,7 @@ def _go_on(bench: Workbench, found: Tried, settings: Settings, cores: int) -> No
     if without:
         for each in race(bench, without, (replace(settings.again, keep=len(without)),), cores):
             found.keep(each)
-    if best.effects:  # where a fit to other data ended is another local minimum of it, so both are told
+    if found.best.effects:  # where a fit to other data ended is another local minimum of it, so both are told
         out_of_local_minima(bench, [*fits, *found.seeds], found, settings, cores)
 
 
