@@ -93,6 +93,8 @@ class Effect:
         confused_with: ids of effects with a similar signature, and what tells them apart.
         needs: the variants it can act on, as `section: names`; empty for all.
         search: parameter -> how far a fit looks for it.
+        reads: numbers of a joint, as `section.name`, that no part of the machine reads but effects like this one: they
+            are searched with it where the rig gives them a range, as speeds over which a dry friction is smoothed.
         searched_on: the variants on which a diagnosis looks for it, as `needs`; fewer than those it can act
             on where another effect says the same of a hydraulic joint.
         weakens: whether it fades as its size grows, like a spring that becomes stiffer.
@@ -116,6 +118,7 @@ class Effect:
     confused_with: dict[str, str] = field(default_factory=dict)
     needs: dict[str, tuple[str, ...]] = field(default_factory=dict)
     search: dict[str, Search] = field(default_factory=dict)
+    reads: tuple[str, ...] = ()
     searched_on: dict[str, tuple[str, ...]] = field(default_factory=dict)
     weakens: bool = False
     sudden: bool = False

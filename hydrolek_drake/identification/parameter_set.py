@@ -189,13 +189,17 @@ def free_of_joints(rig: Rig, joints: Collection[str]) -> tuple[Free, ...]:
 
 
 def parameters_off(rig: Rig) -> list[str]:
-    """Full paths of parameters that have a range but belong to an effect that is off."""
-    on = tuple(
-        f"joints.{rig.owner(EFFECTS[id_], joint)}.effects.{id_}."
-        for joint in rig.joints
-        for id_ in rig.effects_on(joint)
-    )
-    return [path for path in rig.free_parameters() if ".effects." in path and not path.startswith(on)]
+    """Full paths of parameters that have a range but belong to an effect that is off, or that only such read."""
+    on = {(rig.owner(EFFECTS[id_], joint), id_) for joint in rig.joints for id_ in rig.effects_on(joint)}
+    of_those_on = tuple(f"joints.{joint}.effects.{id_}." for joint, id_ in on)
+    read = {f"joints.{joint}.{name}" for joint, id_ in on for name in EFFECTS[id_].reads}
+    read_by_any = {f"joints.{j}.{name}" for j in rig.joints for e in EFFECTS.values() for name in e.reads}
+    return [
+        path
+        for path in rig.free_parameters()
+        if (".effects." in path and not path.startswith(of_those_on))
+        or (path in read_by_any and path not in read)
+    ]
 
 
 def _places(rig: Rig, vectors: np.ndarray, parameter: Free) -> tuple[np.ndarray, np.ndarray]:

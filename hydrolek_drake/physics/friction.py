@@ -1,7 +1,10 @@
 """Dry friction, the same at all speeds or falling as a body starts to move."""
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics.smooth import exponential, hyperbolic_tangent
+from hydrolek_drake.physics.smooth import exponential, hyperbolic_tangent, logarithm
+
+AT_REST = 1e-24
+"""Squared ratio of speeds below which none has faded, whatever the exponent; a logarithm must not be of zero."""
 
 FURTHER = 1.001
 """The slope is told over a thousandth of the velocity, over which a friction's curve is straight."""
@@ -24,24 +27,26 @@ def coulomb_friction(velocity: float, level: float, smooth: float) -> tuple[floa
 
 @njit
 def stribeck(
-    velocity: float, coulomb: float, at_rest: float, fading: float, smooth: float
+    velocity: float, coulomb: float, at_rest: float, fading: float, exponent: float, smooth: float
 ) -> tuple[float, float]:
     """Friction and its secant slope over velocity (see valve_spool_stiction).
 
-    (coulomb + at_rest e^(-(v / fading)^2)) tanh(v / smooth); Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30
-    (1994) 1083.
+    (coulomb + at_rest e^(-|v / fading|^exponent)) tanh(v / smooth); Armstrong-Helouvry, Dupont, Canudas de Wit,
+    Automatica 30 (1994) 1083, who tell of exponents from 1/2 to 2 and more: lubricants differ.
 
     Args:
         velocity: of the body [m/s or rad/s].
         coulomb: friction at speed [N or N m].
         at_rest: further friction near zero speed [N or N m].
         fading: speed over which that fades [m/s or rad/s].
+        exponent: of the fading.
         smooth: speed below which the sign of the velocity is smoothed [m/s or rad/s].
     """
     if coulomb == 0.0 and at_rest == 0.0:
         return 0.0, 0.0
     ratio = velocity / fading
-    return coulomb_friction(velocity, coulomb + at_rest * exponential(-ratio * ratio), smooth)
+    faded = exponential(0.5 * exponent * logarithm(max(ratio * ratio, AT_REST)))
+    return coulomb_friction(velocity, coulomb + at_rest * exponential(-faded), smooth)
 
 
 @njit

@@ -92,4 +92,6 @@ def kept(name: str, key: str = "") -> str:
     """The entry of a number that no data sheet has, as `questions.yaml` has it, with its range if it has one."""
     known = fixed(key or name)
     limits = tuple(known["range"]) if "range" in known else None
-    return entry(name, known["value"], known["unit"], known["source"], limits, log=False)
+    return entry(
+        name, known["value"], known["unit"], known["source"], limits, log=known.get("scale") == "log"
+    )

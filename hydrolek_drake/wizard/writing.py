@@ -55,6 +55,7 @@ def rig_text(name: str, sheet: Sheet, step: float) -> str:
         *(f"    {line}" for line in (*holding(sheet), *hose(sheet))),
         *(f"    {line}" for line in _cylinder(sheet)),
         *(f"    {line}" for line in (_link(sheet) if sheet.turns else _slide(sheet))),
+        *(f"    {line}" for line in _effects(sheet)),
         "",
     ]
     return "\n".join(lines)
@@ -260,6 +261,12 @@ def _carried(sheet: Sheet) -> list[str]:
         entry("payload_inertia", length**2, "kg m^2/kg", where),
         entry("payload_gravity_cos", weight, "N m/kg", where),
     ]
+
+
+def _effects(sheet: Sheet) -> list[str]:
+    """What is known of effects that are off: how a further friction at rest would fade."""
+    fading = f"stribeck_friction: {{{kept('fading_exponent')}}}"
+    return ["effects:", f"  cylinder.{fading}", *([f"  load.{fading}"] if sheet.turns else [])]
 
 
 def _slide(sheet: Sheet) -> list[str]:

@@ -69,7 +69,7 @@ def supply_before(
     """
     parameters = bench.parameters(effects)
     prior = np.full(len(parameters), np.inf)
-    prior[: len(bench.nominal)] = SPREAD
+    prior[: len(bench.numbers(effects))] = SPREAD
 
     def told(evaluations: int, over_noise: float, unit: np.ndarray) -> None:
         bench.evaluations += evaluations

@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
@@ -26,6 +26,7 @@ class Candidate:
         starts: full path -> value, where searches begin.
         utmost: full path -> how far the range of a parameter may be widened: what it can be at all, or the range that
             the rig states. A moment lies in the recording and has none.
+        numbers: of the rig, which count with it and its like alone, see `Effect.reads`.
         beneath: no larger than this, its size says no more than what the model's own equations simplify.
     """
 
@@ -34,6 +35,7 @@ class Candidate:
     free: tuple[Free, ...]
     starts: tuple[dict[str, float], ...]
     utmost: Mapping[str, tuple[float, float]] = field(compare=False)
+    numbers: tuple[Free, ...] = ()
     beneath: float = 0.0
 
     cost: ClassVar[float] = 1.0
@@ -207,8 +209,18 @@ def _candidate(effect: Effect, rig: Rig, joint: str, scales: Scales) -> Candidat
         tuple(free),
         tuple(dict(c) for c in itertools.product(*starts)),
         utmost,
+        tuple(_numbers(effect, rig, joint)),
         getattr(scales, effect.beneath) if effect.beneath else 0.0,
     )
+
+
+def _numbers(effect: Effect, rig: Rig, joint: str) -> Iterator[Free]:
+    """Numbers that it reads and that the rig gives a range."""
+    for name in effect.reads:
+        path = f"joints.{joint}.{name}"
+        entry = rig.entries.get(path)
+        if entry is not None and entry.range is not None:
+            yield Free(path, *entry.range, log=entry.scale == "log")
 
 
 Exchange = tuple[Addition, Candidate, tuple[Addition, ...]]

@@ -185,18 +185,24 @@ class Workbench:
         """Whether a supply's pressure is among what is followed."""
         return any(channel.model == "supply_pressure" for e in self.training for channel in e.channels)
 
+    def numbers(self, effects: Sequence[Addition]) -> tuple[Free, ...]:
+        """The rig's own searched numbers with these effects: those of the nominal model, and what the effects read."""
+        read = {n: None for c in effects if isinstance(c, Candidate) for n in c.numbers}
+        return (*self.nominal, *(n for n in read if n not in self.nominal))
+
     def parameters(self, effects: Sequence[Addition]) -> ParameterSet:
         """The searched parameters of the nominal model with these effects."""
+        numbers = self.numbers(effects)
         own = [p for candidate in effects for p in candidate.free]
-        key = frozenset(own)  # with their ranges, which may be widened
+        key = frozenset([*numbers, *own])  # with their ranges, which may be widened
         if key not in self._sets:
             terms = [c for c in effects if isinstance(c, LawTerm)]
             lost = [c for c in effects if isinstance(c, LostWindows)]
             of_rig = [p for c in effects if not isinstance(c, LawTerm | LostWindows) for p in c.free]
             found = (
-                WithTerms(self.rig, [*self.nominal, *of_rig], terms, self._places)
+                WithTerms(self.rig, [*numbers, *of_rig], terms, self._places)
                 if terms
-                else ParameterSet(self.rig, [*self.nominal, *of_rig], self._places)
+                else ParameterSet(self.rig, [*numbers, *of_rig], self._places)
             )
             self._sets[key] = WithWindows(found, lost) if lost else found
         return self._sets[key]
@@ -212,7 +218,7 @@ class Workbench:
         """Residuals of this model, on the training data unless others are given."""
         parameters = self.parameters(effects)
         prior = np.full(len(parameters), np.inf)
-        prior[: len(self.nominal)] = SPREAD
+        prior[: len(self.numbers(effects))] = SPREAD
         if kind is Problem and isinstance(parameters, WithWindows):
             kind = LostProblem
         known = {"known": self._moving} if issubclass(kind, ProblemTogether) else {}

@@ -136,7 +136,8 @@ def test_every_effect_says_how_far_it_is_searched() -> None:
     scaled = {name for name, kind in vars(Scales).items() if isinstance(kind, property)}
     fields = {*Scales.__dataclass_fields__, *scaled}
     for effect in EFFECTS.values():
-        assert set(effect.search) == {p.name for p in effect.parameters}, effect.id
+        read = {name.rpartition(".")[2] for name in effect.reads}
+        assert set(effect.search) == {p.name for p in effect.parameters} - read, effect.id
         assert effect.beneath in {"", *fields}
         for search in effect.search.values():
             assert search.of in fields and search.beyond in {"", *fields}

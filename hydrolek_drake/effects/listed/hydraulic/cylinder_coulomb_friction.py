@@ -26,6 +26,7 @@ EFFECT = Effect(
         "rod, seals too tight, side load of mounts out of line."
     ),
     size="coulomb_N",
+    reads=("cylinder.friction_velocity",),
     beneath="rubbing",
     search={
         "coulomb_N": Search("force", 0.4, (0.01, 0.06)),

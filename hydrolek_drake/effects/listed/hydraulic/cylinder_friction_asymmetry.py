@@ -26,6 +26,7 @@ EFFECT = Effect(
         "and side load."
     ),
     size="coulomb_N",
+    reads=("cylinder.friction_velocity",),
     search={
         "coulomb_N": Search("force", 0.2, (0.01, -0.01), lowest=-0.2),
     },

@@ -10,7 +10,7 @@ from hydrolek_drake.physics.parameters import Parameter
 EFFECT = Effect(
     id="cylinder.stribeck_friction",
     title="Coulomb and Stribeck friction of the seals",
-    equation="(coulomb + stribeck e^(-(v/v_s)^2)) tanh(v / friction_velocity) against the rod",
+    equation="(coulomb + stribeck e^(-|v/v_s|^n)) tanh(v / friction_velocity) against the rod",
     parameters=(
         Parameter("coulomb_N", "N", "Coulomb friction of the seals", neutral=0.0, lowest=0.0),
         Parameter("stribeck_N", "N", "further friction near zero speed", neutral=0.0, lowest=0.0),
@@ -22,10 +22,16 @@ EFFECT = Effect(
             lowest=0.0,
             positive=True,
         ),
+        Parameter("fading_exponent", "1", "exponent of its fading", neutral=2.0, lowest=0.5, positive=True),
     ),
     formula=Formula(
-        r"F = \left( F_C + F_S e^{-(v/v_S)^2} \right) \tanh \left( \frac{v}{v_0} \right)",
-        {"coulomb_N": "F_C", "stribeck_N": "F_S", "stribeck_velocity_m_per_s": "v_S"},
+        r"F = \left( F_C + F_S e^{-|v/v_S|^n} \right) \tanh \left( \frac{v}{v_0} \right)",
+        {
+            "coulomb_N": "F_C",
+            "stribeck_N": "F_S",
+            "stribeck_velocity_m_per_s": "v_S",
+            "fading_exponent": "n",
+        },
         {"F": "force against the rod", "v": "speed of the rod", "v_0": "friction velocity of the rig"},
     ),
     inspect=(
@@ -34,6 +40,7 @@ EFFECT = Effect(
     ),
     step_share=STICKS_AND_SLIPS,
     size="stribeck_N",
+    reads=("cylinder.friction_velocity", "effects.cylinder.stribeck_friction.fading_exponent"),
     beneath="rubbing",
     contains=("cylinder.coulomb_friction",),
     search={
@@ -56,5 +63,10 @@ def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, flo
     """Friction [N] and its secant slope [N s/m] at a rod velocity [m/s]."""
     p = joint.effects.cylinder_stribeck_friction
     return stribeck(
-        velocity, p.coulomb_N, p.stribeck_N, p.stribeck_velocity_m_per_s, joint.cylinder.friction_velocity
+        velocity,
+        p.coulomb_N,
+        p.stribeck_N,
+        p.stribeck_velocity_m_per_s,
+        p.fading_exponent,
+        joint.cylinder.friction_velocity,
     )

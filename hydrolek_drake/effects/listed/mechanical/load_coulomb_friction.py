@@ -22,6 +22,7 @@ EFFECT = Effect(
         "bearings, gear."
     ),
     size="force_N",
+    reads=("load.friction_velocity",),
     beneath="load_rubbing",
     search={
         "force_N": Search("load_force", 0.5, (0.01, 0.06)),

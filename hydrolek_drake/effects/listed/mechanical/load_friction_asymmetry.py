@@ -36,6 +36,7 @@ EFFECT = Effect(
         "loaded on one flank."
     ),
     size="damping_N_s_per_m",
+    reads=("load.friction_velocity",),
     search={
         "coulomb_N": Search("load_force", 0.2, (0.005, -0.005), lowest=-0.2),
         "damping_N_s_per_m": Search("load_damping", 0.5, (0.01, -0.01), lowest=-0.5),

@@ -10,7 +10,7 @@ from hydrolek_drake.physics.parameters import Parameter
 EFFECT = Effect(
     id="load.stribeck_friction",
     title="Coulomb and Stribeck friction of the joint's bearing",
-    equation="(force + stribeck e^(-(w/w_s)^2)) tanh(w / friction_velocity) against the load",
+    equation="(force + stribeck e^(-|w/w_s|^n)) tanh(w / friction_velocity) against the load",
     parameters=(
         Parameter("force_N", "N", "Coulomb friction (N m for a joint)", neutral=0.0, lowest=0.0),
         Parameter(
@@ -24,10 +24,16 @@ EFFECT = Effect(
             lowest=0.0,
             positive=True,
         ),
+        Parameter("fading_exponent", "1", "exponent of its fading", neutral=2.0, lowest=0.5, positive=True),
     ),
     formula=Formula(
-        r"F = \left( F_C + F_S e^{-(v/v_S)^2} \right) \tanh \left( \frac{v}{v_0} \right)",
-        {"force_N": "F_C", "stribeck_N": "F_S", "stribeck_velocity_m_per_s": "v_S"},
+        r"F = \left( F_C + F_S e^{-|v/v_S|^n} \right) \tanh \left( \frac{v}{v_0} \right)",
+        {
+            "force_N": "F_C",
+            "stribeck_N": "F_S",
+            "stribeck_velocity_m_per_s": "v_S",
+            "fading_exponent": "n",
+        },
         {"F": "force or moment against the load", "v": "its speed", "v_0": "friction velocity of the rig"},
     ),
     inspect=(
@@ -36,6 +42,7 @@ EFFECT = Effect(
     ),
     step_share=STICKS_AND_SLIPS,
     size="stribeck_N",
+    reads=("load.friction_velocity", "effects.load.stribeck_friction.fading_exponent"),
     beneath="load_rubbing",
     contains=("load.coulomb_friction",),
     search={
@@ -58,5 +65,10 @@ def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
     """Friction [N or N m] and its secant slope."""
     p = joint.effects.load_stribeck_friction
     return stribeck(
-        velocity, p.force_N, p.stribeck_N, p.stribeck_velocity_m_per_s, joint.load.friction_velocity
+        velocity,
+        p.force_N,
+        p.stribeck_N,
+        p.stribeck_velocity_m_per_s,
+        p.fading_exponent,
+        joint.load.friction_velocity,
     )
