@@ -57,7 +57,7 @@ def recording(bench):
 def cut(rig, driven_by, wrong=True):
     tree = rig.as_tree()
     tree.setdefault("recording", {})["driven_by"] = list(driven_by)
-    from hydrolek_drake.rigs.reading import rig_from_tree
+    from hydrolek_drake.rigs.reading.tree import rig_from_tree
 
     made = rig_from_tree(tree, rig.path)
     return made.with_settings(WRONG[driven_by]) if wrong else made

@@ -94,7 +94,7 @@ def check(
 @rig.command()
 def schema() -> None:
     """Print the JSON schema of rig files, for completion and checks in editors."""
-    from hydrolek_drake.rigs.json_schema import rig_schema
+    from hydrolek_drake.rigs.reading.json_schema import rig_schema
 
     print(json.dumps(rig_schema(), indent=1))
 
