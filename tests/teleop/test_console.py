@@ -5,7 +5,7 @@ import urllib.request
 
 import numpy as np
 import pytest
-from console_client import ask, connect, next_state, served
+from console_client import Black, ask, connect, next_state, served
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.console.server import Console
@@ -120,7 +120,7 @@ def test_a_malformed_message_is_answered_and_the_arms_stand_still(message, answe
         assert error is None if answer is None else answer in error
         await _stands_still(await connect(console))
 
-    _served(work)
+    _served(work, Black)
 
 
 class _Holes(FrameSource):
