@@ -147,7 +147,7 @@ def test_interrupted_least_squares_gives_the_best_finished_start(rig, recording)
 
 
 @pytest.mark.parametrize("pair", ["practice_01", "practice_02"])
-@pytest.mark.thorough(but=1)
+@pytest.mark.thorough
 def test_random_starts_reach_the_noise_on_holdout(pair, rig):
     train, holdout = (
         Problem(

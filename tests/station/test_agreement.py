@@ -79,6 +79,7 @@ def test_the_difference_shrinks_with_the_step():
 
 
 @pytest.mark.parametrize("plant", [cases.on_the_arms, cases.bodies])
+@pytest.mark.thorough(but=1)
 def test_cases_that_share_a_diagram_are_those_that_run_alone(plant):
     chosen = [("hydrolek_left_j2", "linkage.backlash"), ("hydrolek_right_j3", "base.compliance")]
     together = differences.compare(plant(chosen), 1.5, 1e-3, 2, 3)
