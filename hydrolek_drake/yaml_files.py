@@ -6,8 +6,7 @@ limited while reading, before anything is built from them.
 """
 
 import copy
-import difflib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from importlib import resources
 from pathlib import Path
 from typing import Any, NoReturn
@@ -115,26 +114,6 @@ def package_yaml(package: str, name: str) -> Any:
     return parse_yaml(
         resources.files(package).joinpath(name).read_text(encoding="utf-8"), f"{package}/{name}"
     )
-
-
-def refuse_unknown(raw: Any, allowed: tuple[str, ...], where: str) -> None:
-    """Refuse content that is not a mapping or has other keys than `allowed`.
-
-    Args:
-        raw: as read.
-        allowed: the keys that it may have.
-        where: it stands, for errors.
-
-    Raises:
-        InputError: naming the key and the nearest allowed one.
-    """
-    if not isinstance(raw, Mapping):
-        raise InputError(f"{where} must be a mapping with {', '.join(allowed)}")
-    for key in raw:
-        if key not in allowed:
-            near = difflib.get_close_matches(str(key), allowed, n=1)
-            hint = f" (did you mean {near[0]}?)" if near else ""
-            raise InputError(f"{where}.{key}: unknown key{hint}; there are {', '.join(allowed)}")
 
 
 class _Builder:

@@ -33,11 +33,12 @@ from hydrolek_drake.files import is_file, named_file
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rigs.machine.rig import declaration
 from hydrolek_drake.rigs.parameters.entries import parse_quantity
+from hydrolek_drake.rigs.parameters.keys import refuse_unknown
 from hydrolek_drake.scenarios.commands import Command, parse_command
 from hydrolek_drake.scenarios.fields import quantity, required
 from hydrolek_drake.scenarios.set_points import Controlled
 from hydrolek_drake.station.step_sizes import StepSizes, sizes_for
-from hydrolek_drake.yaml_files import parse_yaml, read_yaml, refuse_unknown
+from hydrolek_drake.yaml_files import parse_yaml, read_yaml
 
 PREFIX = "scenario."
 """What a setting of the scenario begins with; all others are the rig's."""

@@ -247,10 +247,8 @@ class OperatorSession:
     def picture(self, name: str) -> bytes:
         """`colour` or `edges` as JPEG, empty where there is none yet."""
         with self._lock:
-            if name == "colour":
-                clicking = self._selection.clicks is not None and self._stage is not Stage.MOVING
-                name = "colour" if clicking else "live"
-            return self._pictures.jpeg(name)
+            clicking = self._selection.clicks is not None and self._stage is not Stage.MOVING
+            return self._pictures.jpeg("live" if name == "colour" and not clicking else name)
 
     def _ask(self) -> None:
         """Go to the stage of the click that is wanted next, if any is."""

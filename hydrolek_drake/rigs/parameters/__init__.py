@@ -1,1 +1,1 @@
-"""A rig's parameters: what is declared about each, how a file states it, and those that follow from the arms."""
+"""What a rig file states: keys that it may have, each parameter's declaration and value, and the arms' loads."""

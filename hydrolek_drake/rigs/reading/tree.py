@@ -16,7 +16,7 @@ from hydrolek_drake.rigs.machine.short_law import LawTerm, read_law
 from hydrolek_drake.rigs.parameters.arm_loads import FROM_ARM, arm_entries
 from hydrolek_drake.rigs.parameters.declarations import OF_INTEGRATION
 from hydrolek_drake.rigs.parameters.entries import Entry, parse_entry
-from hydrolek_drake.yaml_files import refuse_unknown
+from hydrolek_drake.rigs.parameters.keys import refuse_unknown
 
 
 def rig_from_tree(tree: dict[str, Any], path: Path) -> Rig:
