@@ -10,7 +10,7 @@ from typer.cli import get_docs_for_click
 
 from hydrolek_drake.cli.app import COMMANDS, typer_app
 from hydrolek_drake.diagnosis.report.schema import report_schema
-from hydrolek_drake.rigs.json_schema import rig_schema
+from hydrolek_drake.rigs.reading.json_schema import rig_schema
 
 FOLDER = Path(__file__).parents[1] / "reference" / "generated"
 

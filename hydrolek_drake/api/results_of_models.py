@@ -136,7 +136,7 @@ class DiagnosisResult(Result):
 
     def to_pandas(self) -> "pandas.DataFrame":
         """One row a parameter of the best model: value, 95 % interval (SI), unit."""
-        from hydrolek_drake.rigs.rig import declaration
+        from hydrolek_drake.rigs.machine.rig import declaration
 
         rows = [
             {

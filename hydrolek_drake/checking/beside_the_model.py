@@ -9,7 +9,7 @@ from hydrolek_drake.checking.steps import differs
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.replay.readings import SUPPLY_KEY, position_key
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.recorded_inputs import recorded_inputs
+from hydrolek_drake.rigs.machine.recorded_inputs import recorded_inputs
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.rollout.rest import rest_state_at_reading
 from hydrolek_drake.rollout.rollout import Signals

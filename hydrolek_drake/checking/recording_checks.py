@@ -13,7 +13,7 @@ from hydrolek_drake.recordings import Recording
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import SUPPLY_KEY, driven_joints, measured_position, position_key
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.recorded_inputs import with_commands
+from hydrolek_drake.rigs.machine.recorded_inputs import with_commands
 
 PLAUSIBLE, LARGEST = (0.03, 5.0), 0.7
 """Shares of the supply pressure between which the largest pressure of a recording lies, and where it mostly does."""

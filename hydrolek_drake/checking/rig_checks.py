@@ -8,7 +8,7 @@ import numpy as np
 from hydrolek_drake.checking.complaint import Complaint
 from hydrolek_drake.checking.steps import step_that_agrees
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.rig import declaration
+from hydrolek_drake.rigs.machine.rig import declaration
 from hydrolek_drake.rollout.one_point import inlet_conductance, stroke_and_lever
 from hydrolek_drake.yaml_files import package_yaml
 

@@ -10,7 +10,7 @@ from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.records import flat
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.rig import declaration
+from hydrolek_drake.rigs.machine.rig import declaration
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy as np
 
 from hydrolek_drake.replay.driving import Driven, Moved
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.recorded_inputs import Inputs
+from hydrolek_drake.rigs.machine.recorded_inputs import Inputs
 from hydrolek_drake.rollout.rest import rest_state_at_reading
 from hydrolek_drake.rollout.rollout import Signals
 from hydrolek_drake.station.simulation import Run, command_source, initial_context, run

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.recorded_inputs import Inputs
+from hydrolek_drake.rigs.machine.recorded_inputs import Inputs
 from hydrolek_drake.rollout.rest import rest_state_at_reading
 from hydrolek_drake.rollout.rollout import Signals, roll_out
 from hydrolek_drake.rollout.together.arms import moving_with

@@ -20,7 +20,7 @@ from hydrolek_drake.replay.readings import (
     supply_pair,
 )
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.recorded_inputs import all_recorded_inputs, with_commands
+from hydrolek_drake.rigs.machine.recorded_inputs import all_recorded_inputs, with_commands
 
 START_SAMPLES = 5
 """Samples of the recorded position whose median is the start; odd, so that the median is a sample."""

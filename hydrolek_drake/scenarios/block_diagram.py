@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from pydrake.systems.framework import Diagram, InputPortIndex, OutputPortIndex, System
 
@@ -189,7 +190,7 @@ def main() -> None:
         print(picture)
 
 
-def _block(pydot, system: System, wires: Iterable[Connection]):  # type: ignore[no-untyped-def]
+def _block(pydot: Any, system: System, wires: Iterable[Connection]) -> Any:
     """A table: name on top, connected inputs on the left, connected outputs on the right."""
     name = system.get_name()
     inputs = list(dict.fromkeys(wire.target.name for wire in wires if wire.target.system == name))

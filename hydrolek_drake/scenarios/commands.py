@@ -10,8 +10,8 @@ import numpy as np
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings import read_recording, require
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.keys import refuse_unknown
-from hydrolek_drake.rigs.recorded_inputs import recorded_inputs, with_commands
+from hydrolek_drake.rigs.machine.recorded_inputs import recorded_inputs, with_commands
+from hydrolek_drake.rigs.parameters.keys import refuse_unknown
 from hydrolek_drake.scenarios.fields import joints_of, number, quantity, required, signal, steps
 from hydrolek_drake.scenarios.set_points import KIND, Controlled, parse_controlled
 from hydrolek_drake.systems.recorded import Recorded

@@ -8,7 +8,7 @@ import numpy as np
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.entries import parse_quantity
+from hydrolek_drake.rigs.parameters.entries import parse_quantity
 
 _FULL_SIGNAL = 100.0  # percent
 

@@ -31,9 +31,9 @@ import hydrolek_drake
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.files import is_file, named_file
 from hydrolek_drake.rigs import Rig, load_rig
-from hydrolek_drake.rigs.entries import parse_quantity
-from hydrolek_drake.rigs.keys import refuse_unknown
-from hydrolek_drake.rigs.rig import declaration
+from hydrolek_drake.rigs.machine.rig import declaration
+from hydrolek_drake.rigs.parameters.entries import parse_quantity
+from hydrolek_drake.rigs.parameters.keys import refuse_unknown
 from hydrolek_drake.scenarios.commands import Command, parse_command
 from hydrolek_drake.scenarios.fields import quantity, required
 from hydrolek_drake.scenarios.set_points import Controlled

@@ -11,7 +11,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings import Recording, read_recording, require
 from hydrolek_drake.recordings.resampling import held, linear
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.keys import refuse_unknown
+from hydrolek_drake.rigs.parameters.keys import refuse_unknown
 from hydrolek_drake.scenarios.fields import joints_of, quantity, required, steps
 
 if TYPE_CHECKING:

@@ -8,18 +8,16 @@ import numpy as np
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.camera_thread import CameraThread
-from hydrolek_drake.teleop.hand import within_limits
 from hydrolek_drake.teleop.machine import Machine
 from hydrolek_drake.teleop.machine_state import MachineState
-from hydrolek_drake.teleop.place_plan import plan_place_by_either
-from hydrolek_drake.teleop.plan import STEPS, plan_task
-from hydrolek_drake.teleop.release import plan_letting_go
+from hydrolek_drake.teleop.plan import STEPS
 from hydrolek_drake.teleop.sequencer import Mode, Order
 from hydrolek_drake.teleop.stages import STAGE_FOR, STEPS_OF, Stage
 from hydrolek_drake.teleop.steps import TaskPlan
-from hydrolek_drake.teleop.target_selection.clicks import Clicks, Task
+from hydrolek_drake.teleop.target_selection.clicks import Task
 from hydrolek_drake.teleop.target_selection.pictures import Pictures
 from hydrolek_drake.teleop.target_selection.target_selection import TargetSelection, task_named
+from hydrolek_drake.teleop.task_planner import TaskPlanner
 from hydrolek_drake.teleop.undertaking import Undertaking
 from hydrolek_drake.vision.edges import EdgeSettings
 from hydrolek_drake.vision.frames import FrameSource
@@ -51,7 +49,7 @@ class OperatorSession:
                 stand(frames, machine.state())
 
         self._camera = CameraThread(source, arms_as_they_stand)
-        self._generator = np.random.default_rng(seed)
+        self._planner = TaskPlanner(machine, seed=seed)
         self._lock = threading.RLock()
         self._stage = Stage.LIVE
         self._message, self._error = "", ""
@@ -109,8 +107,7 @@ class OperatorSession:
         with self._lock:
             self._steps = STEPS_OF[task]
             self._selection.change_task(task)
-            if self._selection.clicks is not None:
-                self._ask(self._selection.clicks)
+            self._ask()
 
     def set_sliders(self, **values: float) -> None:
         """Stage 3: low_contrast, high_contrast, sensitivity between 0 and 1; the edge picture follows.
@@ -137,12 +134,10 @@ class OperatorSession:
             InputError: What is wrong with the click; the stage stays, the arms stand still.
         """
         with self._lock:
-            clicks = self._selection.clicks
-            if clicks is not None and self._stage in (Stage.PLANNING, Stage.MOVING):
+            if self._selection.clicks is not None and self._stage in (Stage.PLANNING, Stage.MOVING):
                 raise InputError("no click is needed now; confirm, or go back")
             self._selection.click(u, v)
-            assert clicks is not None  # else it was refused
-            self._ask(clicks)
+            self._ask()
 
     def back(self) -> None:
         """Take the last click back; before the first, go back to the live picture.
@@ -153,10 +148,8 @@ class OperatorSession:
         self._not_while_moving()
         with self._lock:
             self._selection.back()
-            if self._selection.clicks is not None:
-                self._ask(self._selection.clicks)
-            else:
-                self._stage, self._message = Stage.LIVE, ""
+            self._stage, self._message = Stage.LIVE, ""
+            self._ask()
 
     def confirm(self) -> None:
         """Stage 6: plan, and move if a plan is found.
@@ -170,7 +163,7 @@ class OperatorSession:
                 raise InputError(f"object, grasp and {last} must be clicked before you confirm")
             clicks = self._selection.clicks
             assert clicks is not None  # the stage says so
-            self._begin(lambda: self._plan(clicks), Stage.CONFIRM)
+            self._begin(lambda: self._planner.of_clicks(clicks, self._tell_step), Stage.CONFIRM)
 
     def release(self) -> None:
         """After a task: open the gripper, back off, both arms to the posture that a task starts from.
@@ -184,7 +177,7 @@ class OperatorSession:
             if held is None:
                 raise InputError("nothing is held; a task must have been started before")
             self._selection.forget()
-            self._begin(lambda: plan_letting_go(*held, self._posture(), self._generator), Stage.LIVE)
+            self._begin(lambda: self._planner.letting_go(*held), Stage.LIVE)
             self._selection.draw()
 
     def halt(self) -> None:
@@ -226,10 +219,7 @@ class OperatorSession:
     def lose_operator(self) -> None:
         """The browser in control is gone: nothing is held any more, and a task stops; who takes over may resume."""
         self._machine.let_go()
-        if self._stage in (
-            Stage.PLANNING,
-            Stage.MOVING,
-        ):  # read without the lock, which a click may hold for long
+        if self._stage in (Stage.PLANNING, Stage.MOVING):  # without the lock, which a click may hold for long
             self.order(Order.STOP)
 
     def state(self) -> dict[str, Any]:
@@ -237,8 +227,7 @@ class OperatorSession:
         machine = self._machine.state()
         with self._lock:
             self._after_moving(machine)
-            moving, clicks = self._stage is Stage.MOVING, self._selection.clicks
-            done, left = self._undertaking.progress(machine) if moving else (0.0, None)
+            clicks = self._selection.clicks
             return {
                 "stage": self._stage.name.lower(),
                 "instruction": self._stage.value,
@@ -251,23 +240,20 @@ class OperatorSession:
                 "can_release": self._undertaking.held is not None
                 and self._stage not in (Stage.PLANNING, Stage.MOVING)
                 and machine.mode in (Mode.DONE, Mode.ABORTED),
-                "seconds": self._undertaking.seconds(),
-                "done": round(done, 4),
-                "left_s": None if left is None else round(left, 1),
+                **self._undertaking.shown(machine if self._stage is Stage.MOVING else None),
                 **machine.shown(),
             }
 
     def picture(self, name: str) -> bytes:
         """`colour` or `edges` as JPEG, empty where there is none yet."""
         with self._lock:
-            if name == "colour":
-                clicking = self._selection.clicks is not None and self._stage is not Stage.MOVING
-                name = "colour" if clicking else "live"
-            return self._pictures.jpeg(name)
+            clicking = self._selection.clicks is not None and self._stage is not Stage.MOVING
+            return self._pictures.jpeg("live" if name == "colour" and not clicking else name)
 
-    def _ask(self, clicks: Clicks) -> None:
-        """Go to the stage of the click that is wanted next."""
-        self._stage, self._message = STAGE_FOR[clicks.wanted()], clicks.told()
+    def _ask(self) -> None:
+        """Go to the stage of the click that is wanted next, if any is."""
+        if (clicks := self._selection.clicks) is not None:
+            self._stage, self._message = STAGE_FOR[clicks.wanted()], clicks.told()
 
     def _begin(self, make: Callable[[], TaskPlan], otherwise: Stage) -> None:
         """Undertake what is planned so; the stage if there is no plan."""
@@ -288,19 +274,9 @@ class OperatorSession:
         self._stage, self._error = Stage.PLANNING, ""
         self._undertaking.begin(make, started=started, failed=failed)
 
-    def _plan(self, clicks: Clicks) -> TaskPlan:
-        def told(name: str) -> None:
-            with self._lock:
-                self._message = f"Planning: {name}."
-
-        assert clicks.targets is not None
-        targets, camera, posture = clicks.targets, clicks.frame.camera, self._posture()
-        if clicks.place is None:
-            return plan_task(targets, camera, posture, self._generator, on_step=told)
-        return plan_place_by_either(targets, clicks.place, camera, posture, self._generator, on_step=told)
-
-    def _posture(self) -> np.ndarray:
-        return within_limits(self._machine.state().position)
+    def _tell_step(self, name: str) -> None:
+        with self._lock:
+            self._message = f"Planning: {name}."
 
     def _after_moving(self, machine: MachineState) -> None:
         if self._stage is not Stage.MOVING:

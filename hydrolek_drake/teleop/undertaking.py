@@ -111,13 +111,18 @@ class Undertaking:
             self.held = (plan, state.step)
         return state
 
-    def progress(self, state: MachineState) -> tuple[float, float | None]:
-        """Share of the task under way that is done, and seconds that are left; see `TimeLeft`.
+    def shown(self, moving: MachineState | None) -> dict[str, float | None]:
+        """What the console shows of it: seconds so far, share that is done, seconds that are left; see `TimeLeft`.
 
         Args:
-            state: of the machine while it moves.
+            moving: state of the machine while it moves, else None.
         """
-        return (0.0, None) if self._left is None else self._left.told(state)
+        done, left = (0.0, None) if moving is None or self._left is None else self._left.told(moving)
+        return {
+            "seconds": self.seconds(),
+            "done": round(done, 4),
+            "left_s": None if left is None else round(left, 1),
+        }
 
     def seconds(self) -> float | None:
         """Since the task was confirmed, until it ended."""

@@ -12,11 +12,12 @@ from functools import partial
 
 import meshcat
 import tornado.ioloop
+import tornado.web
 from meshcat.servers.zmqserver import ZMQWebSocketBridge
 
 
 class _LoopbackBridge(ZMQWebSocketBridge):
-    def make_app(self):  # type: ignore[no-untyped-def]
+    def make_app(self) -> tornado.web.Application:
         app = super().make_app()
         app.listen = partial(app.listen, address=self.host)
         return app

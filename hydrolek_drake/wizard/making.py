@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from hydrolek_drake.checking.steps import differs, driven_about
-from hydrolek_drake.rigs.reading import rig_from_tree
-from hydrolek_drake.rigs.rig import Rig
+from hydrolek_drake.rigs.machine.rig import Rig
+from hydrolek_drake.rigs.reading.tree import rig_from_tree
 from hydrolek_drake.units import si_factor
 from hydrolek_drake.wizard.questions import SCREW, fixed, read_answers
 from hydrolek_drake.wizard.screw import screw_text

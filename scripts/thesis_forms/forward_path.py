@@ -105,8 +105,8 @@ def run_forward(joint: str, forms: list[Form]) -> Array:
     model = thesis_model("j4_linear" if forms[0]["law"] == "linear" else joint)
     element = inverse_of(joint, str(forms[0]["inverse"]))
     column = {key: np.array([form[key] for form in forms]) for key in forms[0] if key != "den"}
-    longest = max(len(form["den"]) for form in forms)  # type: ignore[arg-type]
-    den = np.array([np.pad(form["den"], (0, longest - len(form["den"]))) for form in forms]).T  # type: ignore[arg-type]
+    longest = max(len(form["den"]) for form in forms)
+    den = np.array([np.pad(form["den"], (0, longest - len(form["den"]))) for form in forms]).T
     plants = Plants(
         model, column["model at 0.05 s"].astype(bool),
         np.maximum(model.delay_samples + RATIO * column["plant delay"], 1),

@@ -1,6 +1,7 @@
 """SDP models under many controllers at once, the steps of appendix G, and what is measured of them."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +10,7 @@ from hydrolek_drake.control.models.sdp_model import SdpModel
 
 Array = NDArray[np.float64]
 
-Form = dict[str, object]
+Form = dict[str, Any]
 """One form of a controller: what is varied -> its value."""
 
 SIZE_DEG = 30.0

@@ -9,9 +9,9 @@ from pydrake.multibody.tree import UniformGravityFieldElement
 
 from hydrolek_drake.physics import load
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.rigs.arm_loads import FROM_ARM
-from hydrolek_drake.rigs.reading import rig_from_tree
-from hydrolek_drake.rigs.rig import Rig
+from hydrolek_drake.rigs.machine.rig import Rig
+from hydrolek_drake.rigs.parameters.arm_loads import FROM_ARM
+from hydrolek_drake.rigs.reading.tree import rig_from_tree
 
 Case = tuple[str, str | None]
 """Rig of one joint, and the effect that is on there."""

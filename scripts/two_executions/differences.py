@@ -9,7 +9,7 @@ from hydrolek_drake.control.closed_loop import loop_on_rollout
 from hydrolek_drake.control.controlled_station import run_controlled
 from hydrolek_drake.control.thesis_gains import sample_s
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.rigs.rig import Rig
+from hydrolek_drake.rigs.machine.rig import Rig
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.station.simulation import command_source, run
 from hydrolek_drake.station.station import make_station

@@ -38,7 +38,7 @@ def _run(name, *arguments, cwd):
     ("name", "case", "seconds", "said"),
     [
         ("replay", "practice_01", 12.0, "joint.angle"),
-        ("fit", "practice_01", 6.0, "supply.pressure"),
+        pytest.param("fit", "practice_01", 6.0, "supply.pressure", marks=pytest.mark.thorough),
         pytest.param("diagnose", "practice_02", 8.0, "none", marks=pytest.mark.long("half a minute")),
     ],
 )

@@ -93,7 +93,7 @@ def test_links_summed_one_by_one_are_the_plants_inertia_and_gravity(name: str) -
 
 
 @pytest.mark.parametrize("name", ARM_JOINTS)
-@pytest.mark.thorough(but=2)
+@pytest.mark.thorough(but=1)
 def test_without_effects_it_moves_as_the_rollout_does(name: str) -> None:
     build = _build(name)
     series = random_series(build.driving, False, 40.0, np.random.default_rng(1))

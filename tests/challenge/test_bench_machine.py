@@ -28,7 +28,7 @@ LISTED_PAIRS = [name for name, label in LABELS.items() if set(label["effects"]) 
 
 
 @pytest.mark.parametrize("pair", LISTED_PAIRS)
-@pytest.mark.thorough(but=4)
+@pytest.mark.thorough(but=2)
 def test_it_reproduces_the_practice_recordings_to_the_noise(pair: str) -> None:
     label = LABELS[pair]
     rig = load_rig("joint_bench", {})

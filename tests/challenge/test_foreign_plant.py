@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.challenge.foreign.building import built, noises, numbers, places
-from hydrolek_drake.challenge.foreign.drawing import draw_foreign, labels_of
+from hydrolek_drake.challenge.foreign.drawing import Foreign, draw_foreign, labels_of
 from hydrolek_drake.challenge.foreign.equations import (
     Played,
     at_rest,
@@ -203,12 +203,22 @@ def test_data_sheets_are_wrong_and_still_make_rigs(kind: str) -> None:
     assert list(rig.joints) == ["joint"]
 
 
-def test_drawn_again_is_the_same() -> None:
-    """One seed, one set of labels; half of the cases conceal nothing."""
-    first, second = (draw_foreign(1, 5) for _ in range(2))
-    assert labels_of(first) == labels_of(second)
-    assert [bool(case.conceals) for case in first] == [False, False, True, True]
+@pytest.fixture(scope="module")
+def drawn() -> list[Foreign]:
+    """The cases of one machine."""
+    return draw_foreign(1, 5)
+
+
+@pytest.mark.thorough
+def test_drawn_again_is_the_same(drawn: list[Foreign]) -> None:
+    """One seed, one set of labels."""
+    assert labels_of(draw_foreign(1, 5)) == labels_of(drawn)
+
+
+def test_half_of_the_cases_conceal_nothing_and_the_others_something_that_shows(drawn: list[Foreign]) -> None:
+    """As much as was asked for, or all that a pump can lose."""
+    assert [bool(case.conceals) for case in drawn] == [False, False, True, True]
     low, high = numbers()["shows"]
-    for case in first[2:]:
+    for case in drawn[2:]:
         assert case.shows > 0.75 * low
         assert case.shows < high / 0.75 or "supply.pump_loss" in case.conceals

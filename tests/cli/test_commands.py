@@ -5,20 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from hydrolek_drake.cli.app import run
 from hydrolek_drake.effects.catalogue import EFFECTS
 from hydrolek_drake.rigs import built_in_rigs, load_rig
 
 BENCH = Path(__file__).parents[2] / "tests" / "data" / "bench"
-
-
-@pytest.fixture
-def printed(capsys):
-    def output(*arguments):
-        assert run([str(argument) for argument in arguments]) == 0
-        return capsys.readouterr().out
-
-    return output
 
 
 def test_replay_says_how_far_when_and_where(printed, tmp_path):

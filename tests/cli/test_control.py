@@ -8,15 +8,6 @@ import yaml
 from hydrolek_drake.cli.app import run
 
 
-@pytest.fixture
-def printed(capsys):
-    def output(*arguments):
-        assert run([str(argument) for argument in arguments]) == 0
-        return capsys.readouterr().out
-
-    return output
-
-
 def test_bench_prints_the_ranking_and_writes_the_report(printed, tmp_path):
     text = printed(
         "control", "bench", "--controller", "pip_idz_c", "--controller", "feedforward", "--sequence", "step",

@@ -19,7 +19,11 @@ from hydrolek_drake.cli.app import run
         (["--plant", "steam"], "choose full or simple"),
         (["--set", "supply.pressure=12 MPa"], "--set is the full plant's"),
         (["--plant", "full", "--controller", "magic"], "no controller 'magic'"),
-        (["--plant", "full", "--set", "supply.presure=12 MPa"], "supply.presure"),
+        pytest.param(
+            ["--plant", "full", "--set", "supply.presure=12 MPa"],
+            "supply.presure",
+            marks=pytest.mark.thorough,
+        ),
     ],
 )
 def test_bad_input_is_one_line_and_status_2(arguments, message, capsys):

@@ -28,7 +28,7 @@ def test_the_diagram_agrees_with_the_rollout(with_component, name):
 
 
 @pytest.mark.parametrize("name", sound())
-@pytest.mark.thorough(but=1)
+@pytest.mark.thorough
 def test_a_lane_does_what_the_machine_does_alone(with_component, name, random_volts):
     records = np.repeat(with_component(name).records(), 3)
     records["load"]["inertia"] *= [1.0, 1.1, 0.9]

@@ -6,7 +6,6 @@ import pytest
 from hydrolek_drake.control.laws.grip_force import GripForceLaw, Range
 from hydrolek_drake.control.laws.scaled_input import ScaledInput
 from hydrolek_drake.control.thesis_gains import sample_s
-from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.forward import tool_pose
 from hydrolek_drake.kinematics.frames import in_frame
 from hydrolek_drake.teleop.controllers.hydraulic_arms import HydraulicArms
@@ -105,9 +104,3 @@ def test_the_force_settles_at_the_set_point_up_and_down_and_the_oil_holds_it():
         arms.advance(grip=[np.nan, np.nan])
         assert arms.signals().voltage[JAW] == 0.0
     assert arms.grip()[0] == pytest.approx(held, rel=SETTLED)
-
-
-def test_without_a_pipe_there_is_no_force_to_control():
-    arms = HydraulicArms(home_posture())
-    with pytest.raises(InputError, match="no pipe"):
-        arms.advance(grip=[100.0, np.nan])

@@ -20,6 +20,12 @@ def bench():
 
 
 @pytest.fixture(scope="session")
+def record(bench):
+    """A function: values by path (SI) -> the bench's record."""
+    return lambda values: bench.with_values(values).records()[0]
+
+
+@pytest.fixture(scope="session")
 def machine_for(bench):
     """A function: id of an effect -> a rig that it can act on."""
     link = load_rig("hopsan_link")

@@ -18,7 +18,7 @@ APART = ("mat", "mcap", "db3", "bag", "mdf")
 
 INPUTS = (
     dict.fromkeys(NAMES, 80)
-    | dict.fromkeys(APART, 5)
+    | dict.fromkeys(APART, 3)
     | {"mat73": 30, "scenario": 40, "link": 60, "console": 30}
 )
 

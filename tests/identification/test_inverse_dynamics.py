@@ -50,6 +50,7 @@ def test_a_sliding_load_is_found_from_its_motion():
     assert found.misfit < 0.02
 
 
+@pytest.mark.thorough
 def test_intervals_hold_the_truth_as_often_as_they_say():
     hits = []
     for seed in range(12):

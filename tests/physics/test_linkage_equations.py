@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.integrate import quad
 
 from hydrolek_drake.physics.linkage import mean_play_torque, play_torque, stroke_and_lever
 
@@ -61,11 +62,17 @@ def test_play_carries_nothing_inside_its_gap_and_is_spring_and_damper_where_clos
 )
 def test_the_mean_of_a_play_over_a_step_counts_the_share_in_contact(bench_joint, lead, velocity):
     """Against a numeric mean on the straight way; what presses the sides together yields to nothing here."""
-    joint, step = bench_joint({"effects.linkage.backlash.gap_rad": 0.015}), 1e-3
-    times = np.linspace(0.0, step, 100001)
-    told = [play_torque(lead + velocity * t, velocity, joint) for t in 0.5 * (times[1:] + times[:-1])]
+    gap, step = 0.015, 1e-3
+    joint = bench_joint({"effects.linkage.backlash.gap_rad": gap})
+    meet = [(side * 0.5 * gap - lead) / velocity for side in (-1.0, 1.0)] if velocity else []
+    whole, _ = quad(
+        lambda t: play_torque(lead + velocity * t, velocity, joint),
+        0.0,
+        step,
+        points=[t for t in meet if 0.0 < t < step] or None,
+    )
     assert_allclose(
-        mean_play_torque(lead, velocity, 0.0, 0.0, step, joint), np.mean(told), rtol=1e-4, atol=1e-9
+        mean_play_torque(lead, velocity, 0.0, 0.0, step, joint), whole / step, rtol=1e-9, atol=1e-9
     )
     assert mean_play_torque(lead, velocity, 0.0, 0.0, 0.0, joint) == play_torque(lead, velocity, joint)
 

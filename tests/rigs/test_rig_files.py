@@ -9,7 +9,7 @@ import yaml
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.records import flat
 from hydrolek_drake.rigs import built_in_rigs, load_rig
-from hydrolek_drake.rigs.arm_loads import FROM_ARM
+from hydrolek_drake.rigs.parameters.arm_loads import FROM_ARM
 
 BUILT_IN = sorted(built_in_rigs())
 PLACEHOLDERS = ("-", "?", "todo", "tbd", "none", "unknown")

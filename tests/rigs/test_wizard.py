@@ -11,8 +11,8 @@ import pytest
 from hydrolek_drake.cli.app import run
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import built_in_rigs, load_rig
-from hydrolek_drake.rigs.json_schema import rig_schema
-from hydrolek_drake.rigs.reading import rig_from_tree
+from hydrolek_drake.rigs.reading.json_schema import rig_schema
+from hydrolek_drake.rigs.reading.tree import rig_from_tree
 from hydrolek_drake.wizard import questions, read_answers
 from hydrolek_drake.wizard.making import text_of, written_rig
 from hydrolek_drake.wizard.sheet import Sheet

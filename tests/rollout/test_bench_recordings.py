@@ -102,9 +102,15 @@ def _on_a_pump(effect):
     return EFFECTS[effect].needs.get("supply") == ("pump",)
 
 
+def test_every_effect_has_a_size_here():
+    assert set(EFFECTS) == set(SIZES)
+
+
 @pytest.mark.parametrize("effect", ["none", *(e for e in EFFECTS if not _on_a_pump(e))])
+@pytest.mark.thorough(
+    but=("none", "cylinder.coulomb_friction", "cylinder.end_cushion", "linkage.backlash", "base.compliance")
+)
 def test_rig_s_step_is_fine_enough_with_each_effect_on(bench, effect):
-    assert effect == "none" or effect in SIZES, f"give {effect} a size in this test"
     parameters = {f"effects.{effect}.{name}": value for name, value in SIZES.get(effect, {}).items()}
     error = _step_error_deg(bench, {"load.friction_velocity": np.radians(0.2), **parameters})
     print(f"{effect}: {error:.5f} deg")

@@ -7,7 +7,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.laws.terms import Reach, Span, Term, law_record
 from hydrolek_drake.rigs import Rig, load_rig
-from hydrolek_drake.rigs.short_law import terms_of
+from hydrolek_drake.rigs.machine.short_law import terms_of
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.rollout.rest import rest_state
 from hydrolek_drake.rollout.together.arms import moving_with

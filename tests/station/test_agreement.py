@@ -42,7 +42,7 @@ def test_a_pump_with_its_relief_valve_and_four_edges_agree_with_their_rollout(va
 
 
 @pytest.mark.parametrize(("number", "effect"), list(enumerate(ON_THE_ARMS)))
-@pytest.mark.thorough(but=5)
+@pytest.mark.thorough(but=2)
 def test_every_effect_agrees_with_its_rollout(number, effect):
     joint = cases.JOINTS[number % len(cases.JOINTS)]
     rig = cases.with_effect(load_rig(joint), effect)
@@ -62,9 +62,9 @@ def test_every_effect_agrees_with_its_rollout(number, effect):
 )
 def test_a_command_that_takes_time_agrees_with_its_rollout(joint, slow):
     rig = load_rig(joint)
-    [(_, largest)] = differences.compare(rig.with_values(slow), 3.0, STEP, 4)
+    [(_, largest)] = differences.compare(rig.with_values(slow), 1.5, STEP, 4)
     assert largest <= REQUIRED_DEG
-    times, volts = differences.random_voltage(3.0, np.random.default_rng(4))
+    times, volts = differences.random_voltage(1.5, np.random.default_rng(4))
     at_once, late = (
         roll_out(each.records(), times, volts, times, longest_step=STEP).signals.reading
         for each in (rig, rig.with_values(slow))
@@ -74,11 +74,12 @@ def test_a_command_that_takes_time_agrees_with_its_rollout(joint, slow):
 
 def test_the_difference_shrinks_with_the_step():
     rig = load_rig("hydrolek_right_j3")
-    coarse, fine = (differences.compare(rig, 3.0, step, 5)[0][0] for step in (1e-3, 0.25e-3))
+    coarse, fine = (differences.compare(rig, 1.5, step, 5)[0][0] for step in (1e-3, 0.25e-3))
     assert fine < 0.5 * coarse
 
 
 @pytest.mark.parametrize("plant", [cases.on_the_arms, cases.bodies])
+@pytest.mark.thorough(but=1)
 def test_cases_that_share_a_diagram_are_those_that_run_alone(plant):
     chosen = [("hydrolek_left_j2", "linkage.backlash"), ("hydrolek_right_j3", "base.compliance")]
     together = differences.compare(plant(chosen), 1.5, 1e-3, 2, 3)

@@ -9,7 +9,7 @@ import yaml
 from hydrolek_drake.diagnosis.laws.terms import Term, law_record, law_records, span_of
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rigs import load_rig
-from hydrolek_drake.rigs.short_law import UNITS, terms_of
+from hydrolek_drake.rigs.machine.short_law import UNITS, terms_of
 from hydrolek_drake.rollout.rollout import roll_out
 from hydrolek_drake.station.simulation import command_source, initial_context, run
 from hydrolek_drake.station.station import make_station

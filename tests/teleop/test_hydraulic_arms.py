@@ -108,3 +108,8 @@ def test_what_cannot_be_simulated_is_refused(arguments, message):
         named["rig"] = load_rig(named["rig"])
     with pytest.raises(InputError, match=message):
         HydraulicArms(named.pop("posture"), **named)
+
+
+def test_without_a_pipe_there_is_no_force_to_control(arms):
+    with pytest.raises(InputError, match="no pipe"):
+        arms.advance(grip=[100.0, np.nan])

@@ -65,7 +65,7 @@ def test_the_goal_is_reached_and_no_two_valves_are_open_at_once(name):
 def test_time_falls_with_a_wider_tolerance():
     operator = make_operator("experienced")
     means = [
-        np.mean([trial(operator, [_goal(tolerance)], seed)[3] for seed in range(8)])
+        np.mean([trial(operator, [_goal(tolerance)], seed)[3] for seed in range(4)])
         for tolerance in (0.005, 0.02, 0.08)
     ]
     assert means[0] > means[1] > means[2]
@@ -98,7 +98,7 @@ def test_one_who_does_not_know_the_dead_time_overshoots_by_it():
 
 def test_the_beginner_needs_longer():
     times = {
-        name: np.mean([trial(make_operator(name), [_goal()], seed)[3] for seed in range(5)])
+        name: np.mean([trial(make_operator(name), [_goal()], seed)[3] for seed in range(3)])
         for name in ("inexperienced", "experienced")
     }
     assert times["inexperienced"] > times["experienced"]

@@ -290,4 +290,7 @@ def test_a_bad_answer_is_told_by_the_client(answer):
 
 def test_closing_at_once_is_no_deadlock():
     for _ in range(20):
-        SetpointServer(np.zeros(14), port=0).close()
+        server = SetpointServer(np.zeros(14), port=0)
+        server.close()
+        with pytest.raises(OSError):  # nobody listens any more
+            socket.create_connection(("127.0.0.1", server.port), timeout=1.0)

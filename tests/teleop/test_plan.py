@@ -38,6 +38,7 @@ def _off_axis(point, pipe):
     ("axis", "along"),
     [((0, 0, 1), (-0.05, 0.12)), ((0, 1, 0), (-0.05, 0.15)), ((0.2, 0.4, 1), (-0.05, 0.12))],
 )
+@pytest.mark.thorough(but=2)
 def test_the_true_pipe_is_grasped_and_cut_from_a_noisy_picture(planner, axis, along):
     pipe = make_pipe(axis=axis)
     plan = planner(pipe, *along)

@@ -134,7 +134,7 @@ def test_an_unforeseen_failure_of_the_planner_is_shown(session, machine, monkeyp
     def fails(*_arguments, **_named):
         raise ZeroDivisionError("planted")
 
-    monkeypatch.setattr("hydrolek_drake.teleop.session.plan_task", fails)
+    monkeypatch.setattr("hydrolek_drake.teleop.task_planner.plan_task", fails)
     _click_all(session)
     session.confirm()
     _until(lambda: session.state()["stage"] == "live")

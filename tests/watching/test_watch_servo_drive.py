@@ -83,6 +83,7 @@ def test_friction_that_grows_is_alarmed_by_name_and_a_healthy_series_is_not(rig,
     assert told.low <= 240.0 <= told.high
 
 
+@pytest.mark.thorough
 @pytest.mark.shared_recordings
 @pytest.mark.skipif(not SHARED.is_dir(), reason="the folder ../shared/recordings is not there")
 def test_a_recorded_stroke_is_followed_near_its_noise(rig, tmp_path):

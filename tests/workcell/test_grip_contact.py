@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from applied_forces import total_force
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
@@ -136,18 +137,6 @@ def _loose(plant, posture, jaw_deg):
     return contact, simulator, pipe
 
 
-def _total(plant, contact, context, state):
-    """Sum of all forces, and of their moments about the world's origin."""
-    own = plant.CreateDefaultContext()
-    plant.SetPositionsAndVelocities(own, state)
-    force, moment = np.zeros(3), np.zeros(3)
-    for each in contact.contact_force.Eval(context):
-        place = plant.EvalBodyPoseInWorld(own, plant.get_body(each.body_index)) @ each.p_BoBq_B
-        force += each.F_Bq_W.translational()
-        moment += np.cross(place, each.F_Bq_W.translational())
-    return force, moment
-
-
 def test_a_held_pipe_adds_its_weight_at_its_middle_and_nothing_else(plant):
     """What the finger presses is held against by the hand: forces and moments cancel but for the weight."""
     posture = home_posture()
@@ -156,7 +145,7 @@ def test_a_held_pipe_adds_its_weight_at_its_middle_and_nothing_else(plant):
     assert contact.pipe_in(context).holder == "right"
     assert contact.grip_force.Eval(context)[0] > 1e3 and contact.grip_force.Eval(context)[1] == 0.0
     posture[6] = np.radians(18.0)
-    force, moment = _total(plant, contact, context, _state(plant, posture))
+    force, moment = total_force(plant, contact.contact_force.Eval(context), _state(plant, posture))
     weight = np.array([0.0, 0.0, -workcell_entries()["loose_pipe"]["mass"] * 9.81])
     np.testing.assert_allclose(force, weight, atol=1e-6)
     np.testing.assert_allclose(moment, np.cross(pipe.point, weight), atol=1e-6)

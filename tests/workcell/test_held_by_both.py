@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from applied_forces import total_force
 from pydrake.common.eigen_geometry import AngleAxis
 from pydrake.math import RotationMatrix
 from pydrake.systems.analysis import Simulator
@@ -112,13 +113,7 @@ def test_two_grippers_take_a_pipe_and_what_they_do_to_each_other_cancels():
     state = stand(posture)
     internal = contact.internal_force.Eval(context)
     assert np.linalg.norm(internal[:3]) > 10.0
-    own = plant.CreateDefaultContext()
-    plant.SetPositionsAndVelocities(own, state)
-    force, moment = np.zeros(3), np.zeros(3)
-    for each in contact.contact_force.Eval(context):
-        place = plant.EvalBodyPoseInWorld(own, plant.get_body(each.body_index)) @ each.p_BoBq_B
-        force += each.F_Bq_W.translational()
-        moment += each.F_Bq_W.rotational() + np.cross(place, each.F_Bq_W.translational())
+    force, moment = total_force(plant, contact.contact_force.Eval(context), state)
     weight = np.array([0.0, 0.0, -workcell_entries()["loose_pipe"]["mass"] * GRAVITY])
     np.testing.assert_allclose(force, weight, atol=1e-6)
     np.testing.assert_allclose(moment, np.cross(contact.pipe_place.Eval(context)[:3], weight), atol=1e-6)

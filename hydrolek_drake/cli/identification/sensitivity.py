@@ -1,12 +1,20 @@
 """`hydrolek sensitivity`: which parameters matter, and when."""
 
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hydrolek_drake.cli.inputs import rig_and_recordings
 from hydrolek_drake.cli.settings import SetOption
+
+if TYPE_CHECKING:  # what writes to a terminal is loaded when it is needed
+    from rich.status import Status
+
+
+def _update(status: "Status", name: str, form: str, *values: object) -> None:
+    status.update(f"{name}: {form.format(*values)}")
 
 
 def sensitivity(
@@ -70,7 +78,7 @@ def sensitivity(
                     np.random.default_rng(seed),
                     recording=read,
                     spread=spread,
-                    progress=lambda done, of, name=name: status.update(f"{name}: {done} of {of}"),  # type: ignore[misc]
+                    progress=partial(_update, status, name, "{} of {}"),
                 )
             output.print(found.sentence(), soft_wrap=True)
             if out is not None:
@@ -93,7 +101,7 @@ def sensitivity(
                 segments=segments,
                 trajectories=trajectories,
                 sobol_points=sobol,
-                say=lambda text, name=name: status.update(f"{name}: {text}"),  # type: ignore[misc]
+                say=partial(_update, status, name, "{}"),
             )
         unit = study.response.unit
         table = Table(

@@ -3,13 +3,17 @@
 import json
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hydrolek_drake.cli.inputs import tell_of_clocks
 from hydrolek_drake.cli.settings import SetOption, parse_settings
 from hydrolek_drake.errors import InputError
+
+if TYPE_CHECKING:  # the commands load what they need
+    from hydrolek_drake.recordings import Recording
+    from hydrolek_drake.rigs import Rig
 
 rig = typer.Typer(add_completion=False, rich_markup_mode=None, no_args_is_help=True)
 """The commands."""
@@ -94,19 +98,19 @@ def check(
 @rig.command()
 def schema() -> None:
     """Print the JSON schema of rig files, for completion and checks in editors."""
-    from hydrolek_drake.rigs.json_schema import rig_schema
+    from hydrolek_drake.rigs.reading.json_schema import rig_schema
 
     print(json.dumps(rig_schema(), indent=1))
 
 
-def _say(loaded: object, recording: object) -> int:
+def _say(loaded: "Rig", recording: "Recording | None") -> int:
     """Print complaints; how many of them are wrong."""
     from hydrolek_drake.checking.recording_checks import check_recording
     from hydrolek_drake.checking.rig_checks import check_rig
     from hydrolek_drake.cli.output import console
 
     out = console()
-    found = check_rig(loaded) if recording is None else check_recording(loaded, recording)  # type: ignore[arg-type]
+    found = check_rig(loaded) if recording is None else check_recording(loaded, recording)
     for each in found:
         begin = "wrong?" if each.wrong else "note:"
         out.print(f"{begin} {each.sentence()}", markup=False, soft_wrap=True)

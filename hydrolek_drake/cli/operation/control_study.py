@@ -1,6 +1,7 @@
 """`hydrolek control judge` and `hydrolek control tune`: steps on changed machines."""
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -36,11 +37,16 @@ def judge(
     from hydrolek_drake.control.comparison.conditions import Condition, conditions_data, judged_conditions
     from hydrolek_drake.control.comparison.judged import as_json, as_rows
     from hydrolek_drake.control.comparison.judging import judge_all, make_cases
+    from hydrolek_drake.control.laws.law import ControlLaw
     from hydrolek_drake.control.models.rig_model import control_step
     from hydrolek_drake.files import write_out
     from hydrolek_drake.rigs import load_rig
 
     generator = np.random.default_rng(seed)
+
+    def law_of(name: str, which: str) -> ControlLaw:
+        return build_law(name, settings[which], noisy=True)
+
     half = Condition(load_kg=0.5 * float(conditions_data()["load"]["value"]))
     with progress("step tests of every joint") as tell:
         settings = {name: rig_setting(load_rig(f"hydrolek_{name}"), name) for name in joints}
@@ -52,7 +58,7 @@ def judge(
             for learned in (False, True):
                 tell(f"{name}, {'third' if learned else 'first'} step, {len(cases)} cases")
                 found[name, learned] = judge_all(
-                    lambda which, name=name: build_law(name, settings[which], noisy=True),  # type: ignore[misc]
+                    partial(law_of, name),
                     cases,
                     seed,
                     learned=learned,

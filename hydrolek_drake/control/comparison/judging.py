@@ -8,7 +8,7 @@ import numpy as np
 from hydrolek_drake.control.closed_loop import LoopSignals, loop_on_rollout
 from hydrolek_drake.control.comparison.conditions import Condition, conditions_data, machine, span_deg
 from hydrolek_drake.control.comparison.metrics import step_measures, switching
-from hydrolek_drake.control.laws.law import Array, ControlLaw
+from hydrolek_drake.control.laws.law import Array, ControlLaw, WithoutState
 from hydrolek_drake.control.thesis_gains import sample_s, voltage_limit_V
 
 ROWS = 5
@@ -19,7 +19,7 @@ OVERSHOOT_PERCENT, ERROR_DEG, RISE_SHARE = 2.0, 0.1, 1.15
 
 
 @dataclass(frozen=True)
-class FullVoltage:
+class FullVoltage(WithoutState):
     """Full voltage in one direction: what the joint's saturation rate allows.
 
     Attributes:
@@ -27,15 +27,6 @@ class FullVoltage:
     """
 
     voltage_V: float
-
-    @property
-    def size(self) -> int:
-        """No state."""
-        return 0
-
-    def initial(self, measured_deg: float) -> Array:
-        """No state."""
-        return np.zeros(0)
 
     def step(self, state: Array, set_point_deg: float, measured_deg: float) -> tuple[Array, float, float]:
         """See `ControlLaw.step`."""

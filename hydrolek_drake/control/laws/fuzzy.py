@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.control.laws.law import Array, InputElement
+from hydrolek_drake.control.laws.law import Array, InputElement, WithoutState
 from hydrolek_drake.control.laws.scaled_input import ScaledInput
 from hydrolek_drake.yaml_files import package_yaml
 
@@ -139,7 +139,7 @@ def appendix_f_surface(scaling: ScaledInput, joint: str) -> tuple[Array, Array, 
 
 
 @dataclass(frozen=True)
-class SingleInputFuzzyLaw:
+class SingleInputFuzzyLaw(WithoutState):
     """Error to output by five rules, section 7.1.1.
 
     Attributes:
@@ -151,15 +151,6 @@ class SingleInputFuzzyLaw:
     element: InputElement
     errors: Array = field(default_factory=lambda: _single()[0])
     outputs: Array = field(default_factory=lambda: _single()[1])
-
-    @property
-    def size(self) -> int:
-        """No state."""
-        return 0
-
-    def initial(self, measured_deg: float) -> Array:
-        """No state."""
-        return np.zeros(0)
 
     def step(self, state: Array, set_point_deg: float, measured_deg: float) -> tuple[Array, float, float]:
         """See `ControlLaw.step`."""

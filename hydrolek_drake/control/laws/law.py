@@ -51,6 +51,19 @@ class ControlLaw(Protocol):
         ...
 
 
+class WithoutState:
+    """What a `ControlLaw` says of its state that has none."""
+
+    @property
+    def size(self) -> int:
+        """No state."""
+        return 0
+
+    def initial(self, measured_deg: float) -> Array:
+        """No state."""
+        return np.zeros(0)
+
+
 def clipped(value: float, limits: tuple[float, float]) -> float:
     """`value` within limits."""
     return min(max(value, limits[0]), limits[1])

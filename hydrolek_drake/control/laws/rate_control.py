@@ -2,13 +2,11 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from hydrolek_drake.control.laws.law import Array, InputElement
+from hydrolek_drake.control.laws.law import Array, InputElement, WithoutState
 
 
 @dataclass(frozen=True)
-class RateLaw:
+class RateLaw(WithoutState):
     """Deflection of the joystick [percent] to voltage through a scaling such as Table 6.3's.
 
     The set point of this law is the deflection. It stops at the ends of the joint's range: a deflection that
@@ -25,15 +23,6 @@ class RateLaw:
     idle: float
     lower_deg: float
     upper_deg: float
-
-    @property
-    def size(self) -> int:
-        """No state."""
-        return 0
-
-    def initial(self, measured_deg: float) -> Array:
-        """No state."""
-        return np.zeros(0)
 
     def step(self, state: Array, set_point_deg: float, measured_deg: float) -> tuple[Array, float, float]:
         """See `ControlLaw.step`; `set_point_deg` is the deflection in percent."""

@@ -16,7 +16,7 @@ from hydrolek_drake.diagnosis.report.words import behind, off_zero_sentences, qu
 from hydrolek_drake.diagnosis.settings import EVIDENCE
 from hydrolek_drake.identification.experiments.thinning import STEPS
 from hydrolek_drake.replay.display import ratio, three_digits
-from hydrolek_drake.rigs.rig import declaration
+from hydrolek_drake.rigs.machine.rig import declaration
 
 PROBABILITY = (
     "Probability: how likely it is that this is truly missing, which is the posterior probability among all models "

@@ -12,7 +12,7 @@ from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.replay.display import display_factor, display_unit, ratio, shown, three_digits
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.rig import declaration
+from hydrolek_drake.rigs.machine.rig import declaration
 
 
 def unit_at(rig: Rig, joint: str, unit: str) -> str:

@@ -16,7 +16,7 @@ from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.continuation import Continuation, cut_where_measured
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.driven_by import SUPPLY, counts
+from hydrolek_drake.rigs.machine.driven_by import SUPPLY, counts
 
 
 def cut(bench: Workbench, experiments: Sequence[Experiment]) -> tuple[Experiment, ...]:

@@ -7,7 +7,7 @@ from hydrolek_drake.diagnosis.laws.law import FoundLaw, records_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 from hydrolek_drake.physics.law import MOST_TERMS
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.short_law import terms_of
+from hydrolek_drake.rigs.machine.short_law import terms_of
 
 SOURCE = "fitted to recordings by hydrolek diagnose"
 RESOLVED = "what was found opens and closes contacts, which a longer step does not resolve"

@@ -12,7 +12,7 @@ from hydrolek_drake.effects import EFFECTS, Effect
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.parameter_set import Free
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.rig import declaration
+from hydrolek_drake.rigs.machine.rig import declaration
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import driven_joints, measured_position, position_key
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.recorded_inputs import recorded_inputs, with_commands
+from hydrolek_drake.rigs.machine.recorded_inputs import recorded_inputs, with_commands
 
 CONSTANT = 1e-12
 """A command that varies by less than this fraction of its size says nothing about the machine."""

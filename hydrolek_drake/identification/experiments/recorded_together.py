@@ -8,8 +8,8 @@ import numpy as np
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.physics.probes import SUPPLY
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.driven_by import SUPPLY as SUPPLY_KEY
-from hydrolek_drake.rigs.recorded_inputs import Inputs
+from hydrolek_drake.rigs.machine.driven_by import SUPPLY as SUPPLY_KEY
+from hydrolek_drake.rigs.machine.recorded_inputs import Inputs
 from hydrolek_drake.rollout.rest import rest_state_at_reading
 from hydrolek_drake.rollout.rollout import Signals
 from hydrolek_drake.rollout.together.arms import moving_with

@@ -23,7 +23,7 @@ from hydrolek_drake.identification.least_squares.lockstep import descend
 from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.problem import Problem
-from hydrolek_drake.rigs.driven_by import SUPPLY, counts
+from hydrolek_drake.rigs.machine.driven_by import SUPPLY, counts
 
 RUNGS: tuple[tuple[float | None, int], ...] = ((0.1, 8), (0.5, 8), (None, 10))
 """Time constants of the observer [s], and steps of a fit with it; the last one is free."""

@@ -11,7 +11,7 @@ from hydrolek_drake.identification.objective.norms import segment_edges
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.recorded_inputs import recorded_inputs, with_commands
+from hydrolek_drake.rigs.machine.recorded_inputs import recorded_inputs, with_commands
 from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes
 from hydrolek_drake.rollout.run import Run
 

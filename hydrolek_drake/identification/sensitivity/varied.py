@@ -6,7 +6,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.physics.records import SHARED_STAGES
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.rig import declaration
+from hydrolek_drake.rigs.machine.rig import declaration
 
 BOOKKEEPING = frozenset(
     {

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from hydrolek_drake.identification.two_step.settings import two_step_data, with_ranges
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.reading import rig_from_tree
+from hydrolek_drake.rigs.reading.tree import rig_from_tree
 from hydrolek_drake.units import si_factor
 
 REPLACED = ("amplifier", "solenoid", "valve", "cylinder", "linkage")

@@ -6,7 +6,7 @@ from typing import Any
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.rig import declaration
+from hydrolek_drake.rigs.machine.rig import declaration
 from hydrolek_drake.yaml_files import package_yaml
 
 MASSES = ("inertia", "gravity_cos", "gravity_sin")

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
-from pydrake.systems.framework import Diagram, DiagramBuilder
+from pydrake.systems.framework import Context, Diagram, DiagramBuilder
 
 from hydrolek_drake.control.catalogue import CONTROLLERS, JointSetting, build_law, joystick_law, rig_setting
 from hydrolek_drake.control.comparison.bench import MACHINE_STEP_S
@@ -262,7 +262,7 @@ class HydraulicArms:
         return np.array(self._contact.internal_force.Eval(context))
 
     @property
-    def _root(self):  # type: ignore[no-untyped-def]
+    def _root(self) -> Context:
         return self._simulator.get_context()
 
     def _of(self, port: str) -> Array:

@@ -10,7 +10,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.replay.readings import measured_position
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.recorded_inputs import with_commands
+from hydrolek_drake.rigs.machine.recorded_inputs import with_commands
 from hydrolek_drake.rollout.kernel import PULLED
 
 COLUMNS = ("command", *PULLED)

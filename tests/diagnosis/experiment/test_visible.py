@@ -42,6 +42,7 @@ def healthy(bench, recorded, fitted):
 
 
 @pytest.mark.parametrize("effect_id", PLANTED)
+@pytest.mark.thorough(but=1)
 def test_a_size_that_would_be_seen_is_not_made_up_for_by_the_nominal_model(
     bench, recorded, fitted, healthy, effect_id
 ) -> None:

@@ -136,6 +136,7 @@ def test_a_deeper_local_minimum_beside_is_where_it_ends() -> None:
         ("linkage.backlash", {"gap_rad": 0.01}),
     ],
 )
+@pytest.mark.thorough(but=1)
 def test_numbers_of_a_fit_that_ended_early_are_told_within_their_intervals(
     bench, recorded, fitted, effect, size
 ) -> None:

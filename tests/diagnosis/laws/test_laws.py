@@ -12,7 +12,7 @@ from hydrolek_drake.diagnosis.laws.law import FoundLaw, Law
 from hydrolek_drake.diagnosis.laws.terms import TERMS, Term, law_record, law_records, span_of
 from hydrolek_drake.diagnosis.report.words import where_sentence
 from hydrolek_drake.physics.law import BELOW, BEYOND, NEAR, Seen, law_value
-from hydrolek_drake.rigs.short_law import read_law, terms_of
+from hydrolek_drake.rigs.machine.short_law import read_law, terms_of
 
 
 def test_a_law_means_the_same_in_a_shorter_and_gentler_recording(bench, recorded) -> None:

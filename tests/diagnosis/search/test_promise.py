@@ -39,6 +39,7 @@ def test_nothing_is_seen_where_nothing_is(bench, recorded, promises_of) -> None:
     ("effect_id", "parameter"),
     [("cylinder.cross_port_leakage", "conductance_m3_per_s_Pa"), ("sensor.nonlinearity", "amplitude_rad")],
 )
+@pytest.mark.thorough(but=1)
 def test_the_visible_size_is_where_the_gain_says_it_is(
     bench, recorded, promises_of, effect_id, parameter
 ) -> None:

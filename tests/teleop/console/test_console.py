@@ -1,17 +1,14 @@
 """The console over HTTP and the web socket: two browsers, malformed and oversized messages, the whole task."""
 
 import asyncio
-import json
 import urllib.request
 
 import numpy as np
 import pytest
-from tornado.websocket import websocket_connect
+from console_client import Black, ask, connect, next_state, served
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.teleop.console.server import Console
-from hydrolek_drake.teleop.machine import Machine
-from hydrolek_drake.teleop.session import OperatorSession
 from hydrolek_drake.teleop.trial import SCALES, TrialLog
 from hydrolek_drake.vision.camera import recorded_camera
 from hydrolek_drake.vision.frames import Frame, FrameSource
@@ -23,69 +20,23 @@ from hydrolek_drake.workcell.simulated_kinect import SimulatedKinect, as_machine
 def _served(work, source=None, rate=25.0):
     """Run `work(console)` against a console with a fast machine, and the simulated camera if no other is given."""
 
-    async def main():
-        machine = Machine(home_posture(), realtime_rate=rate)
-        if source is None:
-            session = OperatorSession(
-                lambda: SimulatedKinect(make_pipe(), np.random.default_rng(1)),
-                machine,
-                seed=1,
-                stand=as_machine_stands,
-            )
-        else:
-            session = OperatorSession(source, machine, seed=1)
-        console = Console(session, port=0)
-        running = asyncio.ensure_future(console.run())
-        try:
-            await asyncio.wait_for(work(console), 60.0)
-        finally:
-            running.cancel()
-            console.close()
-            machine.close()
-            session.close()
+    def simulated():
+        return SimulatedKinect(make_pipe(), np.random.default_rng(1))
 
-    asyncio.run(main())
-
-
-async def _ask(socket, message, seen=None):
-    """Send and return the error that is answered, empty for none; steps of the task on the way go into `seen`."""
-    await socket.write_message(message if isinstance(message, (str, bytes)) else json.dumps(message))
-    while True:
-        answer = await socket.read_message()
-        if answer is None:
-            return None
-        found = json.loads(answer)
-        if "error" in found:
-            return found["error"]
-        await socket.write_message('{"do": "here"}')
-        if seen is not None:
-            seen.add(found["state"]["step"])
-
-
-async def _state(socket):
-    while True:
-        found = json.loads(await socket.read_message())
-        if "state" in found:
-            await socket.write_message('{"do": "here"}')  # as the page does
-            return found
+    stand = as_machine_stands if source is None else None
+    served(lambda console, machine: work(console), source or simulated, rate=rate, stand=stand)
 
 
 async def _click_the_pipe(socket):
-    assert await _ask(socket, {"do": "snapshot"}) == ""
+    assert await ask(socket, {"do": "snapshot"}) == ""
     for v in (150, 180, 110):
-        assert await _ask(socket, {"do": "click", "u": 319.5, "v": v}) == ""
+        assert await ask(socket, {"do": "click", "u": 319.5, "v": v}) == ""
 
 
 async def _stands_still(socket):
-    state = (await _state(socket))["state"]
+    state = (await next_state(socket))["state"]
     assert state["mode"] == "idle" and not state["valves_open"]
     np.testing.assert_allclose(np.radians(state["angles_deg"]), home_posture(), atol=1e-3)
-
-
-async def _open(console):
-    socket = await websocket_connect(f"ws://127.0.0.1:{console.port}/socket")
-    assert await _ask(socket, {"do": "token", "token": console.token}) == ""
-    return socket
 
 
 def test_the_page_and_the_whole_task():
@@ -94,16 +45,16 @@ def test_the_page_and_the_whole_task():
         address = f"http://127.0.0.1:{console.port}/"
         page = await loop.run_in_executor(None, lambda: urllib.request.urlopen(address).read().decode())
         assert 'id="stop"' in page and "/socket" in page
-        socket = await _open(console)
+        socket = await connect(console)
         await _click_the_pipe(socket)
         picture = await loop.run_in_executor(
             None, lambda: urllib.request.urlopen(address + "edges.jpg").read()
         )
         assert picture[:2] == b"\xff\xd8"  # JPEG
         seen = set()
-        assert await _ask(socket, {"do": "confirm"}, seen) == ""
+        assert await ask(socket, {"do": "confirm"}, seen) == ""
         while True:
-            state = (await _state(socket))["state"]
+            state = (await next_state(socket))["state"]
             seen.add(state["step"])
             if state["stage"] == "live":
                 break
@@ -114,14 +65,14 @@ def test_the_page_and_the_whole_task():
 
 def test_of_two_browsers_the_second_watches_and_may_stop():
     async def work(console):
-        first, second = await _open(console), await _open(console)
-        assert (await _state(first))["in_control"] and not (await _state(second))["in_control"]
-        assert "in control" in await _ask(second, {"do": "snapshot"})
-        assert await _ask(second, {"do": "stop"}) == ""
+        first, second = await connect(console), await connect(console)
+        assert (await next_state(first))["in_control"] and not (await next_state(second))["in_control"]
+        assert "in control" in await ask(second, {"do": "snapshot"})
+        assert await ask(second, {"do": "stop"}) == ""
         first.close()
-        while not (await _state(second))["in_control"]:
+        while not (await next_state(second))["in_control"]:
             pass
-        assert await _ask(second, {"do": "snapshot"}) == ""
+        assert await ask(second, {"do": "snapshot"}) == ""
 
     _served(work)
 
@@ -164,12 +115,12 @@ def test_of_two_browsers_the_second_watches_and_may_stop():
 )
 def test_a_malformed_message_is_answered_and_the_arms_stand_still(message, answer):
     async def work(console):
-        socket = await _open(console)
-        error = await _ask(socket, message)
+        socket = await connect(console)
+        error = await ask(socket, message)
         assert error is None if answer is None else answer in error
-        await _stands_still(await _open(console))
+        await _stands_still(await connect(console))
 
-    _served(work)
+    _served(work, Black)
 
 
 class _Holes(FrameSource):
@@ -188,9 +139,9 @@ class _Holes(FrameSource):
 
 def test_depth_of_holes_is_told_over_the_socket_and_the_arms_stand_still():
     async def work(console):
-        socket = await _open(console)
-        assert await _ask(socket, {"do": "snapshot"}) == ""
-        assert "nothing within reach" in await _ask(socket, {"do": "click", "u": 320, "v": 240})
+        socket = await connect(console)
+        assert await ask(socket, {"do": "snapshot"}) == ""
+        assert "nothing within reach" in await ask(socket, {"do": "click", "u": 320, "v": 240})
         await _stands_still(socket)
 
     _served(work, lambda: _Holes(10**6))
@@ -198,11 +149,11 @@ def test_depth_of_holes_is_told_over_the_socket_and_the_arms_stand_still():
 
 def test_a_lost_camera_is_told_over_the_socket_and_the_arms_stand_still():
     async def work(console):
-        socket = await _open(console)
-        while "check its cable" not in (await _state(socket))["state"]["error"]:
+        socket = await connect(console)
+        while "check its cable" not in (await next_state(socket))["state"]["error"]:
             pass
-        assert "check its cable" in await _ask(socket, {"do": "snapshot"})
-        assert "must be clicked" in await _ask(socket, {"do": "confirm"})
+        assert "check its cable" in await ask(socket, {"do": "snapshot"})
+        assert "must be clicked" in await ask(socket, {"do": "confirm"})
         await _stands_still(socket)
 
     _served(work, lambda: _Holes(1))
@@ -218,23 +169,23 @@ def test_a_taken_port_is_refused():
 
 def test_a_joystick_over_the_socket_stops_with_the_browser_that_holds_it():
     async def work(console):
-        first, second = await _open(console), await _open(console)
-        await _state(first)
+        first, second = await connect(console), await connect(console)
+        await next_state(first)
         right = {"do": "joystick", "deflection": [40] + [0] * 13}
-        assert "in control" in await _ask(second, right)
-        assert await _ask(first, right) == ""
-        assert await _ask(first, {"do": "sliders_to", "angles_deg": [50] + [0] * 13}) != ""
+        assert "in control" in await ask(second, right)
+        assert await ask(first, right) == ""
+        assert await ask(first, {"do": "sliders_to", "angles_deg": [50] + [0] * 13}) != ""
         home = np.degrees(home_posture()[0])
-        while (await _state(first))["state"]["angles_deg"][0] <= home:
-            assert await _ask(first, right) == ""
+        while (await next_state(first))["state"]["angles_deg"][0] <= home:
+            assert await ask(first, right) == ""
         first.close()
         for moving in (True, False):  # what waits to be read tells how it began, too
-            while bool((await _state(second))["state"]["manual"]) is not moving:
+            while bool((await next_state(second))["state"]["manual"]) is not moving:
                 pass
-        state = (await _state(second))["state"]
+        state = (await next_state(second))["state"]
         assert not state["valves_open"]
         await asyncio.sleep(0.2)
-        np.testing.assert_array_equal((await _state(second))["state"]["angles_deg"], state["angles_deg"])
+        np.testing.assert_array_equal((await next_state(second))["state"]["angles_deg"], state["angles_deg"])
 
     _served(work)
 
@@ -242,18 +193,18 @@ def test_a_joystick_over_the_socket_stops_with_the_browser_that_holds_it():
 @pytest.mark.thorough
 def test_a_task_stops_with_the_browser_in_control_and_the_next_one_resumes_it():
     async def work(console):
-        first, second = await _open(console), await _open(console)
+        first, second = await connect(console), await connect(console)
         await _click_the_pipe(first)
-        assert await _ask(first, {"do": "confirm"}) == ""
-        while (await _state(second))["state"]["mode"] != "running":
+        assert await ask(first, {"do": "confirm"}) == ""
+        while (await next_state(second))["state"]["mode"] != "running":
             pass
         first.close()
-        while (await _state(second))["state"]["mode"] != "stopped":
+        while (await next_state(second))["state"]["mode"] != "stopped":
             pass
-        state = await _state(second)
+        state = await next_state(second)
         assert state["in_control"] and not state["state"]["valves_open"]
-        assert await _ask(second, {"do": "resume"}) == ""
-        while (await _state(second))["state"]["mode"] != "done":
+        assert await ask(second, {"do": "resume"}) == ""
+        while (await next_state(second))["state"]["mode"] != "done":
             pass
 
     _served(work, rate=8.0)
@@ -261,13 +212,13 @@ def test_a_task_stops_with_the_browser_in_control_and_the_next_one_resumes_it():
 
 def test_a_task_that_is_planned_for_a_lost_browser_does_not_begin():
     async def work(console):
-        first, second = await _open(console), await _open(console)
+        first, second = await connect(console), await connect(console)
         await _click_the_pipe(first)
-        assert await _ask(first, {"do": "confirm"}) == ""
+        assert await ask(first, {"do": "confirm"}) == ""
         first.close()
-        while (await _state(second))["state"]["stage"] != "confirm":
+        while (await next_state(second))["state"]["stage"] != "confirm":
             pass
-        assert (await _state(second))["state"]["mode"] == "idle"
+        assert (await next_state(second))["state"]["mode"] == "idle"
 
     _served(work)
 
@@ -275,13 +226,13 @@ def test_a_task_that_is_planned_for_a_lost_browser_does_not_begin():
 def test_trials_over_the_socket(tmp_path):
     async def work(console):
         console.trials = TrialLog(tmp_path)
-        socket = await _open(console)
+        socket = await connect(console)
         ratings = {"do": "ratings", "operator": "7", "control": "assisted", **dict.fromkeys(SCALES, 25)}
-        assert "no time to save" in await _ask(socket, ratings)
-        assert await _ask(socket, {"do": "timer", "action": "start"}) == ""
-        assert (await _state(socket))["state"]["trial"]["running"]
-        assert await _ask(socket, {"do": "timer", "action": "stop"}) == ""
-        assert await _ask(socket, ratings) == ""
+        assert "no time to save" in await ask(socket, ratings)
+        assert await ask(socket, {"do": "timer", "action": "start"}) == ""
+        assert (await next_state(socket))["state"]["trial"]["running"]
+        assert await ask(socket, {"do": "timer", "action": "stop"}) == ""
+        assert await ask(socket, ratings) == ""
         assert (tmp_path / "trials.csv").read_text().splitlines()[1].endswith("25.00,")
 
     _served(work)

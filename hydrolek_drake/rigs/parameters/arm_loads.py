@@ -2,7 +2,7 @@
 
 import functools
 
-from hydrolek_drake.rigs.entries import Entry
+from hydrolek_drake.rigs.parameters.entries import Entry
 
 FROM_ARM = (
     "inertia",

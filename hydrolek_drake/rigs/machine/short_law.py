@@ -30,8 +30,8 @@ from hydrolek_drake.physics.law import (
 )
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.physics.probes import PROBES
-from hydrolek_drake.rigs.entries import Entry, parse_entry, written_entry
-from hydrolek_drake.rigs.keys import refuse_unknown
+from hydrolek_drake.rigs.parameters.entries import Entry, parse_entry, written_entry
+from hydrolek_drake.rigs.parameters.keys import refuse_unknown
 
 UNITS = {
     "command": "V",

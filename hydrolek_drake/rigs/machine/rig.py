@@ -16,13 +16,13 @@ from hydrolek_drake.physics import supply
 from hydrolek_drake.physics.cylinder import ELECTRIC
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.records import JOINT, JOINT_STAGES, SHARED_STAGES
-from hydrolek_drake.rigs.arm_loads import FROM_ARM, arm_load
 from hydrolek_drake.rigs.checks import across
-from hydrolek_drake.rigs.declarations import declared
-from hydrolek_drake.rigs.driven_by import counts, signals_of
-from hydrolek_drake.rigs.entries import Entry, parse_quantity
-from hydrolek_drake.rigs.short_law import LawTerm, law_record
-from hydrolek_drake.rigs.writing import written_tree
+from hydrolek_drake.rigs.machine.driven_by import counts, signals_of
+from hydrolek_drake.rigs.machine.short_law import LawTerm, law_record
+from hydrolek_drake.rigs.machine.writing import written_tree
+from hydrolek_drake.rigs.parameters.arm_loads import FROM_ARM, arm_load
+from hydrolek_drake.rigs.parameters.declarations import declared
+from hydrolek_drake.rigs.parameters.entries import Entry, parse_quantity
 
 
 @dataclass(frozen=True)

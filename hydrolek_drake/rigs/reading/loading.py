@@ -10,9 +10,9 @@ from typing import Any
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.files import is_file, named_file
 from hydrolek_drake.physics.records import SHARED_STAGES
-from hydrolek_drake.rigs.parts import with_parts
-from hydrolek_drake.rigs.reading import rig_from_tree
-from hydrolek_drake.rigs.rig import Rig
+from hydrolek_drake.rigs.machine.rig import Rig
+from hydrolek_drake.rigs.reading.parts import with_parts
+from hydrolek_drake.rigs.reading.tree import rig_from_tree
 from hydrolek_drake.yaml_files import read_yaml
 
 _TOP_KEYS = (

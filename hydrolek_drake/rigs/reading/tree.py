@@ -9,14 +9,14 @@ from hydrolek_drake.effects.catalogue import EFFECTS, effect_named
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.physics.parameters import Stage
 from hydrolek_drake.physics.records import JOINT_STAGES, SHARED_STAGES
-from hydrolek_drake.rigs.arm_loads import FROM_ARM, arm_entries
 from hydrolek_drake.rigs.checks import across
-from hydrolek_drake.rigs.declarations import OF_INTEGRATION
-from hydrolek_drake.rigs.driven_by import read_driven_by
-from hydrolek_drake.rigs.entries import Entry, parse_entry
-from hydrolek_drake.rigs.keys import refuse_unknown
-from hydrolek_drake.rigs.rig import Rig
-from hydrolek_drake.rigs.short_law import LawTerm, read_law
+from hydrolek_drake.rigs.machine.driven_by import read_driven_by
+from hydrolek_drake.rigs.machine.rig import Rig
+from hydrolek_drake.rigs.machine.short_law import LawTerm, read_law
+from hydrolek_drake.rigs.parameters.arm_loads import FROM_ARM, arm_entries
+from hydrolek_drake.rigs.parameters.declarations import OF_INTEGRATION
+from hydrolek_drake.rigs.parameters.entries import Entry, parse_entry
+from hydrolek_drake.rigs.parameters.keys import refuse_unknown
 
 
 def rig_from_tree(tree: dict[str, Any], path: Path) -> Rig:

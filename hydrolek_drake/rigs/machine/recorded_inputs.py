@@ -8,8 +8,8 @@ from hydrolek_drake.physics.driven import INPUTS
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.recordings.clock import JITTER_FRACTION
-from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.driven_by import signals_of
+from hydrolek_drake.rigs.machine.driven_by import signals_of
+from hydrolek_drake.rigs.machine.rig import Rig
 
 Inputs = tuple[float, np.ndarray]
 """Spacing of samples [s], and `probes.PROBES` at each of them. # (k, 15)."""

@@ -5,9 +5,9 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from hydrolek_drake.rigs.declarations import declared
-from hydrolek_drake.rigs.entries import Entry, written_entry
-from hydrolek_drake.rigs.short_law import LawTerm
+from hydrolek_drake.rigs.machine.short_law import LawTerm
+from hydrolek_drake.rigs.parameters.declarations import declared
+from hydrolek_drake.rigs.parameters.entries import Entry, written_entry
 
 
 def written_tree(

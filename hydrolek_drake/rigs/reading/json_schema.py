@@ -6,8 +6,8 @@ from typing import Any
 from hydrolek_drake.effects.catalogue import EFFECTS
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.records import JOINT_STAGES, SHARED_STAGES
-from hydrolek_drake.rigs.declarations import OF_INTEGRATION
-from hydrolek_drake.rigs.parts import USES
+from hydrolek_drake.rigs.parameters.declarations import OF_INTEGRATION
+from hydrolek_drake.rigs.reading.parts import USES
 
 _TEXT = {"type": "string"}
 _NUMBER = {"type": ["number", "string"]}
