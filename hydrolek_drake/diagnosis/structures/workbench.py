@@ -229,7 +229,7 @@ class Workbench:
             pool=self.pool,
             prior=prior,
             pull_time=pull_time,
-            wide=FITS.wide if any(c.sudden for c in effects) else (),
+            wide=FITS.wide if any(c.step_share < 1.0 for c in effects) else (),
             **known,
         )
 
