@@ -46,8 +46,9 @@ class Fits:
 
     wide: tuple[float, ...] = (0.03, 0.01, 0.001)
     """Differences [ranges] by which the slopes of a play, and of a joint that sticks and slips, are told at first: over
-    a millionth they are those of single contacts and breakaways. Fits of a play to innovations ended at 6 times the noise with these alone, at 3 with such wide ones, and
-    at 5.4 and 2.1 (590/012, 570/013; T = 0.1 s)."""
+    a millionth they are those of single contacts and breakaways. Fits of a play to innovations ended at 6 times the
+    noise with these alone, at 3 with such wide ones, and at 5.4 and 2.1 (590/012, 570/013; T = 0.1 s); those of a
+    Stribeck friction at 1.9, 1.8 and 1.4, 1.2 (hopsan_link, h05; T = 0.03 s, two starts)."""
 
     strides: tuple[float, ...] = (0.25, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 1.02, 1.05, 1.1, 1.25, 1.5, 2.0, 4.0)
     """Multiples of a size without a slope at which it is tried elsewhere: closer together the nearer they are."""
