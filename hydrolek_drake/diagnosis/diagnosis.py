@@ -20,7 +20,7 @@ from hydrolek_drake.diagnosis.locating.place import Location, locate, locate_law
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.progress import Progress
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import FITS, Settings
+from hydrolek_drake.diagnosis.settings import FITS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.as_rig import enlarged_rig, room_for_law
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.splitting import prepared
@@ -167,7 +167,8 @@ def _diagnosed(
     visible: tuple[Visible, ...] = ()
     intervals: dict[str, Interval] = {}
     try:
-        if best.effects and law is None:
+        # where more than noise is left, what every model leaves out bends numbers by more than the last squares tell
+        if best.effects and law is None and best.fit.over_noise <= NOISE.explained_ahead:
             say("fitting the numbers to the last square")
             last, intervals, held_out = with_last_numbers(bench, conclusion.best, held_out)
             judged = tuple(last if j is conclusion.best else j for j in judged)

@@ -116,7 +116,7 @@ def _names(hypothesis: Hypothesis) -> str:
 def _with_command(template: Experiment, command: np.ndarray) -> Experiment:
     time = np.arange(command.size) * EXPERIMENTS.sample_s
     channels = tuple(
-        replace(channel, measured=np.zeros(command.size), model_error=None, blur=None)
+        replace(channel, measured=np.zeros(command.size), model_error=None, blur=None, timing=None)
         for channel in template.channels
     )
     return replace(
@@ -134,7 +134,7 @@ def _with_pressures(bench: Workbench, experiment: Experiment) -> Experiment:
         Channel(f"{experiment.joint}.{name}", "Pa", name, nothing, noise)
         for name in ("pressure_a", "pressure_b")
     )
-    position = replace(experiment.channels[0], measured=nothing, model_error=None)
+    position = replace(experiment.channels[0], measured=nothing, model_error=None, timing=None)
     return replace(experiment, channels=(position, *more), start_response=None)
 
 

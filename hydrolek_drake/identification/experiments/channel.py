@@ -28,6 +28,7 @@ class Channel:
             more than what is left beyond it.
         discrepancy: what every model leaves of it, as a multiple of what it leaves of the signal that it follows best;
             1 where models reach the noise.
+        timing: what a sample's uncertain moment adds where the signal moves, sample by sample; None for nothing. # (n,)
         blur: what averaging over blocks of samples adds, sample by sample; None for a recording that is kept as
             it is. # (n,)
     """
@@ -39,6 +40,7 @@ class Channel:
     noise: float
     model_error: np.ndarray | None = None
     blur: np.ndarray | None = None
+    timing: np.ndarray | None = None
     discrepancy: float = 1.0
     least_error: float = 0.0
 
@@ -46,7 +48,7 @@ class Channel:
     def deviation(self) -> np.ndarray | float:
         """Standard deviation that the residual of a perfect model would have."""
         variance: np.ndarray | float = self.noise**2
-        for error in (self.model_error, self.blur):
+        for error in (self.model_error, self.blur, self.timing):
             if error is not None:
                 variance = variance + error**2
         return self.discrepancy * (self.noise if isinstance(variance, float) else np.sqrt(variance))
@@ -65,14 +67,34 @@ class Channel:
 
     def until(self, count: int) -> "Channel":
         """Its first so many samples."""
-        error, blur = (None if v is None else v[:count] for v in (self.model_error, self.blur))
-        return replace(self, measured=self.measured[:count], model_error=error, blur=blur)
+        error, blur, timing = (
+            None if v is None else v[:count] for v in (self.model_error, self.blur, self.timing)
+        )
+        return replace(self, measured=self.measured[:count], model_error=error, blur=blur, timing=timing)
+
+    def timed(self, time: np.ndarray, time_error: float) -> "Channel":
+        """The same signal whose samples were taken at moments that are known to a standard deviation only.
+
+        To first order a moment that is off by dt changes a value by dt times the signal's slope (errors in variables;
+        Fuller, Measurement Error Models, 1987, chapter 3): where a cylinder strikes its stop a pressure of megapascals
+        rises within milliseconds, and a tenth of a millisecond is many times a sensor's noise.
+
+        Args:
+            time: of the samples [s]. # (n,)
+            time_error: standard deviation [s]; nothing for 0.
+        """
+        if time_error == 0.0 or time.size < 2:  # one sample has no slope
+            return self
+        known = np.isfinite(self.measured)
+        slope = np.gradient(np.interp(time, time[known], self.measured[known]), time) if known.any() else 0.0
+        return replace(self, timing=np.broadcast_to(time_error * np.abs(slope), time.shape))
 
     def averaged(self, blocks: Blocks, floor: float) -> "Channel":
         """The same signal averaged over blocks; its noise is estimated anew and is `floor` at least."""
         means = blocks.mean(self.measured)
         noise = min(self.noise, max(noise_level(means), floor))
-        return replace(self, measured=means, noise=noise, blur=blocks.blur(means))
+        timing = None if self.timing is None else blocks.mean(self.timing)
+        return replace(self, measured=means, noise=noise, blur=blocks.blur(means), timing=timing)
 
 
 def faithful(measured: np.ndarray) -> float:

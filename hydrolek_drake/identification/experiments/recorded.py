@@ -101,7 +101,12 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
         time=np.ascontiguousarray(recording.time, dtype=float),
         command_times=np.ascontiguousarray(recording.time, dtype=float),
         command=command,
-        channels=tuple(replace(c, least_error=share * spanned(c.measured)) for c in channels),
+        channels=tuple(
+            replace(c, least_error=share * spanned(c.measured)).timed(
+                recording.time, rig.value("integration.time_error")
+            )
+            for c in channels
+        ),
         start=start,
         start_error=start_error,
         longest_step=rig.value("integration.longest_step"),

@@ -19,7 +19,15 @@ MODEL_ERROR = Parameter(
     lowest=0.0,
     highest=0.1,
 )
-OF_INTEGRATION = (LONGEST_STEP, SPOOL_STEPS, MODEL_ERROR)
+TIME_ERROR = Parameter(
+    "time_error",
+    "s",
+    "standard deviation of when a sample was taken, and of when the equations at best have something happen",
+    neutral=0.0,
+    lowest=0.0,
+    highest=0.1,
+)
+OF_INTEGRATION = (LONGEST_STEP, SPOOL_STEPS, MODEL_ERROR, TIME_ERROR)
 
 
 def declared(full_path: str, variants: Mapping[str, str]) -> Parameter:
