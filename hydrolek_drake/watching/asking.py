@@ -19,9 +19,11 @@ from hydrolek_drake.watching.curves import curves_of
 from hydrolek_drake.watching.fitting.around import around
 from hydrolek_drake.watching.fitting.beginning import nominal_on
 from hydrolek_drake.watching.fitting.effect_fits import (
+    behind_of,
     by_observers,
     fits_of_effects,
     fitted_on,
+    in_reach,
     with_own_slopes,
     without_effects,
 )
@@ -31,7 +33,7 @@ from hydrolek_drake.watching.fitting.rungs import Rung
 from hydrolek_drake.watching.fitting.scanning import Scan, scanned, size_of, strengths
 from hydrolek_drake.watching.knowledge import Knowledge
 from hydrolek_drake.watching.reference import Session
-from hydrolek_drake.watching.settings import BEGUN
+from hydrolek_drake.watching.settings import BEGUN, BEHIND, HOPELESS
 
 OWN_NUMBERS = "machine.own_numbers"
 """Stands for: no effect, but the machine's own numbers changed by more than they were said to drift."""
@@ -128,9 +130,10 @@ def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge 
         if lower is None or not left:
             break
         nominal = lower
-    fitted = with_own_slopes(session, fitted, nominal.unit.size)
     candidates = {scan.candidate.size_path: scan.candidate for scan in scans}
-    fitted, held = around(session, fitted, candidates)
+    near = in_reach(session, nominal, fitted, {scan.candidate.size_path: scan.gain for scan in scans})
+    fitted |= with_own_slopes(session, {path: fitted[path] for path in near}, nominal.unit.size)
+    fitted, held = around(session, fitted, candidates, near)
     for path, own_rungs in held.items():
         rungs[path] = [*rungs[path], *own_rungs]
     told = [
@@ -138,8 +141,8 @@ def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge 
         for scan in scans
         if (path := scan.candidate.size_path)
     ]
-    own = _own_numbers(session, nominal, weighted, scale)
     ranked = sorted(told, key=lambda each: -each.gain)
+    own = _own_numbers(session, nominal, weighted, ranked[0].gain * scale if ranked else 0.0)
     best = fitted.get(_path(session, ranked[0])) if ranked else None
     fit = fit_of(nominal)
     if best is not None and ranked[0].gain > gain_needed(fit):
@@ -224,14 +227,23 @@ def _told(
 
 
 def _own_numbers(
-    session: Session, nominal: Place, experiments: Sequence[Experiment], scale: float
+    session: Session, nominal: Place, experiments: Sequence[Experiment], most: float
 ) -> EffectTold:
-    """The machine's own numbers fitted anew within the rig's ranges, without the reference as prior."""
+    """The machine's own numbers fitted anew within the rig's ranges, without the reference as prior.
+
+    Args:
+        session: rig and reference.
+        nominal: the model without any effect, fitted, with slopes.
+        experiments: of the recording, weighed.
+        most: squares that the best effect gains: own numbers that lead nowhere near need not be known to one.
+    """
+    scale = session.posterior.scale
+    behind = behind_of(session, BEHIND) if most > HOPELESS * scale else 0.0
     kind = ProblemTogether if any(e.others is not None for e in experiments) else Problem
     problem = session.bench.problem((), session.bench.fine, experiments, kind=kind)
     assert nominal.slopes is not None
     free = replace(nominal, problem=problem, ended=False, exact=False, residuals=None)
-    [place] = fitted_on([replace(free, slopes=nominal.slopes)], session)
+    [place] = fitted_on([replace(free, slopes=nominal.slopes)], session, behind=behind)
     assert place.residuals is not None
     gain = max(nominal.objective - float(place.residuals @ place.residuals), 0.0) / scale
     moved = np.abs(place.unit - session.posterior.mean)

@@ -1,6 +1,6 @@
 """Every constant of the watch, with the principle or measurement it comes from."""
 
-METHOD = 3
+METHOD = 4
 """Number of the method: recordings that another one was asked of are asked again."""
 
 DRIFT = 0.02
