@@ -1,7 +1,7 @@
 """What differs in one recording: the nominal model with the reference as prior, and beside it one fit per effect."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -15,7 +15,9 @@ from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.replay.display import display_unit
+from hydrolek_drake.watching.common_error import shares_of_reference, strength_by_reference
 from hydrolek_drake.watching.curves import curves_of
+from hydrolek_drake.watching.excitation import told_alone
 from hydrolek_drake.watching.fitting.around import around
 from hydrolek_drake.watching.fitting.beginning import nominal_on
 from hydrolek_drake.watching.fitting.effect_fits import (
@@ -60,6 +62,8 @@ class EffectTold:
         beside_gain: squares by which it gains there.
         strengths: sizes at which it was held, as strengths (`scanning.strength`), see `likelihood.Profile`.
         rises: squares there less those without it, in units of what the reference leaves.
+        shared: standard deviation of its strength by the reference's error, the same in all later recordings.
+        shared_shares: of the machine's own numbers, how much of their gain that error makes (`common_error`).
     """
 
     effect: str
@@ -78,6 +82,8 @@ class EffectTold:
     beside_gain: float | None = None
     strengths: tuple[float, ...] = ()
     rises: tuple[float, ...] = ()
+    shared: float = 0.0
+    shared_shares: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -92,6 +98,8 @@ class Answer:
         needed: gain below which an effect is not told from what every model leaves out.
         curves: name -> values of what is drawn: time, measured, and residuals over the noise. # (k,) each
         axis: what `measured` is, with the unit in which people read it.
+        told_alone: full path -> standard deviation of the machine's own number by this recording alone, in ranges.
+        seconds: length of the recording.
     """
 
     effects: tuple[EffectTold, ...]
@@ -101,6 +109,8 @@ class Answer:
     needed: float
     curves: dict[str, list[float]]
     axis: str = ""
+    told_alone: dict[str, float] = field(default_factory=dict)
+    seconds: float = 0.0
 
 
 def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge | None = None) -> Answer:
@@ -137,12 +147,12 @@ def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge 
     for path, own_rungs in held.items():
         rungs[path] = [*rungs[path], *own_rungs]
     told = [
-        _told(scan, rungs[path], fitted.get(path), nominal, none[path], session)
+        _told(scan, rungs[path], fitted.get(path), nominal, none[path], session, knowledge)
         for scan in scans
         if (path := scan.candidate.size_path)
     ]
     ranked = sorted(told, key=lambda each: -each.gain)
-    own = _own_numbers(session, nominal, weighted, ranked[0].gain * scale if ranked else 0.0)
+    own = _own_numbers(session, nominal, weighted, knowledge, ranked[0].gain * scale if ranked else 0.0)
     best = fitted.get(_path(session, ranked[0])) if ranked else None
     fit = fit_of(nominal)
     if best is not None and ranked[0].gain > gain_needed(fit):
@@ -155,6 +165,8 @@ def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge 
         needed=gain_needed(fit),
         curves=curves_of(weighted[0], fit, None if best is None else fit_of(best)),
         axis=f"{weighted[0].channels[0].key} [{display_unit(weighted[0].channels[0].unit)}]",
+        told_alone=_told_alone(nominal, scale),
+        seconds=float(weighted[0].time[-1] - weighted[0].time[0]),
     )
 
 
@@ -197,7 +209,13 @@ def _path(session: Session, told: EffectTold) -> str:
 
 
 def _told(
-    scan: Scan, rungs: Sequence[Rung], fitted: Place | None, nominal: Place, none: float, session: Session
+    scan: Scan,
+    rungs: Sequence[Rung],
+    fitted: Place | None,
+    nominal: Place,
+    none: float,
+    session: Session,
+    knowledge: Knowledge,
 ) -> EffectTold:
     candidate, scale = scan.candidate, session.posterior.scale
     unit = next(p.unit for p in candidate.effect.parameters if p.name == candidate.effect.size)
@@ -223,11 +241,25 @@ def _told(
         others=others,
         strengths=profile.sizes,
         rises=profile.rises,
+        shared=_shared(scan, nominal, session, knowledge),
     )
 
 
+def _told_alone(nominal: Place, scale: float) -> dict[str, float]:
+    """How surely the recording by itself tells the machine's own numbers."""
+    assert nominal.slopes is not None
+    return told_alone(nominal.problem.parameters.paths, nominal.slopes, scale)
+
+
+def _shared(scan: Scan, nominal: Place, session: Session, knowledge: Knowledge) -> float:
+    """Standard deviation of an effect's strength by the reference's error."""
+    if scan.slope is None or nominal.slopes is None or not np.isfinite(scan.slope).all():
+        return 0.0
+    return strength_by_reference(nominal.slopes, scan.slope, knowledge.information, session.shared)
+
+
 def _own_numbers(
-    session: Session, nominal: Place, experiments: Sequence[Experiment], most: float
+    session: Session, nominal: Place, experiments: Sequence[Experiment], known: Knowledge, most: float
 ) -> EffectTold:
     """The machine's own numbers fitted anew within the rig's ranges, without the reference as prior.
 
@@ -235,6 +267,7 @@ def _own_numbers(
         session: rig and reference.
         nominal: the model without any effect, fitted, with slopes.
         experiments: of the recording, weighed.
+        known: of the machine's own numbers.
         most: squares that the best effect gains: own numbers that lead nowhere near need not be known to one.
     """
     scale = session.posterior.scale
@@ -258,4 +291,5 @@ def _own_numbers(
         parameters=place.unit.size,
         left=fit_of(place).over_noise,
         others=problem.parameters.values(place.unit),
+        shared_shares=shares_of_reference(nominal.slopes, known.information, session.shared),
     )

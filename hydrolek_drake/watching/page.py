@@ -10,6 +10,7 @@ from typing import Any
 from hydrolek_drake.replay.display import ratio
 from hydrolek_drake.replay.page import STYLE
 from hydrolek_drake.watching.asking import OWN_NUMBERS, Answer
+from hydrolek_drake.watching.excitation import sentence
 from hydrolek_drake.watching.figures import left_figure, size_figure
 from hydrolek_drake.watching.limits import Limit
 from hydrolek_drake.watching.store import Seen
@@ -91,6 +92,9 @@ def page(watched: Watched, limits: Sequence[Limit] = (), folder: Path | None = N
         f"<div class='verdict' style='border-color:{colour}'><b style='color:{colour}'>{word}</b>"
         f"<p class='sentence'>{html.escape(headline(watched))}</p></div>",
     ]
+    lack = sentence(watched.told, watched.answers)
+    if lack:
+        parts.append(f"<p class='other'><b>Reference.</b> {html.escape(lack)}</p>")
     if watched.answers:
         for effect, joint in _plotted(watched, limits):
             parts += _effect(watched, effect, joint, limits)

@@ -118,6 +118,21 @@ LEAST_RISE, MOST_RISE = 1.0, 16.0
 HELD = 4
 """Steps of the own numbers at each of these sizes."""
 
+SHARED_STEP, SHARED_REACH = 0.25, 3.5
+"""Errors of the reference among which evidence is weighed, in standard deviations: so near each other that fifty
+recordings tell two of them apart by less than one square (a recording tells an effect no more surely than the reference
+leaves it, since its prior is that of the reference), and so far that one series in two thousand lies beyond."""
+
+UNTOLD = 0.9
+"""Of a number that is known by the reference no better than to this share of its range's standard deviation it tells
+nothing."""
+
+POORER = 4.0
+"""A reference whose movements tell a number so many times less a second lacks movements, not only time."""
+
+NAMED = 5
+"""So many numbers are named of those that a reference lacks."""
+
 GRID = 4001
 """Places at which the likelihood of a size is tabulated."""
 
