@@ -3,9 +3,8 @@
 python scripts/watching/question_speed.py --out out/question_speed [--repeats 3] [--profile]
 
 Machines of the challenge (equations and an integrator of their own), 40 s each: healthy, and with one effect of the
-size of the challenge's `sizes.yaml`. The reference, three recordings, is fitted once and kept. Told are the processor
-time (least of some repeats, by which other programs on the same machine count least), rollouts by kind of step, and
-what is found, so that two versions can be held against each other in pairs.
+size of the challenge's `sizes.yaml`. The reference, three recordings, is fitted once and kept. Told are processor time
+and time by the clock (the least of some repeats, in which other programs count least), and what is found.
 """
 
 import argparse
@@ -92,22 +91,22 @@ def main():
     files = sorted(
         path for path in runs.glob("*.csv") if "reference" not in path.name and given.only in path.name
     )
-    rows = []
     with threadpool_limits(limits=1, user_api="blas"), ThreadPoolExecutor(given.cores) as pool:
         session = Session(
             rig, [e for each in training for e in each.experiments], pool, given.cores, drifts, kept[0]
         )
         for path in files:
-            spent = []
+            spent, clock = [], []
             for _ in range(given.repeats + 1):  # the first one loads machine code
-                begun = time.process_time()
+                begun, at = time.process_time(), time.monotonic()
                 answer = asked(session, usable(rig, read_one(rig, path)))
                 spent.append(time.process_time() - begun)
+                clock.append(time.monotonic() - at)
             first = answer.effects[0]
-            rows.append(
-                [path.stem, min(spent[1:]), first.effect, first.size, first.low, first.high, first.gain]
+            seconds = [round(min(each[1:]), 2) for each in (spent, clock)]
+            print(
+                json.dumps([path.stem, *seconds, first.effect, first.size, first.low, first.high]), flush=True
             )
-            print(json.dumps(rows[-1]), flush=True)
         if given.profile:
             with cProfile.Profile() as profile:
                 for path in files:
