@@ -110,18 +110,21 @@ def main():
     data = given.out / "data"
     if not (data / "stream_leaking.csv").exists():
         recordings(data)
-    references = [str(path) for path in sorted(data.glob("healthy_*.csv"))]
+    references = [path.name for path in sorted(data.glob("healthy_*.csv"))]  # as a user types them
+    out = given.out.absolute()
     command = [str(Path(sys.executable).parent / "hydrolek"), "watch", BENCH, *references]
-    told = ["--limit", f"cylinder.cross_port_leakage={LIMIT}", "--out", str(given.out / "watch")]
-    subprocess.run([*command, "--recordings", str(data / "runs"), *told], check=False)
+    told = ["--limit", f"cylinder.cross_port_leakage={LIMIT}", "--out", str(out / "watch")]
+    subprocess.run([*command, "--recordings", "runs", *told], check=False, cwd=data)
     with sync_playwright() as engine:
-        address = (given.out / "watch" / "watch.html").absolute().as_uri()
+        address = (out / "watch" / "watch.html").as_uri()
         shoot(engine, address, "watch", given.out, ".js-plotly-plot .scatterlayer", "a[data-id]")
         for stream in ("healthy", "leaking"):
-            out = given.out / f"live_{stream}"
-            shutil.rmtree(out, ignore_errors=True)
-            live = ["--live", str(data / f"stream_{stream}.csv"), "--out", str(out), "--port", "0"]
-            with subprocess.Popen([*command, *live], stdout=subprocess.PIPE, text=True) as following:
+            kept = out / f"live_{stream}"
+            shutil.rmtree(kept, ignore_errors=True)
+            live = ["--live", f"stream_{stream}.csv", "--out", str(kept), "--port", "0"]
+            with subprocess.Popen(
+                [*command, *live], stdout=subprocess.PIPE, text=True, cwd=data
+            ) as following:
                 line = next(line for line in following.stdout if "http://" in line)
                 ready = "#effects tr" if stream == "leaking" else "#counts dd"
                 shoot(engine, re.search(r"http://\S+", line).group(), f"live_{stream}", given.out, ready)

@@ -44,11 +44,11 @@ function draw(chart, breaks) {
   const c = canvas.getContext("2d"), left = 52, bottom = 18, top = 18, now = rows.length ? rows[rows.length - 1][1] : 0;
   c.setTransform(ratio, 0, 0, ratio, 0, 0); c.clearRect(0, 0, w, h);
   c.font = "12px system-ui,sans-serif"; c.fillStyle = own("--dim"); c.textAlign = "left"; c.textBaseline = "top";
-  const unit = chart.unit(), title = chart.name + (unit ? ` [${unit}]` : ""); c.fillText(title, left, 0);
+  const unit = chart.unit(), title = chart.name + (unit ? ` [${unit}]` : ""); c.fillText(title, left, 2);
   const shown = (chart.names || []).filter((_, i) => rows.some(r => r[3][j][chart.lines[i][0]] !== null));
   let begin = left + c.measureText(title).width + 14;
   if (shown.length > 1) chart.names.forEach((name, i) => { if (!shown.includes(name)) return;
-    c.fillStyle = own(chart.lines[i][1]); c.fillText(name, begin, 0); begin += c.measureText(name).width + 10; });
+    c.fillStyle = own(chart.lines[i][1]); c.fillText(name, begin, 2); begin += c.measureText(name).width + 10; });
   c.fillStyle = own("--dim");
   if (low > high) { c.fillText("nothing yet", left + 8, h / 2); return; }
   if (chart.zero) { const most = Math.max(Math.abs(low), Math.abs(high), chart.least / 2); low = -most; high = most; }
