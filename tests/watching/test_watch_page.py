@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from hydrolek_drake.api.watch_result import WatchResult
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.watching.alarms import AlarmRule, alarm_of, healthy_by, judged
 from hydrolek_drake.watching.asking import Answer, EffectTold
@@ -34,8 +35,8 @@ def _answer(size):
 
 
 @pytest.fixture(scope="module")
-def address(tmp_path_factory):
-    """Of the page of a machine that leaks more each day, with a reference that is too short."""
+def watched():
+    """A machine that leaks more each day, with a reference that is too short."""
     rng = np.random.default_rng(2)
     sizes = [*(DEVIATION * abs(rng.standard_normal()) for _ in range(4)), *(1e-13 * n for n in range(1, 9))]
     stamps = [Stamp(BEGIN_S + DAY_S * n, "name") for n in range(len(sizes))]
@@ -51,9 +52,14 @@ def address(tmp_path_factory):
     judgements = tuple(judged(answer, n, rule, healthy) for n, answer in enumerate(answers, start=1))
     alarm = alarm_of(answers, judgements, rule)
     told = ReferenceTold({OWN: 0.1}, {OWN: 0.02}, 4.0)
-    watched = Watched(
+    return Watched(
         load_rig("joint_bench"), reference, seen, rule, told, healthy, judgements, alarm, len(seen)
     )
+
+
+@pytest.fixture(scope="module")
+def address(watched, tmp_path_factory):
+    """Of its page."""
     path = tmp_path_factory.mktemp("page") / "watch.html"
     path.write_text(page(watched, [Limit(LEAKAGE, 1.5e-12)]), encoding="utf-8")
     return path.as_uri()
@@ -79,6 +85,14 @@ def test_the_page_fits_a_phone_and_keeps_to_its_scheme(chromium_page, address, s
     assert "run_11.csv" in chromium_page.inner_text("#recording") and "ALARM" in told
     assert "The reference (4 s) tells less of the machine" in told
     assert not errors
+
+
+def test_a_notebook_shows_the_last_recording_alone(watched):
+    result = WatchResult(watched, [])
+    shown = result.in_short()
+    assert list(shown.index) == [LEAKAGE, DROOP] and shown["gain"].is_monotonic_decreasing
+    told = result._repr_html_()
+    assert "Alarm since" in told and "sha256" not in told and told.count(">joint<") == 2 + 1
 
 
 def test_lines_of_a_plot_are_told_apart(chromium_page, address):
