@@ -25,7 +25,7 @@ from hydrolek_drake.watching.fitting.effect_fits import (
     by_observers,
     fits_of_effects,
     fitted_on,
-    in_reach,
+    rivals,
     with_own_slopes,
     without_effects,
 )
@@ -141,7 +141,7 @@ def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge 
             break
         nominal = lower
     candidates = {scan.candidate.size_path: scan.candidate for scan in scans}
-    near = in_reach(session, nominal, fitted, {scan.candidate.size_path: scan.gain for scan in scans})
+    near = rivals(session, fitted)
     fitted |= with_own_slopes(session, {path: fitted[path] for path in near}, nominal.unit.size)
     fitted, held = around(session, fitted, candidates, near)
     for path, own_rungs in held.items():

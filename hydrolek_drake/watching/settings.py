@@ -104,7 +104,8 @@ NEGLIGIBLE = 0.1
 
 HOPELESS = 16.0
 """An effect is not held at further sizes where another one gains more than so many squares, four standard deviations,
-and more than `FURTHER_OUT` times as much as it does or promises: it imitates that one at most."""
+and more than `FURTHER_OUT` times as much as it does or promises: it imitates that one at most. Of two fits that have
+ended, one that leaves so many squares more is not what is there."""
 
 SHORTER = 1e4
 """A step that leads up is tried again with so many times the damping: with that of a fit's first one."""

@@ -20,6 +20,7 @@ from hydrolek_drake.watching.settings import (
     CONTINUED,
     FITTED,
     FURTHER,
+    HOPELESS,
     LED,
     MOST_OF,
     OBSERVED,
@@ -124,6 +125,18 @@ def in_reach(
     if min(left.values(), default=np.inf) <= NOISE.at:
         kept = [path for path in kept if left[path] < NOISE.far]
     return sorted(kept, key=lambda path: -gains[path])
+
+
+def rivals(session: Session, fits: Mapping[str, Place]) -> list[str]:
+    """Effects that may be what is there, by what their fits leave; the size of another one needs no further rollouts.
+
+    Args:
+        session: rig and reference.
+        fits: of the model with one effect each, by the effect's path, at their ends.
+    """
+    least = min((place.objective for place in fits.values()), default=0.0)
+    near = least + HOPELESS * session.posterior.scale
+    return [path for path, place in fits.items() if place.objective <= near]
 
 
 def _near_its_end(session: Session, place: Place) -> Place:
