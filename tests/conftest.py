@@ -1,7 +1,10 @@
-"""Order of the tests, which of them run, and what several folders have need of: two joints that move together."""
+"""Order of the tests, which of them run, and what several folders need: a browser, joints that move together."""
 
+import contextlib
+import os
+import shutil
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -109,3 +112,20 @@ def cluster():
         n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
     ) as made:
         yield made
+
+
+@pytest.fixture
+def chromium_page() -> Iterator:
+    """A page of a real browser 390 pixels wide; a test that asks for it is skipped where there is none."""
+    engine = pytest.importorskip(
+        "playwright.sync_api", reason="Playwright drives the browser: pip install playwright"
+    )
+    found = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    if found is None:
+        pytest.skip("there is no chromium, chromium-browser or google-chrome on the search path")
+    options = ["--disable-gpu", *(["--no-sandbox"] if os.geteuid() == 0 else [])]
+    with (
+        engine.sync_playwright() as playwright,
+        contextlib.closing(playwright.chromium.launch(executable_path=found, args=options)) as browser,
+    ):
+        yield browser.new_page(viewport={"width": 390, "height": 844})

@@ -29,18 +29,23 @@ class Result(ABC):
     def plot(self) -> Any:
         """A picture, as a Plotly figure."""
 
+    def in_short(self) -> "pandas.DataFrame":
+        """What of the table a notebook shows; all of it here."""
+        return self.to_pandas()
+
     def __str__(self) -> str:
         """The summary."""
         return self.summary()
 
     def _repr_html_(self) -> str:
-        """What a notebook shows: the summary, and the table where pandas is installed."""
+        """What a notebook shows: the summary, and the table in short where pandas is installed."""
         lines = "".join(f"<p>{html.escape(line)}</p>" for line in self.summary().splitlines())
         try:
-            table = self.to_pandas()
+            table = self.in_short()
         except InputError:
             return lines
-        return lines + str(table.to_html(max_rows=30, border=0, float_format=lambda v: f"{v:.5g}"))
+        told = table.to_html(max_rows=30, border=0, na_rep="", float_format=lambda v: f"{v:.5g}")
+        return f"{lines}<div style='overflow-x:auto'>{told}</div>"
 
 
 def pandas_module() -> Any:

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     import pandas
 
 
+IN_SHORT = ("joint", "size", "low", "high", "unit", "gain", "evidence", "beside_size", "beside_gain")
+"""Columns of the table that a notebook shows."""
+
+
 @dataclass(frozen=True, repr=False)
 class WatchResult(Result):
     """What changed on a machine since its reference.
@@ -44,6 +48,14 @@ class WatchResult(Result):
         return pandas_module().DataFrame(
             table_of([*self.watched.reference, *self.watched.seen], self.watched.evidence)
         )
+
+    def in_short(self) -> "pandas.DataFrame":
+        """The effects of the last recording, what gains most first."""
+        table = self.to_pandas()
+        if not self.watched.asked:
+            return table[["recording", "problem"]].dropna()
+        last = table[table["sha256"] == self.watched.asked[-1].digest].sort_values("gain", ascending=False)
+        return last.set_index("effect")[list(IN_SHORT)]
 
     def plot(self, effect: str | None = None) -> Any:
         """An effect's size over time with trend and limits, as a Plotly figure.

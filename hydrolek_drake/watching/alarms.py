@@ -19,6 +19,7 @@ from scipy.stats import chi2, norm
 
 from hydrolek_drake.diagnosis.settings import GAINS, NOISE
 from hydrolek_drake.watching.asking import OWN_NUMBERS, Answer, EffectTold
+from hydrolek_drake.watching.common_error import SHARED, beyond_shared
 from hydrolek_drake.watching.evidence import Evidence, as_one_number, bounded, by_chance, sizes_by
 from hydrolek_drake.watching.fitting.likelihood import Profile
 from hydrolek_drake.watching.settings import FALSE_ALARMS, LAST, TOGETHER
@@ -102,7 +103,9 @@ class Judgement:
         thresholds: effect -> gain that it would have to exceed.
         most_left: times the noise that the best effect may leave.
         number: of the recording in the series, from 1.
-        ratios: effect -> bounded likelihood ratios against none, of each of its sizes; `UNLISTED` among them.
+        ratios: effect -> bounded likelihood ratios against none, of each of its sizes, beside each error that the
+            reference may have; `UNLISTED` among them. # (k, m) each
+        none: effect -> logarithms of how likely the recording is by each of these errors alone. # (k,) each
     """
 
     beyond: tuple[str, ...]
@@ -110,6 +113,7 @@ class Judgement:
     most_left: float
     number: int = 1
     ratios: Mapping[str, np.ndarray] = field(default_factory=dict, compare=False)
+    none: Mapping[str, np.ndarray] = field(default_factory=dict, compare=False)
 
 
 @dataclass(frozen=True)
@@ -154,7 +158,7 @@ def judged(answer: Answer, number: int, rule: AlarmRule, healthy: Healthy) -> Ju
     """
     tests = len(answer.effects) + 1
     share = rule.granted(number) / tests
-    thresholds, beyond, ratios = {}, [], {}
+    thresholds, beyond, ratios, none = {}, [], {}, {}
     counts = sorted({told.parameters for told in answer.effects})
     chances = dict(zip(counts, chi2.isf(share, counts).tolist(), strict=True))
     tempered = max(healthy.inflation, answer.needed / GAINS.needed)
@@ -164,31 +168,44 @@ def judged(answer: Answer, number: int, rule: AlarmRule, healthy: Healthy) -> Ju
         thresholds[key] = max(healthy.inflation * chances[told.parameters], answer.needed)
         if told.gain > thresholds[key]:
             beyond.append(told.effect)
-        ratios[key] = bounded(_ratios(told, healthy.deviations.get(key), tempered), most)
+        own, by_error = _ratios(told, healthy.deviations.get(key), tempered, rule.false_alarms / tests)
+        ratios[key], none[key] = bounded(own, most), np.maximum(by_error, -most)
     error = float(np.hypot(NOISE.known, 1.0 / np.sqrt(2.0 * max(answer.counted, 1))))
     most_left = healthy.left * (1.0 + float(norm.isf(share)) * error)
     left = min(told.left for told in answer.effects)
     if left > most_left:
         beyond.append(UNLISTED)
     by = by_chance(float(norm.sf((left / healthy.left - 1.0) / error)))
-    ratios[UNLISTED] = bounded(np.array([by]), most)
-    return Judgement(tuple(beyond), thresholds, most_left, number, ratios)
+    ratios[UNLISTED] = bounded(np.array([[by]]), most)
+    return Judgement(tuple(beyond), thresholds, most_left, number, ratios, none)
 
 
-def _ratios(told: EffectTold, healthy: tuple[float, bool] | None, tempered: float) -> np.ndarray:
-    """Logarithms of the likelihood ratios of an effect's sizes; of one number where sizes are not known.
+def _ratios(
+    told: EffectTold, healthy: tuple[float, bool] | None, tempered: float, granted: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Logarithms of the likelihood ratios of an effect's sizes, and of how likely errors of the reference are.
 
     Args:
         told: what a recording says of it.
         healthy: standard deviation of its strength in a recording of the reference, and whether it has two signs.
         tempered: squares that count as one.
+        granted: probability with which the reference's error may be larger than what is left out of the gain.
+
+    Returns:
+        Ratios of each size beside each error, # (k, m), and of the errors, # (k,); of one number where sizes are not
+        known.
     """
     gain = told.gain / tempered
-    if healthy is None or len(told.strengths) < 2:
-        return np.array([by_chance(float(chi2.sf(gain, told.parameters)))])
+    if healthy is None:
+        gain = beyond_shared(gain, told.shared_shares, granted)
+        return np.array([[by_chance(float(chi2.sf(gain, told.parameters)))]]), np.zeros(1)
+    sizes, shared = sizes_by(*healthy), told.shared * SHARED
+    if len(told.strengths) < 2:
+        alone = by_chance(float(chi2.sf(gain, told.parameters)))
+        return np.full((shared.size, sizes.count), alone), np.zeros(shared.size)
     share = as_one_number(gain, told.parameters) / gain if gain > 0.0 else 1.0
-    rises = tuple(rise * share if rise < 0.0 else rise for rise in told.rises)
-    return sizes_by(*healthy).ratios(Profile(told.strengths, rises), tempered)
+    profile = Profile(told.strengths, tuple(rise * share if rise < 0.0 else rise for rise in told.rises))
+    return sizes.ratios(profile, tempered, shared), -0.5 * profile.roots(shared) ** 2 / tempered
 
 
 @dataclass(frozen=True)
@@ -215,7 +232,7 @@ def evidence_after(judgements: Sequence[Judgement], rule: AlarmRule) -> list[dic
     found = []
     for judgement in judgements:
         for key, ratios in judgement.ratios.items():
-            evidence.setdefault(key, Evidence()).add(ratios, judgement.number)
+            evidence.setdefault(key, Evidence()).add(ratios, judgement.number, judgement.none.get(key))
         asked_for = rule.asked_for(len(judgement.ratios))
         found.append({key: Share(each.total / asked_for, each.since) for key, each in evidence.items()})
     return found

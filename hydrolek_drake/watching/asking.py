@@ -1,7 +1,7 @@
 """What differs in one recording: the nominal model with the reference as prior, and beside it one fit per effect."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -15,13 +15,17 @@ from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
 from hydrolek_drake.replay.display import display_unit
+from hydrolek_drake.watching.common_error import shares_of_reference, strength_by_reference
 from hydrolek_drake.watching.curves import curves_of
+from hydrolek_drake.watching.excitation import told_alone
 from hydrolek_drake.watching.fitting.around import around
 from hydrolek_drake.watching.fitting.beginning import nominal_on
 from hydrolek_drake.watching.fitting.effect_fits import (
+    behind_of,
     by_observers,
     fits_of_effects,
     fitted_on,
+    rivals,
     with_own_slopes,
     without_effects,
 )
@@ -31,7 +35,7 @@ from hydrolek_drake.watching.fitting.rungs import Rung
 from hydrolek_drake.watching.fitting.scanning import Scan, scanned, size_of, strengths
 from hydrolek_drake.watching.knowledge import Knowledge
 from hydrolek_drake.watching.reference import Session
-from hydrolek_drake.watching.settings import BEGUN
+from hydrolek_drake.watching.settings import BEGUN, BEHIND, HOPELESS
 
 OWN_NUMBERS = "machine.own_numbers"
 """Stands for: no effect, but the machine's own numbers changed by more than they were said to drift."""
@@ -58,6 +62,8 @@ class EffectTold:
         beside_gain: squares by which it gains there.
         strengths: sizes at which it was held, as strengths (`scanning.strength`), see `likelihood.Profile`.
         rises: squares there less those without it, in units of what the reference leaves.
+        shared: standard deviation of its strength by the reference's error, the same in all later recordings.
+        shared_shares: of the machine's own numbers, how much of their gain that error makes (`common_error`).
     """
 
     effect: str
@@ -76,6 +82,8 @@ class EffectTold:
     beside_gain: float | None = None
     strengths: tuple[float, ...] = ()
     rises: tuple[float, ...] = ()
+    shared: float = 0.0
+    shared_shares: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -90,6 +98,8 @@ class Answer:
         needed: gain below which an effect is not told from what every model leaves out.
         curves: name -> values of what is drawn: time, measured, and residuals over the noise. # (k,) each
         axis: what `measured` is, with the unit in which people read it.
+        told_alone: full path -> standard deviation of the machine's own number by this recording alone, in ranges.
+        seconds: length of the recording.
     """
 
     effects: tuple[EffectTold, ...]
@@ -99,6 +109,8 @@ class Answer:
     needed: float
     curves: dict[str, list[float]]
     axis: str = ""
+    told_alone: dict[str, float] = field(default_factory=dict)
+    seconds: float = 0.0
 
 
 def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge | None = None) -> Answer:
@@ -128,18 +140,19 @@ def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge 
         if lower is None or not left:
             break
         nominal = lower
-    fitted = with_own_slopes(session, fitted, nominal.unit.size)
     candidates = {scan.candidate.size_path: scan.candidate for scan in scans}
-    fitted, held = around(session, fitted, candidates)
+    near = rivals(session, fitted)
+    fitted |= with_own_slopes(session, {path: fitted[path] for path in near}, nominal.unit.size)
+    fitted, held = around(session, fitted, candidates, near)
     for path, own_rungs in held.items():
         rungs[path] = [*rungs[path], *own_rungs]
     told = [
-        _told(scan, rungs[path], fitted.get(path), nominal, none[path], session)
+        _told(scan, rungs[path], fitted.get(path), nominal, none[path], session, knowledge)
         for scan in scans
         if (path := scan.candidate.size_path)
     ]
-    own = _own_numbers(session, nominal, weighted, scale)
     ranked = sorted(told, key=lambda each: -each.gain)
+    own = _own_numbers(session, nominal, weighted, knowledge, ranked[0].gain * scale if ranked else 0.0)
     best = fitted.get(_path(session, ranked[0])) if ranked else None
     fit = fit_of(nominal)
     if best is not None and ranked[0].gain > gain_needed(fit):
@@ -152,6 +165,8 @@ def asked(session: Session, experiments: Sequence[Experiment], known: Knowledge 
         needed=gain_needed(fit),
         curves=curves_of(weighted[0], fit, None if best is None else fit_of(best)),
         axis=f"{weighted[0].channels[0].key} [{display_unit(weighted[0].channels[0].unit)}]",
+        told_alone=_told_alone(nominal, scale),
+        seconds=float(weighted[0].time[-1] - weighted[0].time[0]),
     )
 
 
@@ -194,7 +209,13 @@ def _path(session: Session, told: EffectTold) -> str:
 
 
 def _told(
-    scan: Scan, rungs: Sequence[Rung], fitted: Place | None, nominal: Place, none: float, session: Session
+    scan: Scan,
+    rungs: Sequence[Rung],
+    fitted: Place | None,
+    nominal: Place,
+    none: float,
+    session: Session,
+    knowledge: Knowledge,
 ) -> EffectTold:
     candidate, scale = scan.candidate, session.posterior.scale
     unit = next(p.unit for p in candidate.effect.parameters if p.name == candidate.effect.size)
@@ -220,18 +241,42 @@ def _told(
         others=others,
         strengths=profile.sizes,
         rises=profile.rises,
+        shared=_shared(scan, nominal, session, knowledge),
     )
 
 
+def _told_alone(nominal: Place, scale: float) -> dict[str, float]:
+    """How surely the recording by itself tells the machine's own numbers."""
+    assert nominal.slopes is not None
+    return told_alone(nominal.problem.parameters.paths, nominal.slopes, scale)
+
+
+def _shared(scan: Scan, nominal: Place, session: Session, knowledge: Knowledge) -> float:
+    """Standard deviation of an effect's strength by the reference's error."""
+    if scan.slope is None or nominal.slopes is None or not np.isfinite(scan.slope).all():
+        return 0.0
+    return strength_by_reference(nominal.slopes, scan.slope, knowledge.information, session.shared)
+
+
 def _own_numbers(
-    session: Session, nominal: Place, experiments: Sequence[Experiment], scale: float
+    session: Session, nominal: Place, experiments: Sequence[Experiment], known: Knowledge, most: float
 ) -> EffectTold:
-    """The machine's own numbers fitted anew within the rig's ranges, without the reference as prior."""
+    """The machine's own numbers fitted anew within the rig's ranges, without the reference as prior.
+
+    Args:
+        session: rig and reference.
+        nominal: the model without any effect, fitted, with slopes.
+        experiments: of the recording, weighed.
+        known: of the machine's own numbers.
+        most: squares that the best effect gains: own numbers that lead nowhere near need not be known to one.
+    """
+    scale = session.posterior.scale
+    behind = behind_of(session, BEHIND) if most > HOPELESS * scale else 0.0
     kind = ProblemTogether if any(e.others is not None for e in experiments) else Problem
     problem = session.bench.problem((), session.bench.fine, experiments, kind=kind)
     assert nominal.slopes is not None
     free = replace(nominal, problem=problem, ended=False, exact=False, residuals=None)
-    [place] = fitted_on([replace(free, slopes=nominal.slopes)], session)
+    [place] = fitted_on([replace(free, slopes=nominal.slopes)], session, behind=behind)
     assert place.residuals is not None
     gain = max(nominal.objective - float(place.residuals @ place.residuals), 0.0) / scale
     moved = np.abs(place.unit - session.posterior.mean)
@@ -246,4 +291,5 @@ def _own_numbers(
         parameters=place.unit.size,
         left=fit_of(place).over_noise,
         others=problem.parameters.values(place.unit),
+        shared_shares=shares_of_reference(nominal.slopes, known.information, session.shared),
     )

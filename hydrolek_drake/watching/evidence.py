@@ -17,6 +17,7 @@ import numpy as np
 from scipy.special import ndtr
 from scipy.stats import chi2
 
+from hydrolek_drake.watching.common_error import ALONE, prior_of_shared
 from hydrolek_drake.watching.fitting.likelihood import Profile
 from hydrolek_drake.watching.settings import BEYOND, FALLS, GROWS, MISHAP, OCTAVES, STAYS
 
@@ -41,30 +42,34 @@ class Sizes:
         """How many cells there are."""
         return (self.edges.size - 1) * len(self.signs)
 
-    def ratios(self, profile: Profile, tempered: float) -> np.ndarray:
-        """Logarithms of the mean likelihood ratios of each cell, against none.
+    def ratios(self, profile: Profile, tempered: float, shared: np.ndarray = ALONE) -> np.ndarray:
+        """Logarithms of the mean likelihood ratios of each cell, against none, beside each error of the reference.
 
         The root of the rise is straight between the sizes of a profile, so that its integral is a normal one.
 
         Args:
             profile: of the effect's size, in squares.
             tempered: squares that count as one.
+            shared: strengths that the reference's error makes, against which cells are held. # (k,)
+
+        Returns:
+            One row an error. # (k, count)
         """
-        found = []
-        for sign in self.signs:
-            edges = np.sort(sign * self.edges)
-            inner = [s for s in profile.sizes if edges[0] < s < edges[-1]]
-            at = np.unique(np.concatenate([edges, inner]))
-            roots = profile.roots(at) / np.sqrt(tempered)
-            rising = np.diff(roots)
-            flat = np.abs(rising) < 1e-9
-            area = np.sqrt(2.0 * np.pi) * np.diff(ndtr(roots)) / np.where(flat, 1.0, rising)
-            area = np.diff(at) * np.where(flat, np.exp(-0.5 * roots[:-1] ** 2), area)
-            cells = np.clip(np.searchsorted(edges, at[:-1], side="right") - 1, 0, edges.size - 2)
-            whole = np.bincount(cells, area, minlength=edges.size - 1) / np.diff(edges)
-            told = np.log(np.maximum(whole, 1e-300)) - 0.5 * profile.least / tempered
-            found.append(told if sign > 0.0 else told[::-1])
-        return np.concatenate(found)
+        ends = np.concatenate([np.sort(sign * self.edges)[None] + shared[:, None] for sign in self.signs])
+        at = np.unique(np.concatenate([ends.ravel(), np.array(profile.sizes)]))
+        roots = profile.roots(at) / np.sqrt(tempered)
+        rising = np.diff(roots)
+        flat = np.abs(rising) < 1e-9
+        area = np.sqrt(2.0 * np.pi) * np.diff(ndtr(roots)) / np.where(flat, 1.0, rising)
+        area = np.diff(at) * np.where(flat, np.exp(-0.5 * roots[:-1] ** 2), area)
+        places = np.searchsorted(at, ends)
+        whole = np.add.reduceat(np.append(area, 0.0), places.ravel()).reshape(places.shape)[:, :-1]
+        told = np.log(np.maximum(whole / np.diff(ends, axis=1), 1e-300)).reshape(
+            len(self.signs), len(shared), -1
+        )
+        rows = [part if sign > 0.0 else part[:, ::-1] for part, sign in zip(told, self.signs, strict=True)]
+        none = profile.roots(shared) / np.sqrt(tempered)
+        return np.asarray(np.concatenate(rows, axis=1) + 0.5 * none[:, None] ** 2)
 
 
 def sizes_by(deviation: float, both: bool) -> Sizes:
@@ -102,17 +107,17 @@ def bounded(ratios: np.ndarray, most: float) -> np.ndarray:
     """Ratios of one recording with bounded influence: no more than some, and one where it is a mishap.
 
     Args:
-        ratios: logarithms. # (m,)
+        ratios: logarithms, of any shape.
         most: of the largest, too.
     """
     return np.asarray(MISHAP + (1.0 - MISHAP) * np.exp(np.minimum(ratios, most)))
 
 
 class Evidence:
-    """The mixture for one effect, recording after recording.
+    """The mixture for one effect, recording after recording, beside each error that the reference may have.
 
     Attributes:
-        total: of the mixture.
+        total: of the mixture, in the mean over these errors.
         since: number of the recording with which the likeliest course of sizes begins, whichever that is (a cumulative
             sum; Page, Biometrika 41, 1954, 100).
     """
@@ -120,31 +125,36 @@ class Evidence:
     def __init__(self) -> None:
         """Begin with none."""
         self.total, self.since = 0.0, 0
-        self._parts, self._best = np.zeros(0), np.zeros(0)
-        self._begun = np.zeros(0, dtype=int)
+        self._none = np.zeros(0)
+        self._parts, self._best = np.zeros((0, 0)), np.zeros((0, 0))
+        self._begun = np.zeros((0, 0), dtype=int)
 
-    def add(self, ratios: np.ndarray, number: int) -> None:
+    def add(self, ratios: np.ndarray, number: int, none: np.ndarray | None = None) -> None:
         """Take what a recording says.
 
         Args:
-            ratios: of each cell of sizes, bounded. # (m,)
+            ratios: of each cell of sizes, bounded, beside each error of the reference. # (k, m)
             number: of the recording, from 1.
+            none: logarithms of how likely the recording is by each error alone; None for all alike. # (k,)
         """
-        count = ratios.size
-        if self._parts.size != count:
-            self._parts, self._best, self._begun = (
-                np.zeros(count),
-                np.zeros(count),
-                np.zeros(count, dtype=int),
-            )
+        errors, count = ratios.shape
+        if self._parts.shape != ratios.shape:
+            self._parts, self._best = np.zeros(ratios.shape), np.zeros(ratios.shape)
+            self._begun, self._none = np.zeros(ratios.shape, dtype=int), prior_of_shared(errors)
+        if none is not None:
+            self._none = self._none + none
         ways = _followers(count)
-        self._parts = np.minimum(ratios * (self._parts @ ways + 1.0 / (number * (number + 1) * count)), MOST)
-        self.total = float(self._parts.sum())
-        courses = self._best[:, None] * ways
-        from_one, before = courses.max(axis=0), self._begun[np.argmax(courses, axis=0)]
+        begins = 1.0 / (number * (number + 1) * count)
+        self._parts = np.minimum(ratios * (self._parts @ ways + begins), MOST)
+        weights = np.exp(self._none - self._none.max())
+        self.total = float(weights @ self._parts.sum(axis=1) / weights.sum())
+        courses = self._best[:, :, None] * ways
+        from_one = courses.max(axis=1)
+        before = np.take_along_axis(self._begun, courses.argmax(axis=1), axis=1)
         self._begun = np.where(from_one > 1.0 / count, before, number)
         self._best = np.minimum(ratios * np.maximum(from_one, 1.0 / count), MOST)
-        self.since = int(self._begun[int(np.argmax(self._best))])
+        error, cell = np.unravel_index(int(np.argmax(weights[:, None] * self._best)), ratios.shape)
+        self.since = int(self._begun[error, cell])
 
 
 @lru_cache

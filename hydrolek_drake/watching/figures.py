@@ -13,8 +13,11 @@ from hydrolek_drake.watching.limits import Limit
 from hydrolek_drake.watching.trends import reached
 from hydrolek_drake.watching.watch import Watched
 
-SIZE_COLOUR, REFERENCE_COLOUR, BEYOND_COLOUR = "#1b6ca8", "#9aa5b1", "#b4520b"
+SIZE_COLOUR, REFERENCE_COLOUR, BEYOND_COLOUR = "#0072b2", "#7b8794", "#d55e00"
 TREND_COLOUR, LIMIT_COLOUR, WITH_COLOUR = "#2f7d4f", "#9b1c1c", "#8b2c5b"
+"""Told apart also by who does not see red or green (Okabe, Ito, Color Universal Design, 2008); the page has a lighter
+one of each where it is dark."""
+
 AHEAD = 0.6
 """Without a limit that is reached sooner a forecast is drawn over this share of the time that was watched."""
 
@@ -38,10 +41,15 @@ def size_figure(watched: Watched, effect: str, joint: str, limits: Sequence[Limi
         each.digest: effect in judgement.beyond
         for each, judgement in zip(watched.asked, watched.judgements, strict=True)
     }
-    for name, group, colour in (
-        ("reference", watched.reference, REFERENCE_COLOUR),
-        ("within what chance gives", [s for s in watched.asked if not beyond[s.digest]], SIZE_COLOUR),
-        ("beyond the threshold", [s for s in watched.asked if beyond[s.digest]], BEYOND_COLOUR),
+    for name, group, colour, symbol in (
+        ("reference", watched.reference, REFERENCE_COLOUR, "square"),
+        (
+            "within what chance gives",
+            [s for s in watched.asked if not beyond[s.digest]],
+            SIZE_COLOUR,
+            "circle",
+        ),
+        ("beyond the threshold", [s for s in watched.asked if beyond[s.digest]], BEYOND_COLOUR, "diamond"),
     ):
         rows = [
             (each, told)
@@ -68,7 +76,7 @@ def size_figure(watched: Watched, effect: str, joint: str, limits: Sequence[Limi
                     "width": 3,
                 },
                 mode="markers",
-                marker={"color": colour, "size": 7},
+                marker={"color": colour, "size": 8, "symbol": symbol},
                 name=name,
                 customdata=[each.digest for each, _ in rows],
                 text=[each.recording for each, _ in rows],
@@ -82,10 +90,10 @@ def size_figure(watched: Watched, effect: str, joint: str, limits: Sequence[Limi
         figure.add_hline(
             y=factor * limit.size, line={"color": LIMIT_COLOUR, "dash": "dash", "width": 1.2},
             annotation_text=f"limit {shown(limit.size, unit or '1')}", annotation_font_color=LIMIT_COLOUR,
-            annotation_position="bottom right",
+            annotation_position="bottom left",
         )  # fmt: skip
-    name = EFFECTS[effect].size if effect in EFFECTS else "largest change"
-    axis = f"{name.rsplit('_', 1)[0] if '_' in name else name}{'' if unit in ('', '1') else f' [{display_unit(unit)}]'}"
+    name = EFFECTS[effect].title if effect in EFFECTS else "largest change"
+    axis = f"{name}{'' if unit in ('', '1') else f' [{display_unit(unit)}]'}"
     _dress(figure, _wrapped(axis), 330)
     if watched.asked:
         figure.update_xaxes(range=[_moment(each) for each in _span(watched, until)])

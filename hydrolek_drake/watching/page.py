@@ -3,13 +3,15 @@
 import html
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from hydrolek_drake.replay.display import ratio
-from hydrolek_drake.replay.page import STYLE
+from hydrolek_drake.watching.alarms import is_effect
 from hydrolek_drake.watching.asking import OWN_NUMBERS, Answer
+from hydrolek_drake.watching.excitation import sentence
 from hydrolek_drake.watching.figures import left_figure, size_figure
 from hydrolek_drake.watching.limits import Limit
 from hydrolek_drake.watching.store import Seen
@@ -27,48 +29,26 @@ from hydrolek_drake.watching.words import (
 SHOWN = 2
 """So many effects have a plot where nothing is alarmed: those with limits, and those with the largest gains."""
 
-_STYLE = """
-.verdict { border-left: 6px solid; padding: .6rem 1rem; background: #f7f9fb; margin: 1rem 0 }
-.verdict b { font-size: .85rem; letter-spacing: .04em; text-transform: uppercase }
-#recording { border: 1px solid #d9e0e7; padding: .2rem 1rem 1rem; margin-top: 1rem; min-height: 3rem }
-td.what { white-space: normal; max-width: 15em }
-td.path { max-width: 24em; overflow: hidden; text-overflow: ellipsis }
-tr.beyond td { background: #fdf3ea }
-a { color: #1b6ca8 }
-"""
-
-_SCRIPT = """
-const shown = document.getElementById('recording');
-function show(id) {
-  const r = RECORDINGS[id];
-  if (!r) return;
-  shown.innerHTML = '<h2></h2><p class="other"><a></a></p><div id="curves"></div>';
-  shown.querySelector('h2').textContent = r.title;
-  const link = shown.querySelector('a');
-  link.textContent = r.path; link.href = r.link;
-  const lines = [
-    ['measured', r.curves.measured, 'y', '#222222'], ['command', r.curves.command, 'y2', '#555555'],
-    ['nominal model', r.curves.nominal, 'y3', '#1b6ca8'], [r.best, r.curves.best, 'y3', '#8b2c5b']];
-  Plotly.newPlot('curves', lines.filter(l => l[1]).map(l => ({x: r.curves.time, y: l[1], name: l[0], yaxis: l[2],
-    mode: 'lines', line: {color: l[3], width: 1.3, shape: l[2] == 'y2' ? 'hv' : 'linear'}})), {
-    height: 430, plot_bgcolor: 'white', margin: {l: 80, r: 20, t: 10, b: 45}, hovermode: 'x unified',
-    legend: {orientation: 'h', y: 1.02, yanchor: 'bottom', x: 0},
-    xaxis: {title: {text: 'time [s]'}, gridcolor: '#e4e9ee', anchor: 'y3'},
-    yaxis: {title: {text: r.axis, font: {size: 11}}, domain: [0.70, 1], gridcolor: '#e4e9ee'},
-    yaxis2: {title: {text: 'command [V]', font: {size: 11}}, domain: [0.42, 0.64], gridcolor: '#e4e9ee'},
-    yaxis3: {title: {text: 'left / noise', font: {size: 11}}, domain: [0, 0.36], gridcolor: '#e4e9ee'}},
-    {displaylogo: false});
-  shown.scrollIntoView({behavior: 'smooth', block: 'nearest'});
-}
-document.querySelectorAll('.plotly-graph-div').forEach(plot => plot.on('plotly_click', event => {
-  const id = event.points[0].customdata;
-  if (id) show(id);
-}));
-document.querySelectorAll('a[data-id]').forEach(a => a.addEventListener('click', e => {
-  e.preventDefault();
-  show(a.dataset.id);
-}));
-"""
+_EFFECT_HEAD = (
+    ("effect", "text"),
+    ("what", "text"),
+    ("size alone (95 %)", "what"),
+    ("gain", ""),
+    ("size beside the first (95 %)", "what"),
+    ("gain beside the first", ""),
+    ("threshold", ""),
+)
+_RECORDING_HEAD = (
+    ("time", "text name"),
+    ("from", "text"),
+    ("recording", "text name"),
+    ("left / noise", ""),
+    ("best effect", "text"),
+    ("gain", ""),
+    ("beyond", "text"),
+    ("evidence", ""),
+    ("for", "text"),
+)
 
 
 def page(watched: Watched, limits: Sequence[Limit] = (), folder: Path | None = None) -> str:
@@ -83,14 +63,17 @@ def page(watched: Watched, limits: Sequence[Limit] = (), folder: Path | None = N
 
     title = f"Watch of {watched.rig.name}"
     alarm = watched.alarm is not None
-    colour, word = ("#9b1c1c", "alarm") if alarm else ("#2f7d4f", "no alarm")
+    colour, word = ("alarm", "alarm") if alarm else ("healthy", "no alarm")
     parts = [
         f"<!doctype html><html lang='en'><head><meta charset='utf-8'><title>{html.escape(title)}</title>"
-        f"<meta name='viewport' content='width=device-width'><style>{STYLE}{_STYLE}</style>"
+        f"<meta name='viewport' content='width=device-width, initial-scale=1'><style>{_asset('watch.css')}</style>"
         f"<script>{get_plotlyjs()}</script></head><body><h1>{html.escape(title)}</h1>",
-        f"<div class='verdict' style='border-color:{colour}'><b style='color:{colour}'>{word}</b>"
+        f"<div class='verdict' style='--verdict: var(--{colour})'><b>{word}</b>"
         f"<p class='sentence'>{html.escape(headline(watched))}</p></div>",
     ]
+    lack = sentence(watched.told, watched.answers)
+    if lack:
+        parts.append(f"<div class='warned'><p class='other'>{html.escape(lack)}</p></div>")
     if watched.answers:
         for effect, joint in _plotted(watched, limits):
             parts += _effect(watched, effect, joint, limits)
@@ -105,12 +88,12 @@ def page(watched: Watched, limits: Sequence[Limit] = (), folder: Path | None = N
         "<h2>Every effect, last recording</h2>",
         _last(watched),
         "<h2>Recordings</h2><p class='other'>Evidence: the largest of all effects, of this recording and those before "
-        "it, over what an alarm asks for.</p>",
+        "it, over what an alarm asks for, and for which effect.</p>",
         _recordings(watched),
         _broken(watched),
         "<h2>The rule</h2>",
         _rule(watched),
-        f"<script>const RECORDINGS = {_data(watched, folder)};{_SCRIPT}</script></body></html>",
+        f"<script>const RECORDINGS = {_data(watched, folder)};{_asset('watch.js')}</script></body></html>",
     ]
     return "\n".join(parts)
 
@@ -146,7 +129,11 @@ def _effect(watched: Watched, effect: str, joint: str, limits: Sequence[Limit]) 
 
 
 def _plot(figure: Any) -> str:
-    return str(figure.to_html(full_html=False, include_plotlyjs=False, config={"displaylogo": False}))
+    return str(
+        figure.to_html(
+            full_html=False, include_plotlyjs=False, config={"displaylogo": False, "responsive": True}
+        )
+    )
 
 
 def _last(watched: Watched) -> str:
@@ -160,46 +147,63 @@ def _last(watched: Watched) -> str:
         size = f"{told.size:.3g} of a range" if told.effect == OWN_NUMBERS else size_text(told)
         limit = judgement.thresholds[key]
         first = told is answer.effects[0] or not second
-        beyond = " class='beyond'" if (told.gain if first else told.beside_gain or 0.0) > limit else ""
+        beyond = (told.gain if first else told.beside_gain or 0.0) > limit
         beside = "" if told.beside_gain is None else f"{told.beside_gain:.1f}"
-        rows.append(
-            f"<tr{beyond}><td>{html.escape(told.effect)}</td>"
-            f"<td class='text what'>{html.escape(title_of(told.effect))}</td>"
-            f"<td class='what'>{html.escape(size)}</td><td>{told.gain:.1f}</td>"
-            f"<td class='what'>{html.escape(beside_text(told))}</td><td>{beside}</td><td>{limit:.1f}</td></tr>"
-        )
-    head = (
-        "<tr><th>effect</th><th class='text'>what</th><th>size alone (95 %)</th><th>gain</th>"
-        "<th class='wide'>size beside the first (95 %)</th><th>gain</th><th>threshold</th></tr>"
-    )
+        gain, what = f"{told.gain:.1f}", title_of(told.effect)
+        cells = (told.effect, what, size, gain, beside_text(told), beside, f"{limit:.1f}")
+        rows.append(_row(cells, _EFFECT_HEAD, beyond))
     return (
         "<p class='other'>Each effect as if it alone explained the difference, and beside the first where that one is "
         "surely there: what imitates it is nothing then, and a second fault is not. Shaded: beyond the threshold.</p>"
-        f"<table>{head}{''.join(rows)}</table>"
+        f"<table>{_head(_EFFECT_HEAD)}{''.join(rows)}</table>"
     )
 
 
 def _recordings(watched: Watched) -> str:
-    head = (
-        "<tr><th>time</th><th class='text'>from</th><th class='text'>recording</th><th>left / noise</th>"
-        "<th class='text'>best effect</th><th>gain</th><th class='text'>beyond</th>"
-        "<th>evidence</th><th class='text'>for</th></tr>"
-    )
     rows, evidence = [], watched.evidence
     for each, judgement in zip(watched.asked, watched.judgements, strict=True):
         assert each.answer is not None
         best = each.answer.effects[0]
-        beyond = " class='beyond'" if judgement.beyond else ""
-        key, share = max(evidence[each.digest].items(), key=lambda item: item[1])
+        key, share = _most(evidence[each.digest])
         told = f"{share:.2g}" if share < 100.0 else "over 100"
-        rows.append(
-            f"<tr{beyond}><td>{each.stamp.iso}</td><td class='text'>{each.stamp.source}</td><td class='text path'>"
-            f"<a href='#recording' data-id='{each.digest}'>{html.escape(Path(each.recording).name)}</a></td>"
-            f"<td>{ratio(each.answer.left)}</td><td class='text'>{html.escape(best.effect)}</td>"
-            f"<td>{best.gain:.1f}</td><td class='text'>{'yes' if judgement.beyond else ''}</td>"
-            f"<td>{told}</td><td class='text path'>{html.escape(key)}</td></tr>"
+        name = html.escape(Path(each.recording).name)
+        cells = (
+            each.stamp.iso,
+            each.stamp.source,
+            _Markup(f"<a href='#recording' data-id='{each.digest}'>{name}</a>"),
+            ratio(each.answer.left),
+            best.effect,
+            f"{best.gain:.1f}",
+            "yes" if judgement.beyond else "",
+            told,
+            key,
         )
-    return f"<table>{head}{''.join(rows)}</table>" if rows else "<p class='other'>None.</p>"
+        rows.append(_row(cells, _RECORDING_HEAD, bool(judgement.beyond)))
+    return f"<table>{_head(_RECORDING_HEAD)}{''.join(rows)}</table>" if rows else "<p class='other'>None.</p>"
+
+
+def _most(shares: Mapping[str, float]) -> tuple[str, float]:
+    """For what there is most evidence; of what is beyond an alarm's, effects before what is no effect."""
+    named = {key: share for key, share in shares.items() if share > 1.0 and is_effect(key)}
+    return max((named or shares).items(), key=lambda item: item[1])
+
+
+class _Markup(str):
+    """A cell that is HTML already."""
+
+
+def _head(columns: Sequence[tuple[str, str]]) -> str:
+    cells = "".join(f"<th class='{kind}'>{name}</th>" for name, kind in columns)
+    return f"<tr class='head'>{cells}</tr>"
+
+
+def _row(cells: Iterable[str], columns: Sequence[tuple[str, str]], beyond: bool) -> str:
+    """A row of a table; on a phone each cell stands in a line of its own, with the column's name."""
+    told = "".join(
+        f"<td class='{kind}' data-head='{name}'>{cell if isinstance(cell, _Markup) else html.escape(cell)}</td>"
+        for cell, (name, kind) in zip(cells, columns, strict=True)
+    )
+    return f"<tr{' class=beyond' if beyond else ''}>{told}</tr>"
 
 
 def _broken(watched: Watched) -> str:
@@ -228,6 +232,10 @@ def _rule(watched: Watched) -> str:
         f"reference, is more than chance brings in all tests of all recordings."
         f"{lone}</p>"
     )
+
+
+def _asset(name: str) -> str:
+    return (files(__package__) / "assets" / name).read_text(encoding="utf-8")
 
 
 def _data(watched: Watched, folder: Path | None) -> str:

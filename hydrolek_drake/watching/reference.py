@@ -20,6 +20,7 @@ from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.identification.parameter_set import free_of_joints
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.watching.changing import ReferenceBench, changing_of, contains, kept_of
+from hydrolek_drake.watching.excitation import ReferenceTold
 from hydrolek_drake.watching.knowledge import Knowledge, KnownProblem, KnownTogether, with_drift
 
 
@@ -147,6 +148,27 @@ class Session:
     def reference(self) -> Reference:
         """The same for another computer."""
         return Reference(self._given, self._training, self._drift, self.posterior, self._changes)
+
+    @property
+    def shared(self) -> np.ndarray:
+        """Covariance of what is wrong about the reference's numbers, alike in all later recordings. # (n, n)."""
+        covariance = np.linalg.inv(self.posterior.information / self.posterior.scale)
+        stays = np.array([path not in self.changing for path in self.bench.parameters(()).paths])
+        return np.asarray(covariance * np.outer(stays, stays))
+
+    @property
+    def told(self) -> ReferenceTold:
+        """How surely the reference tells the machine's own numbers, those that change left out."""
+        deviations = np.sqrt(np.diag(self.shared))
+        paths = self.bench.parameters(()).paths
+        own = [i for i, path in enumerate(paths) if path not in self.changing]
+        # joints that move in one recording share its time
+        lengths = {e.name: float(e.time[-1] - e.time[0]) for e in self._training}
+        return ReferenceTold(
+            {paths[i]: float(deviations[i]) for i in own},
+            {paths[i]: float(self.drift[i]) for i in own},
+            sum(lengths.values()),
+        )
 
     @property
     def knowledge(self) -> Knowledge:

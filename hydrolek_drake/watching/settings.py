@@ -1,6 +1,6 @@
 """Every constant of the watch, with the principle or measurement it comes from."""
 
-METHOD = 3
+METHOD = 4
 """Number of the method: recordings that another one was asked of are asked again."""
 
 DRIFT = 0.02
@@ -104,7 +104,8 @@ NEGLIGIBLE = 0.1
 
 HOPELESS = 16.0
 """An effect is not held at further sizes where another one gains more than so many squares, four standard deviations,
-and more than `FURTHER_OUT` times as much as it does or promises: it imitates that one at most."""
+and more than `FURTHER_OUT` times as much as it does or promises: it imitates that one at most. Of two fits that have
+ended, one that leaves so many squares more is not what is there."""
 
 SHORTER = 1e4
 """A step that leads up is tried again with so many times the damping: with that of a fit's first one."""
@@ -117,6 +118,21 @@ LEAST_RISE, MOST_RISE = 1.0, 16.0
 
 HELD = 4
 """Steps of the own numbers at each of these sizes."""
+
+SHARED_STEP, SHARED_REACH = 0.25, 3.5
+"""Errors of the reference among which evidence is weighed, in standard deviations: so near each other that fifty
+recordings tell two of them apart by less than one square (a recording tells an effect no more surely than the reference
+leaves it, since its prior is that of the reference), and so far that one series in two thousand lies beyond."""
+
+UNTOLD = 0.9
+"""Of a number that is known by the reference no better than to this share of its range's standard deviation it tells
+nothing."""
+
+POORER = 4.0
+"""A reference whose movements tell a number so many times less a second lacks movements, not only time."""
+
+NAMED = 5
+"""So many numbers are named of those that a reference lacks."""
 
 GRID = 4001
 """Places at which the likelihood of a size is tabulated."""

@@ -154,5 +154,5 @@ def _seen_from(kept: dict[str, Any]) -> Seen:
 
 
 def _effect_from(kept: dict[str, Any]) -> EffectTold:
-    lists = {name: tuple(kept[name]) for name in ("strengths", "rises")}
+    lists = {name: tuple(kept[name]) for name in ("strengths", "rises", "shared_shares")}
     return EffectTold(**{**kept, **lists})

@@ -23,6 +23,7 @@ from hydrolek_drake.watching.alarms import (
     judged,
 )
 from hydrolek_drake.watching.asking import Answer, asked
+from hydrolek_drake.watching.excitation import ReferenceTold
 from hydrolek_drake.watching.questions import answered, questions_of, read_one, usable
 from hydrolek_drake.watching.reference import Session
 from hydrolek_drake.watching.settings import DRIFT, LEFT_OUT
@@ -40,6 +41,7 @@ class Watched:
         reference: the reference recordings, each asked by what the others tell.
         seen: later recordings in the order of time, with those that could not be asked.
         rule: of the alarm.
+        told: how surely the reference tells the machine's own numbers.
         healthy: what a healthy machine shows.
         judgements: of the recordings that could be asked.
         alarm: what is wrong; None for nothing.
@@ -50,6 +52,7 @@ class Watched:
     reference: tuple[Seen, ...]
     seen: tuple[Seen, ...]
     rule: AlarmRule
+    told: ReferenceTold
     healthy: Healthy
     judgements: tuple[Judgement, ...]
     alarm: Alarm | None
@@ -243,5 +246,13 @@ def _watched(
     answers = [each.answer for each in ordered if each.answer is not None]
     judgements = tuple(judged(answer, n, rule, healthy) for n, answer in enumerate(answers, start=1))
     return Watched(
-        rig, tuple(told), ordered, rule, healthy, judgements, alarm_of(answers, judgements, rule), anew
+        rig,
+        tuple(told),
+        ordered,
+        rule,
+        session.told,
+        healthy,
+        judgements,
+        alarm_of(answers, judgements, rule),
+        anew,
     )

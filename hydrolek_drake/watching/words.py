@@ -12,6 +12,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.replay.display import display_factor, display_unit, shown
 from hydrolek_drake.watching.alarms import UNLISTED
 from hydrolek_drake.watching.asking import OWN_NUMBERS, EffectTold
+from hydrolek_drake.watching.excitation import sentence
 from hydrolek_drake.watching.limits import Limit
 from hydrolek_drake.watching.trends import Trend, reached
 from hydrolek_drake.watching.watch import Watched
@@ -141,6 +142,7 @@ def sentences(watched: Watched, limits: Sequence[Limit]) -> list[str]:
             continue
         told.append(f"{name}: {size_text(last)}. {growth_sentence(trend, last.unit)}")
         told += [f"  {limit_sentence(limit, trend, last.unit)}" for limit in limits if limit.effect == name]
+    told += [each for each in [sentence(watched.told, watched.answers)] if each]
     told += [f"not asked: {each.recording}: {each.problem}" for each in watched.broken]
     return told
 

@@ -61,6 +61,9 @@ def test_sizes_lie_in_their_intervals(leaking, planted, growth):
     held = [e.low - 0.01 * p <= p <= e.high + 0.01 * p for e, p in zip(told, planted, strict=True)]
     assert sum(held) >= len(planted) - 1
     assert told[0].low == 0.0 and 0.0 < told[0].high < 0.2 * growth
+    # an end that no fit has shown would lie anywhere: of what is surely there both are about as far off
+    ends = [(e.size - e.low, e.high - e.size) for e, p in zip(told, planted, strict=True) if p > 0.0]
+    assert all(max(each) < 4.0 * min(each) for each in ends)
 
 
 def test_what_has_grown_large_is_told_to_its_size(machine_days, references):

@@ -1,6 +1,7 @@
 """The statistics of a watch by themselves: intervals, thresholds, change points, forecasts, time stamps."""
 
 import os
+from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import pytest
 
 from hydrolek_drake.watching.alarms import AlarmRule, Healthy, alarm_of, judged
 from hydrolek_drake.watching.asking import Answer, EffectTold
+from hydrolek_drake.watching.common_error import beyond_shared, shares_of_reference, strength_by_reference
 from hydrolek_drake.watching.evidence import Evidence, bounded, sizes_by
 from hydrolek_drake.watching.fitting.likelihood import Branch, Profile, of_branches
 from hydrolek_drake.watching.knowledge import with_drift
@@ -78,18 +80,23 @@ HEALTHY = Healthy(deviations={f"joint.effect.{i}": (1.0, False) for i in range(E
 """A recording of the reference tells each size to one."""
 
 
-def _answer(rng, size=0.0, deviation=1.0):
-    """An answer of a machine in which nothing changed, but for one effect's size, told with a standard deviation."""
+def _answer(rng, size=0.0, deviation=1.0, shared=0.0, error=None):
+    """An answer of a machine in which nothing changed, but for one effect's size, told with a standard deviation.
+
+    Of that `shared` is the reference's; by its error each effect seems to have a size, the same in all recordings.
+    """
     effects = []
+    own = np.sqrt(deviation**2 - shared**2)
     for i in range(EFFECTS):
-        likeliest = (size if i == 0 else 0.0) + deviation * float(rng.standard_normal())
+        likeliest = (size if i == 0 else 0.0) + own * float(rng.standard_normal())
+        likeliest += 0.0 if error is None else shared * float(error[i])
         at = sorted({0.0, max(likeliest, 0.0), max(likeliest, 0.0) + 2.0 * deviation})
         rises = [((s - likeliest) ** 2 - likeliest**2) / deviation**2 for s in at]
         best = max(likeliest, 0.0)
         effects.append(
             EffectTold(
                 f"effect.{i}", "joint", best, 0.0, 1.0, "1", -min(rises), 1, 1.0, {},
-                strengths=tuple(at), rises=tuple(rises),
+                strengths=tuple(at), rises=tuple(rises), shared=shared,
             )
         )  # fmt: skip
     return Answer(tuple(effects), {}, 1.0, 4000, 0.0, {})
@@ -107,6 +114,59 @@ def test_healthy_series_raise_no_more_alarms_than_was_allowed():
     assert alarms / 120 <= 0.2
 
 
+def test_what_a_short_reference_is_wrong_about_is_no_fault():
+    """It makes the same sizes in all recordings, which would add up to alarms if each were taken by itself."""
+    rng = np.random.default_rng(17)
+    rule, alarms, blind = AlarmRule(false_alarms=0.1), 0, 0
+    for _ in range(40):
+        error = rng.standard_normal(EFFECTS)
+        answers = [_answer(rng, shared=0.9, error=error) for _ in range(30)]
+        alarms += _alarmed(answers, rule) is not None
+        untold = [replace(a, effects=tuple(replace(e, shared=0.0) for e in a.effects)) for a in answers]
+        blind += _alarmed(untold, rule) is not None
+    assert alarms / 40 <= 0.1
+    assert blind / 40 > 0.5
+
+
+def test_what_begins_after_a_short_reference_is_held_against_the_recordings_before():
+    """Three standard deviations of one recording, as with a reference that has no error."""
+    rng = np.random.default_rng(18)
+    error = rng.standard_normal(EFFECTS)
+    healthy = [_answer(rng, shared=0.9, error=error) for _ in range(10)]
+    worn = [_answer(rng, 3.0, shared=0.9, error=error) for _ in range(10)]
+    alarm = _alarmed([*healthy, *worn], AlarmRule())
+    assert alarm is not None and alarm.effect == "effect.0" and 9 <= alarm.since <= 11 and alarm.raised < 18
+
+
+def test_own_numbers_gain_what_the_reference_is_wrong_about_in_every_recording():
+    rng = np.random.default_rng(19)
+    covariance, drift = np.diag([4.0, 1.0, 0.01]), np.diag([0.01, 0.01, 0.01])
+    slopes = 0.2 * rng.standard_normal((500, 3))
+    knowledge = np.linalg.inv(covariance + drift)
+    shares = shares_of_reference(slopes, knowledge, covariance)
+    weight = np.linalg.inv(np.linalg.inv(slopes.T @ slopes) + covariance + drift)
+    errors = rng.multivariate_normal(np.zeros(3), covariance, 2000)
+    made = np.einsum("ij,jk,ik->i", errors, weight, errors)
+    assert np.mean(made) == pytest.approx(sum(shares), rel=0.1)
+    left = [beyond_shared(float(squares), shares, 0.02) for squares in made]
+    assert np.mean(np.array(left) > 0.0) < 0.04  # larger ones are about as rare as granted
+
+
+def test_an_effect_shares_what_own_numbers_imitate_of_it():
+    """Its strength is estimated beside own numbers whose prior has another mean each time."""
+    rng = np.random.default_rng(20)
+    slopes, change = rng.standard_normal((200, 2)), rng.standard_normal(200)
+    change += 3.0 * slopes[:, 0]
+    covariance, knowledge = np.diag([0.04, 0.01]), np.diag([20.0, 80.0])
+    whole = np.column_stack([slopes, change])
+    square = whole.T @ whole
+    square[:2, :2] += knowledge
+    means = rng.multivariate_normal([0.0, 0.0], covariance, 4000)
+    found = [np.linalg.solve(square, np.append(knowledge @ mean, 0.0))[2] for mean in means]
+    told = strength_by_reference(slopes, change, knowledge, covariance)
+    assert np.std(found) == pytest.approx(told, rel=0.05)
+
+
 def test_the_ratio_of_every_size_is_one_in_the_mean_where_nothing_changed():
     rng = np.random.default_rng(16)
     sizes = sizes_by(1.0, both=True)
@@ -115,7 +175,7 @@ def test_the_ratio_of_every_size_is_one_in_the_mean_where_nothing_changed():
         z = float(rng.standard_normal())
         at = (-4.0, 0.0, z, 4.0)
         profile = Profile(*zip(*sorted((s, (s - z) ** 2 - z**2) for s in at), strict=True))
-        ratios.append(np.exp(sizes.ratios(profile, 1.0)))
+        ratios.append(np.exp(sizes.ratios(profile, 1.0))[0])
     small = [0, 1, OCTAVES, OCTAVES + 1]  # of larger ones the mean is that of rare large ratios
     assert np.mean(ratios, axis=0)[small] == pytest.approx(1.0, abs=0.1)
 

@@ -35,7 +35,7 @@ class _Side:
 
 
 def around(
-    session: Session, fits: Mapping[str, Place], candidates: Mapping[str, Candidate]
+    session: Session, fits: Mapping[str, Place], candidates: Mapping[str, Candidate], near: Sequence[str]
 ) -> tuple[dict[str, Place], dict[str, list[Rung]]]:
     """Fitted effects held on both sides of their sizes, where curvature has the ends of an interval.
 
@@ -46,13 +46,14 @@ def around(
         session: rig and reference.
         fits: of the model with one effect each, with slopes, by the effect's path.
         candidates: the effects.
+        near: paths of those that do not only imitate the best one, whose ends of an interval are told.
 
     Returns:
         The fits, and each effect held at these sizes and at its own.
     """
     scale, now = session.posterior.scale, dict(fits)
     rungs = {path: [_own(candidates[path], place)] for path, place in now.items()}
-    sides = {path: [_Side(candidates[path], sign) for sign in (-1.0, 1.0)] for path in now}
+    sides = {path: [_Side(candidates[path], sign) for sign in (-1.0, 1.0)] for path in near}
     for _ in range(AROUND):
         begun = [
             (path, side, rung)
@@ -66,7 +67,7 @@ def around(
             rise = max(rung.place.objective - now[path].objective, 0.0) / scale
             side.done = LEAST_RISE < rise < MOST_RISE
             side.times *= float(np.clip(HELD_AT / np.sqrt(max(rise, 1e-9)), 0.25, 4.0))
-        lower = [p for p in now if _lowest(rungs[p]).place.objective < now[p].objective - WORTH * scale]
+        lower = [p for p in near if _lowest(rungs[p]).place.objective < now[p].objective - WORTH * scale]
         freed = [replace(_lowest(rungs[p]).place, moving=now[p].moving, slopes=now[p].slopes) for p in lower]
         for path, place in zip(lower, _led(session, freed), strict=True):
             now[path] = replace(place, slopes=now[path].slopes, fresh=False, ended=False)

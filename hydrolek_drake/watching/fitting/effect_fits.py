@@ -11,7 +11,7 @@ from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.lockstep import descend, with_slopes
 from hydrolek_drake.identification.least_squares.place import Place, fit_of
-from hydrolek_drake.watching.fitting.rungs import Rung
+from hydrolek_drake.watching.fitting.rungs import Rung, hopeless
 from hydrolek_drake.watching.fitting.scanning import Scan
 from hydrolek_drake.watching.knowledge import Knowledge
 from hydrolek_drake.watching.reference import Session
@@ -20,6 +20,7 @@ from hydrolek_drake.watching.settings import (
     CONTINUED,
     FITTED,
     FURTHER,
+    HOPELESS,
     LED,
     MOST_OF,
     OBSERVED,
@@ -63,11 +64,12 @@ def fits_of_effects(
         experiments: of the recording.
         known: of the machine's own numbers.
     """
-    bench, cores, count = session.bench, session.cores, nominal.unit.size
+    bench, count = session.bench, nominal.unit.size
     best = {path: min(own, key=lambda rung: rung.place.objective).place for path, own in rungs.items() if own}
     promising = {p: place for p, place in best.items() if nominal.objective - place.objective > TRIED}
-    chosen = sorted(promising, key=lambda path: promising[path].objective)[:FITTED]
     candidates = {scan.candidate.size_path: scan.candidate for scan in scans}
+    promised = {scan.candidate.size_path: scan.gain for scan in scans}
+    chosen = in_reach(session, nominal, promising, promised)[:FITTED]
     begun = []
     for path in chosen:
         place = best[path]
@@ -76,19 +78,79 @@ def fits_of_effects(
         slopes[:, count:] = np.nan
         moving = bench.movable((candidates[path],), place.problem.parameters)
         begun.append(Place(place.problem, moving, place.unit, place.residuals, slopes))
-    led = descend(begun, LED, bench.pool, cores, worth=WORTH, share=1e-4, renewing=False)
-    ended = dict(zip(chosen, led, strict=True))
-    near = sorted(ended, key=lambda path: ended[path].objective)[:FURTHER]
-    again = [replace(ended[path], ended=False) for path in near]
-    raced = fitted_on(again, session, RACED, BEHIND)
-    ended |= dict(zip(near, raced, strict=True))
+    ended = dict(zip(chosen, _led(begun, session, LED // 2), strict=True))
+    near = in_reach(session, nominal, ended, promised)
+    on = _led([ended[path] for path in near], session, LED - LED // 2)
+    ended |= dict(zip(near, on, strict=True))
+    slopes_led = {path: place.slopes for path, place in ended.items()}
+    near = in_reach(session, nominal, ended, promised)[:FURTHER]
+    again = [_near_its_end(session, ended[path]) for path in near]
+    if len(near) > 1:  # one alone races nobody
+        again = fitted_on(again, session, RACED, behind_of(session, BEHIND))
+    ended |= dict(zip(near, again, strict=True))
     if near:
         first = min(near, key=lambda path: ended[path].objective)
         [ended[first]] = fitted_on([ended[first]], session)
-    for path, place, start in zip(chosen, led, begun, strict=True):
-        told = (ended[path].slopes, place.slopes, start.slopes)
+    for path, start in zip(chosen, begun, strict=True):
+        told = (ended[path].slopes, slopes_led[path], start.slopes)
         ended[path] = replace(ended[path], slopes=next(each for each in told if each is not None))
     return {path: place for path, place in ended.items() if place.objective < nominal.objective}
+
+
+def behind_of(session: Session, share: float) -> float:
+    """A share of how far a fit is behind others, below which a step that promises no more ends it; or zero.
+
+    It counts from the noise at least, which nothing is below: where the reference leaves more, that says nothing.
+    """
+    return share if session.posterior.scale <= NOISE.above**2 else 0.0
+
+
+def in_reach(
+    session: Session, nominal: Place, fits: Mapping[str, Place], promised: Mapping[str, float]
+) -> list[str]:
+    """Effects whose fits may still become the best one, the best first; others imitate that one at most.
+
+    Nothing is below the noise: where the best leaves no more, what is far above it need not be led on.
+
+    Args:
+        session: rig and reference.
+        nominal: the model without any, fitted.
+        fits: of the model with one effect each, by the effect's path.
+        promised: by the effect's path, squares by which its scan promised to be lower.
+    """
+    gains = {path: nominal.objective - place.objective for path, place in fits.items()}
+    most, scale = max(gains.values(), default=0.0), session.posterior.scale
+    kept = [p for p, gain in gains.items() if not hopeless(max(gain, promised.get(p, 0.0)), most, scale)]
+    left = {path: fit_of(fits[path]).over_noise / math.sqrt(scale) for path in kept}
+    if min(left.values(), default=np.inf) <= NOISE.at:
+        kept = [path for path in kept if left[path] < NOISE.far]
+    return sorted(kept, key=lambda path: -gains[path])
+
+
+def rivals(session: Session, fits: Mapping[str, Place]) -> list[str]:
+    """Effects that may be what is there, by what their fits leave; the size of another one needs no further rollouts.
+
+    Args:
+        session: rig and reference.
+        fits: of the model with one effect each, by the effect's path, at their ends.
+    """
+    least = min((place.objective for place in fits.values()), default=0.0)
+    near = least + HOPELESS * session.posterior.scale
+    return [path for path, place in fits.items() if place.objective <= near]
+
+
+def _near_its_end(session: Session, place: Place) -> Place:
+    """A fit that goes on; if nothing but noise is left, with the slopes that end a fit: wider ones only lead there."""
+    if fit_of(place).over_noise > NOISE.at * math.sqrt(session.posterior.scale):
+        return replace(place, ended=False)
+    last = len(place.problem.scales) - 1
+    return replace(place, slopes=None, fresh=False, scale=last, exact=True, ended=False)
+
+
+def _led(begun: Sequence[Place], session: Session, rounds: int, behind: float = 0.0) -> list[Place]:
+    """Fits that go on with the slopes that they have, which are corrected by each rollout."""
+    pool, cores = session.bench.pool, session.cores
+    return descend(begun, rounds, pool, cores, worth=WORTH, share=1e-4, behind=behind, renewing=False)
 
 
 def by_observers(
@@ -172,7 +234,7 @@ def without_effects(
         fits: of the model with one effect each.
         scale: squares that count as one.
     """
-    count, bench = nominal.unit.size, session.bench
+    count = nominal.unit.size
     best = sorted(fits.values(), key=lambda place: place.objective)[:RETRIED]
     begun = [
         Place(nominal.problem, nominal.moving, place.unit[:count], slopes=place.slopes[:, :count])
@@ -181,7 +243,8 @@ def without_effects(
     ]
     if not begun:
         return None
-    led = descend(begun, LED, bench.pool, session.cores, worth=WORTH, share=1e-4, renewing=False)
+    # none of so many steps may take less, on average, if they are to take enough
+    led = _led(begun, session, LED, behind_of(session, MOST_OF / LED))
     found = min(led, key=lambda place: place.objective)
     gained, taken = nominal.objective - best[0].objective, nominal.objective - found.objective
     if taken < max(MOST_OF * gained, TRIED * scale):

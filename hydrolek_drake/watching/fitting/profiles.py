@@ -17,7 +17,7 @@ from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.watching.fitting.likelihood import Profile
-from hydrolek_drake.watching.fitting.rungs import Rung, followed, held, led_on
+from hydrolek_drake.watching.fitting.rungs import Rung, followed, held, hopeless, led_on
 from hydrolek_drake.watching.fitting.scanning import Scan, strength, strengths
 from hydrolek_drake.watching.knowledge import Knowledge
 from hydrolek_drake.watching.reference import Session
@@ -26,7 +26,6 @@ from hydrolek_drake.watching.settings import (
     FITTED,
     FURTHER_OUT,
     HELD_AT,
-    HOPELESS,
     LIKELY,
     MOST_RISE,
     TRIED,
@@ -73,7 +72,7 @@ def rungs_of(
             (scan, strong)
             for scan in scans
             for path in [scan.candidate.size_path]
-            if most_gain < max(HOPELESS * scale, FURTHER_OUT * max(gains[path], scan.gain))
+            if not hopeless(max(gains[path], scan.gain), most_gain, scale)
             for strong in _farther(scan, own[path], none[path], scale)
         ]
         if not farther:

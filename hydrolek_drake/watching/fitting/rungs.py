@@ -21,7 +21,9 @@ from hydrolek_drake.watching.knowledge import Knowledge
 from hydrolek_drake.watching.reference import Session
 from hydrolek_drake.watching.settings import (
     DAMPED,
+    FURTHER_OUT,
     HELD,
+    HOPELESS,
     NEGLIGIBLE,
     SHORTER,
     WORTH,
@@ -44,9 +46,20 @@ class Rung:
 
     @property
     def promised(self) -> float:
-        """Squares that are left where own numbers go on as far as their slopes promise."""
+        """Squares that are left where own numbers go as far as slopes promise, less what was tried in vain."""
         plan = NormalEquations(self.place)
-        return self.place.objective - max(plan.promises(plan.step(DAMPED)), 0.0)
+        return self.place.objective - max(plan.promises(plan.step(DAMPED * self.place.damping)), 0.0)
+
+
+def hopeless(gain: float, most: float, scale: float) -> bool:
+    """Whether an effect imitates another one at most.
+
+    Args:
+        gain: squares that it gains, or promises.
+        most: squares that the other one gains.
+        scale: squares that count as one.
+    """
+    return most >= max(HOPELESS * scale, FURTHER_OUT * gain)
 
 
 def held(

@@ -15,11 +15,11 @@ function build(first) {
   $("joint").replaceChildren(...first.joints.map(name => element("option", name)));
   if (first.joints.includes(chosen)) $("joint").value = chosen;
   const list = [
-    {name: "position", unit: () => told.units[joint()], lines: [[1, "#222222"], [4, "#1769aa"]], least: 1e-3},
-    {name: "innovation / healthy rms", unit: () => "", lines: [[7, "#1769aa"], [8, "#1b7f3b"], [9, "#b36b00"]], least: 8, zero: true},
-    {name: "pressure A", unit: () => told.pressure_unit, lines: [[2, "#222222"], [5, "#1769aa"]], least: 0.2, optional: true},
-    {name: "pressure B", unit: () => told.pressure_unit, lines: [[3, "#222222"], [6, "#1769aa"]], least: 0.2, optional: true},
-    {name: "command", unit: () => "V", lines: [[0, "#5c6870"]], least: 1, step: true, low: true},
+    {name: "position", unit: () => told.units[joint()], lines: [[1, "--measured", 4], [4, "--blue"]], least: 1e-3},
+    {name: "innovation / healthy rms", unit: () => "", lines: [[7, "--blue"], [8, "--amber"], [9, "--third"]], names: ["position", "pressure A", "pressure B"], least: 8, zero: true},
+    {name: "pressure A", unit: () => told.pressure_unit, lines: [[2, "--measured", 4], [5, "--blue"]], least: 0.2, optional: true},
+    {name: "pressure B", unit: () => told.pressure_unit, lines: [[3, "--measured", 4], [6, "--blue"]], least: 0.2, optional: true},
+    {name: "command", unit: () => "V", lines: [[0, "--dim"]], least: 1, step: true, low: true},
   ];
   $("charts").replaceChildren();
   charts = list.map(chart => { const canvas = element("canvas", undefined, chart.low ? "low" : "");
@@ -28,6 +28,8 @@ function build(first) {
 function joint() { return Math.max($("joint").selectedIndex, 0); }
 
 function nice(span) { const raw = span / 6, power = 10 ** Math.floor(Math.log10(raw)); return power * [1, 2, 5, 10].find(step => step * power >= raw); }
+
+function own(name) { return getComputedStyle(document.documentElement).getPropertyValue(name).trim(); }
 
 function draw(chart, breaks) {
   const j = joint(), canvas = chart.canvas;
@@ -41,25 +43,30 @@ function draw(chart, breaks) {
   if (canvas.width !== Math.round(w * ratio)) { canvas.width = Math.round(w * ratio); canvas.height = Math.round(h * ratio); }
   const c = canvas.getContext("2d"), left = 52, bottom = 18, top = 18, now = rows.length ? rows[rows.length - 1][1] : 0;
   c.setTransform(ratio, 0, 0, ratio, 0, 0); c.clearRect(0, 0, w, h);
-  c.font = "12px system-ui,sans-serif"; c.fillStyle = "#5c6870"; c.textAlign = "left"; c.textBaseline = "top";
-  const unit = chart.unit(); c.fillText(chart.name + (unit ? ` [${unit}]` : ""), left, 0);
+  c.font = "12px system-ui,sans-serif"; c.fillStyle = own("--dim"); c.textAlign = "left"; c.textBaseline = "top";
+  const unit = chart.unit(), title = chart.name + (unit ? ` [${unit}]` : ""); c.fillText(title, left, 2);
+  const shown = (chart.names || []).filter((_, i) => rows.some(r => r[3][j][chart.lines[i][0]] !== null));
+  let begin = left + c.measureText(title).width + 14;
+  if (shown.length > 1) chart.names.forEach((name, i) => { if (!shown.includes(name)) return;
+    c.fillStyle = own(chart.lines[i][1]); c.fillText(name, begin, 2); begin += c.measureText(name).width + 10; });
+  c.fillStyle = own("--dim");
   if (low > high) { c.fillText("nothing yet", left + 8, h / 2); return; }
   if (chart.zero) { const most = Math.max(Math.abs(low), Math.abs(high), chart.least / 2); low = -most; high = most; }
   const middle = (low + high) / 2, half = Math.max(high - low, chart.least) / 2 * 1.08; low = middle - half; high = middle + half;
   const x = t => left + (w - left - 6) * (1 - (now - t) / SPAN), y = v => top + (h - top - bottom) * (high - v) / (high - low);
-  c.strokeStyle = "#e1e6e9"; c.lineWidth = 1; c.textAlign = "right"; c.textBaseline = "middle";
+  c.strokeStyle = own("--soft"); c.lineWidth = 1; c.textAlign = "right"; c.textBaseline = "middle";
   const step = nice(high - low);
   for (let v = Math.ceil(low / step) * step; v <= high; v += step) { c.beginPath(); c.moveTo(left, y(v)); c.lineTo(w - 6, y(v)); c.stroke(); c.fillText(String(+v.toFixed(9)), left - 6, y(v)); }
   c.textBaseline = "bottom";
   for (let back = 0; back <= SPAN; back += 15) { const at = x(now - back); c.beginPath(); c.moveTo(at, top); c.lineTo(at, h - bottom); c.stroke();
     c.textAlign = back ? (back === SPAN ? "left" : "center") : "right"; c.fillText(back ? `-${back} s` : "now", back ? at : w - 6, h); }
   c.save(); c.beginPath(); c.rect(left, top, w - left - 6, h - top - bottom); c.clip();
-  c.fillStyle = "#e9b87255";
+  c.fillStyle = own("--doubt");
   rows.forEach((r, i) => { if (!r[2] && i) { const from = x(rows[i - 1][1]), to = x(r[1]); if (to > from && to - from < 20) c.fillRect(from, top, to - from + .5, h); } });
-  c.strokeStyle = "#c1121f"; c.lineWidth = 2;
+  c.strokeStyle = own("--red"); c.lineWidth = 2;
   for (const at of breaks) { c.beginPath(); c.moveTo(x(at), top); c.lineTo(x(at), h - bottom); c.stroke(); }
-  c.lineWidth = 1.5;
-  for (const [at, colour] of chart.lines) { c.strokeStyle = colour; c.beginPath(); let open = false, last = null;
+  c.lineJoin = "round";
+  for (const [at, colour, wide] of chart.lines) { c.strokeStyle = own(colour); c.lineWidth = wide || 1.5; c.beginPath(); let open = false, last = null;
     for (const r of rows) { const v = r[3][j][at]; if (v === null || (last !== null && Math.abs(r[1] - last) > 1)) open = false;
       last = r[1]; if (v === null) continue;
       if (open && chart.step) c.lineTo(x(r[1]), y(open)); if (open !== false) c.lineTo(x(r[1]), y(v)); else c.moveTo(x(r[1]), y(v)); open = chart.step ? v : true; }
@@ -67,6 +74,7 @@ function draw(chart, breaks) {
   c.restore();
 }
 
+const HEADS = ["effect", "what", "size alone (95 %)", "beside the first", "gain", "threshold"];
 const COUNTS = [["taken", "samples"], ["lost", "lost"], ["late", "late, put in place"], ["doubled", "doubled"], ["too_late", "too late"], ["astray", "astray in time"], ["no_time", "without time"], ["bad", "bad lines"], ["dropped", "dropped here"]];
 
 function show(status) {
@@ -80,7 +88,7 @@ function show(status) {
     const box = element("div"); box.append(element("dt", name), element("dd", link[key].toLocaleString("en"))); return box; }));
   $("innovations").replaceChildren(...status.innovations.map((each, i) => {
     const tr = element("tr", undefined, i === joint() ? "now" : ""), td = element("td", undefined, "text"), bar = element("span", undefined, "bar"), fill = element("i", undefined, each.share >= 1 ? "beyond" : "");
-    fill.style.width = `${Math.min(100 * (each.share || 0), 100)}%`; bar.append(fill); td.append(bar, ` ${Math.round(100 * (each.share || 0))} %`);
+    fill.style.width = `${Math.min(100 * (each.share || 0), 100)}%`; bar.append(fill); td.append(bar, each.share > 1 ? " over 100 %" : ` ${Math.round(100 * (each.share || 0))} %`);
     tr.dataset.joint = i; tr.append(element("td", each.joint, "text"), td, element("td", short(each.mean, 2)), element("td", short(each.rms, 2))); return tr; }));
   $("events").replaceChildren(...(status.events.length ? [...status.events].reverse().map(e => { const li = element("li", undefined, e.kind === "alarm" ? "alarm" : "");
     li.append(element("time", new Date(1000 * e.now).toLocaleTimeString("en-GB")), e.text); return li; }) : [element("li", "none so far")]));
@@ -89,7 +97,8 @@ function show(status) {
     : [w.headline, w.time ? `Last window: ${w.time}.` : "", w.busy ? "A window is being asked." : `Next window: ${w.gathered} of ${w.length} s gathered.`,
     `${w.count} asked${w.passed_over ? `, ${w.passed_over} passed over` : ""}.`].filter(Boolean).join(" ");
   $("effects").replaceChildren(...w.effects.map(e => { const tr = element("tr", undefined, e.beyond ? "beyond" : "");
-    tr.append(element("td", e.joint ? `${e.effect}, ${e.joint}` : e.effect, "text"), element("td", e.title, "text what"), element("td", e.size), element("td", e.beside), element("td", short(e.gain)), element("td", short(e.threshold))); return tr; }));
+    tr.append(element("td", e.joint ? `${e.effect}, ${e.joint}` : e.effect, "text"), element("td", e.title, "text what"), element("td", e.size), element("td", e.beside), element("td", short(e.gain)), element("td", short(e.threshold)));
+    [...tr.cells].forEach((td, i) => { td.dataset.head = HEADS[i]; }); return tr; }));
 }
 
 function redraw(status) {
@@ -117,4 +126,5 @@ setInterval(() => { if (heard && performance.now() - heard > SILENT) { $("head")
 $("joint").addEventListener("change", () => status && (show(status), redraw(status)));
 $("innovations").addEventListener("click", event => { const tr = event.target.closest("tr[data-joint]"); if (tr && status) { $("joint").selectedIndex = +tr.dataset.joint; show(status); redraw(status); } });
 window.addEventListener("resize", () => status && redraw(status));
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => status && redraw(status));
 connect();

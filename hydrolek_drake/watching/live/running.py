@@ -239,7 +239,7 @@ class _Loop:
     def _show(self, page: LivePage) -> None:
         link = self._link()
         if link.state != self._link_state and {link.state, self._link_state} & {"lost", "silent"}:
-            self._follower.note("link", f"link {link.state}: {link.text}", time.time())
+            self._follower.note("link", f"link {link.state}: {link.text}".removesuffix(": "), time.time())
         self._link_state = link.state
         self._status = self._state()
         if page.browsers:

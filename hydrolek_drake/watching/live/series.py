@@ -67,6 +67,7 @@ class WindowSeries:
             self._watched.reference,
             seen,
             self._rule,
+            self._watched.told,
             self._healthy,
             judgements,
             self._found() or self._alarm,

@@ -1,9 +1,6 @@
 """Diagnoses as they end, made without a search: the planted effects are named at their true sizes."""
 
-import contextlib
-import os
-import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -110,20 +107,3 @@ def _recorded(machine, rig, joint: str, seconds: float, seed: int):
     noisy = reading + np.radians(0.05) * random.standard_normal(time.size)
     signals = {f"{joint}.command": volts, f"{joint}.angle": noisy}
     return experiments_of(rig, Recording(f"made {seed}", time, signals, Path("made.csv")))[0]
-
-
-@pytest.fixture
-def chromium_page() -> Iterator:
-    """A page of a real browser 390 pixels wide; a test that asks for it is skipped where there is none."""
-    engine = pytest.importorskip(
-        "playwright.sync_api", reason="Playwright drives the browser: pip install playwright"
-    )
-    found = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-    if found is None:
-        pytest.skip("there is no chromium, chromium-browser or google-chrome on the search path")
-    options = ["--disable-gpu", *(["--no-sandbox"] if os.geteuid() == 0 else [])]
-    with (
-        engine.sync_playwright() as playwright,
-        contextlib.closing(playwright.chromium.launch(executable_path=found, args=options)) as browser,
-    ):
-        yield browser.new_page(viewport={"width": 390, "height": 844})
