@@ -82,6 +82,7 @@ def beginning(name: str, step: float, spool_steps: str) -> list[str]:
         f"  {entry('longest_step', 1e3 * step, 'ms', 'the longest that agrees with finer ones on this machine')}",
         f'  spool_steps: {{value: 1, unit: "1", source: "{spool_steps}"}}',
         f"  {kept('model_error')}",
+        f"  {kept('time_error')}",
         "",
         "recording:",
         "  initial_position: recording  # where a replay starts",

@@ -176,6 +176,24 @@ def test_coulomb_and_stribeck_friction_curves(record):
         )
 
 
+@pytest.mark.parametrize("exponent", [0.5, 1.0, 2.0])
+def test_further_friction_at_rest_fades_with_the_exponent_of_its_lubricant(record, exponent):
+    stage = "effects.cylinder.stribeck_friction"
+    joint = record(
+        {
+            f"{stage}.stribeck_N": 400.0,
+            f"{stage}.stribeck_velocity_m_per_s": 0.004,
+            f"{stage}.fading_exponent": exponent,
+            "cylinder.viscous_friction": 0.0,
+        }
+    )
+    for speed in (-0.05, -0.004, 0.0, 0.0007, 0.02):
+        level = 400.0 * np.exp(-((abs(speed) / 0.004) ** exponent))
+        assert_allclose(
+            cylinder.friction_force(0.1, speed, 0.0, joint)[0], level * np.tanh(speed / 0.5e-3), rtol=1e-12
+        )
+
+
 def test_friction_asymmetry_is_half_the_difference_between_the_directions(record):
     joint = record(
         {

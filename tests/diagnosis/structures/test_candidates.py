@@ -1,17 +1,19 @@
 """Which effects are candidates on which machine, and how far each is searched."""
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.effects.scales import SLOWED, Scales, hydraulic_scales
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.experiments.recorded import experiments_of
-from hydrolek_drake.identification.parameter_set import ParameterSet
+from hydrolek_drake.identification.parameter_set import ParameterSet, free_of_joints
 from hydrolek_drake.recordings import Recording
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout.one_point import stroke_and_lever
@@ -166,3 +168,33 @@ def test_a_cushion_is_searched_from_where_the_joint_came_nearest_to_its_end(benc
     assert scales.nearest < min(lengths) and max(lengths) < scales.nearest + 0.5 * scales.stroke
     lower, upper = next((f.lower, f.upper) for f in cushion.free if f.path.endswith("length_m"))
     assert lower < 0.02 * scales.stroke and upper == pytest.approx(scales.nearest + 0.5 * scales.stroke)
+
+
+def test_numbers_that_only_frictions_read_are_searched_with_these_alone() -> None:
+    """How a dry friction is smoothed and fades is no number of a machine without one."""
+    rig = load_rig("hopsan_link")
+    scales = hydraulic_scales(rig.records()[0], 1e-4, 0.2, 0.5, 40.0, 0.0, (0.2, 0.2))
+    found = {c.id: c for c in candidates_of(rig, "joint", scales)}
+    nominal = free_of_joints(rig, {"joint"})
+    assert not [free.path for free in nominal if "friction_velocity" in free.path or "fading" in free.path]
+
+    def numbers(*ids: str) -> list[str]:
+        with ThreadPoolExecutor(1) as pool:
+            bench = Workbench(rig, nominal, (), pool, 1)
+            added = bench.numbers([found[id_] for id_ in ids])[len(nominal) :]
+        return [free.path.removeprefix("joints.joint.") for free in added]
+
+    assert numbers("command.delay") == []
+    assert numbers("cylinder.coulomb_friction") == ["cylinder.friction_velocity"]
+    assert numbers("load.coulomb_friction", "load.friction_asymmetry") == ["load.friction_velocity"]
+    assert numbers("load.stribeck_friction") == [
+        "load.friction_velocity",
+        "effects.load.stribeck_friction.fading_exponent",
+    ]
+
+
+def test_a_friction_that_is_on_has_its_numbers_in_the_nominal_model() -> None:
+    rig = load_rig("hopsan_link").with_values({"effects.cylinder.coulomb_friction.coulomb_N": 100.0})
+    paths = {free.path for free in free_of_joints(rig, {"joint"})}
+    assert "joints.joint.cylinder.friction_velocity" in paths
+    assert "joints.joint.load.friction_velocity" not in paths
