@@ -186,8 +186,8 @@ def test_numbers_that_only_frictions_read_are_searched_with_these_alone() -> Non
 
     assert numbers("command.delay") == []
     assert numbers("cylinder.coulomb_friction") == ["cylinder.friction_velocity"]
-    assert numbers("load.coulomb_friction", "load.friction_asymmetry") == ["load.friction_velocity"]
-    assert numbers("load.stribeck_friction") == [
+    assert numbers("load.coulomb_friction") == ["load.friction_velocity"]
+    assert numbers("load.coulomb_friction", "load.stribeck_friction") == [
         "load.friction_velocity",
         "effects.load.stribeck_friction.fading_exponent",
     ]
