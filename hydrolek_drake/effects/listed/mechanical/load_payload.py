@@ -31,6 +31,7 @@ EFFECT = Effect(
         "rig was written count too."
     ),
     size="mass_kg",
+    reads=("load.payload_inertia",),
     search={
         "mass_kg": Search("payload", 0.5, (0.02, 0.1)),
         "time_s": Search("duration", 1, tuple(part / 16 for part in range(16)), moment=True),
