@@ -24,13 +24,13 @@ STAGE = Stage(
             neutral=0.0,
         ),
         Parameter(
-            "play_inertia", "kg m^2", "inertia on the cylinder's side of a play", neutral=0.0, lowest=0.0
+            "play_inertia", "kg m^2|kg", "inertia on the cylinder's side of a play", neutral=0.0, lowest=0.0
         ),
         Parameter(
-            "play_stiffness", "N m/rad", "contact stiffness where a play closes", neutral=0.0, lowest=0.0
+            "play_stiffness", "N m/rad|N/m", "contact stiffness where a play closes", neutral=0.0, lowest=0.0
         ),
         Parameter(
-            "play_damping", "N m s/rad", "contact damping where a play closes", neutral=0.0, lowest=0.0
+            "play_damping", "N m s/rad|N s/m", "contact damping where a play closes", neutral=0.0, lowest=0.0
         ),
         Parameter(
             "play_taken_up",

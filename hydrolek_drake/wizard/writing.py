@@ -201,6 +201,32 @@ def _end(sheet: Sheet, name: str, value: float, source: str) -> str:
     return entry(name, 1e3 * value, "mm", source, (1e3 * value - spread, 1e3 * value + spread), log=False)
 
 
+def _play(sheet: Sheet) -> list[str]:
+    """What meets where a pin is worn: the rod's side, and how hard its contact is. Counts with a play alone."""
+    depth, spread = fixed("play_depth"), fixed("stop_depth_factor")["value"]
+    lever, of = (sheet.lever, "rad") if sheet.turns else (1.0, "m")
+    force, inertia_unit = ("N m", "kg m^2") if sheet.turns else ("N", "kg")
+    rod, unsure = fixed("moving_with_rod"), fixed("moving_with_rod_factor")
+    rod_area = sheet.area_a - sheet.area_b
+    inertia = rod["value"] * fixed("steel")["value"] * rod_area * sheet["stroke"] * lever**2
+    stiffness = sheet.force * lever**2 / (depth["value"] * si_factor(depth["unit"], "m"))
+    damping = math.sqrt(stiffness * inertia)
+    moves = f"{rod['source']}; {unsure['source']}"
+    closes = f"assumed: half of critical with the rod; {fixed('stop_depth_factor')['source']}"
+    around = inertia / unsure["value"], inertia * unsure["value"]
+    return [
+        entry("play_inertia", inertia, inertia_unit, moves, around),
+        entry(
+            "play_stiffness",
+            stiffness,
+            f"{force}/{of}",
+            depth["source"],
+            (stiffness / spread, stiffness * spread),
+        ),
+        entry("play_damping", damping, f"{force} s/{of}", closes, (damping / spread, damping * spread)),
+    ]
+
+
 def _beyond(lower: float, upper: float, unit: str, of: str) -> list[str]:
     """The load's own stops: none where the cylinder has some."""
     rim = 0.05 * (upper - lower)
@@ -230,6 +256,7 @@ def _link(sheet: Sheet) -> list[str]:
         f"  {entry('angle_offset', math.degrees(sheet.offset), 'deg', f'{SHEET}: mounts at joint angle zero')}",
         f"  {entry('direction', sheet.direction, '1', f'{SHEET}: extension turns the link this way')}",
         f"  {_end(sheet, 'zero_stroke_length', sheet.zero_length, f'{SHEET}: mounts and stroke')}",
+        *(f"  {line}" for line in _play(sheet)),
         "load:",
         "  variant: link",
         f"  {asked(sheet, 'mass')}  # inertia and gravity follow from it and its place",
@@ -279,6 +306,7 @@ def _slide(sheet: Sheet) -> list[str]:
         "  variant: direct",
         '  zero_stroke_position: {value: 0, unit: m, source: "the position counts from the retracted end"}',
         '  direction: {value: 1, unit: "1", source: "extension counts as positive"}',
+        *(f"  {line}" for line in _play(sheet)),
         "load:",
         "  variant: sliding",
         f"  {asked(sheet, 'mass', 'inertia')}",

@@ -29,6 +29,7 @@ EFFECT = Effect(
         "rack or key with play."
     ),
     size="gap_rad",
+    reads=("linkage.play_inertia", "linkage.play_stiffness", "linkage.play_damping"),
     search={
         "gap_rad": Search("travel", 0.25, SCANNED),
     },
