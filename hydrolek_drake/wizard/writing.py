@@ -4,6 +4,7 @@ import math
 
 from hydrolek_drake.units import si_factor
 from hydrolek_drake.wizard.components import accumulator, holding, hose, slew_rate
+from hydrolek_drake.wizard.contacts import end_stops, play
 from hydrolek_drake.wizard.entries import SHEET, asked, beginning, entry, kept
 from hydrolek_drake.wizard.questions import fixed, questions
 from hydrolek_drake.wizard.sheet import EDGES, Sheet
@@ -151,7 +152,7 @@ def _cylinder(sheet: Sheet) -> list[str]:
         f"  {asked(sheet, 'dead_volume', 'dead_volume_a')}",
         f"  {asked(sheet, 'dead_volume', 'dead_volume_b')}",
         f"  {_end(sheet, 'stroke', sheet['stroke'], SHEET)}",
-        *(f"  {line}" for line in _stops(sheet)),
+        *(f"  {line}" for line in end_stops(sheet)),
         f"  {_column(sheet)}",
         f"  {_at_start(sheet)}",
         f"  {asked(sheet, 'seal_damping', 'viscous_friction')}",
@@ -167,26 +168,6 @@ def _at_start(sheet: Sheet) -> str:
     return entry("initial_pressure_b", 0.5 * supply / bar, "bar", "assumed: half of the supply", limits)
 
 
-def _stops(sheet: Sheet) -> list[str]:
-    """The piston's stops where the stroke ends; the largest force presses them in by a little."""
-    depth, spread = fixed("stop_depth"), fixed("stop_depth_factor")["value"]
-    stiffness = sheet.force / (depth["value"] * si_factor(depth["unit"], "m"))
-    lever = sheet.lever if sheet.turns else 1.0
-    moving = sheet["mass"] * (sheet["length"] / lever) ** 2 / 3.0 if sheet.turns else sheet["mass"]
-    damping = math.sqrt(stiffness * moving)
-    return [
-        entry("stop_stiffness", stiffness, "N/m", depth["source"], (stiffness / spread, stiffness * spread)),
-        entry(
-            "stop_damping",
-            damping,
-            "N s/m",
-            f"assumed: half of critical with the mass; {fixed('stop_depth_factor')['source']}",
-            (damping / spread**2, damping * spread),
-        ),
-        *(kept(name) for name in ("stop_exponent", "stop_dissipation")),
-    ]
-
-
 def _column(sheet: Sheet) -> str:
     """Compliance that an oil column has at least, as a share of that of side A in mid-stroke."""
     share, spread = fixed("column_share"), fixed("stop_depth_factor")["value"]
@@ -199,32 +180,6 @@ def _end(sheet: Sheet, name: str, value: float, source: str) -> str:
     """Where the stroke ends or begins [mm], to within what rods are screwed and built to."""
     spread = 1e3 * fixed("stop_place")["value"] / 100.0 * sheet["stroke"]
     return entry(name, 1e3 * value, "mm", source, (1e3 * value - spread, 1e3 * value + spread), log=False)
-
-
-def _play(sheet: Sheet) -> list[str]:
-    """What meets where a pin is worn: the rod's side, and how hard its contact is. Counts with a play alone."""
-    depth, spread = fixed("play_depth"), fixed("stop_depth_factor")["value"]
-    lever, of = (sheet.lever, "rad") if sheet.turns else (1.0, "m")
-    force, inertia_unit = ("N m", "kg m^2") if sheet.turns else ("N", "kg")
-    rod, unsure = fixed("moving_with_rod"), fixed("moving_with_rod_factor")
-    rod_area = sheet.area_a - sheet.area_b
-    inertia = rod["value"] * fixed("steel")["value"] * rod_area * sheet["stroke"] * lever**2
-    stiffness = sheet.force * lever**2 / (depth["value"] * si_factor(depth["unit"], "m"))
-    damping = math.sqrt(stiffness * inertia)
-    moves = f"{rod['source']}; {unsure['source']}"
-    closes = f"assumed: half of critical with the rod; {fixed('stop_depth_factor')['source']}"
-    around = inertia / unsure["value"], inertia * unsure["value"]
-    return [
-        entry("play_inertia", inertia, inertia_unit, moves, around),
-        entry(
-            "play_stiffness",
-            stiffness,
-            f"{force}/{of}",
-            depth["source"],
-            (stiffness / spread, stiffness * spread),
-        ),
-        entry("play_damping", damping, f"{force} s/{of}", closes, (damping / spread, damping * spread)),
-    ]
 
 
 def _beyond(lower: float, upper: float, unit: str, of: str) -> list[str]:
@@ -256,7 +211,7 @@ def _link(sheet: Sheet) -> list[str]:
         f"  {entry('angle_offset', math.degrees(sheet.offset), 'deg', f'{SHEET}: mounts at joint angle zero')}",
         f"  {entry('direction', sheet.direction, '1', f'{SHEET}: extension turns the link this way')}",
         f"  {_end(sheet, 'zero_stroke_length', sheet.zero_length, f'{SHEET}: mounts and stroke')}",
-        *(f"  {line}" for line in _play(sheet)),
+        *(f"  {line}" for line in play(sheet)),
         "load:",
         "  variant: link",
         f"  {asked(sheet, 'mass')}  # inertia and gravity follow from it and its place",
@@ -306,7 +261,7 @@ def _slide(sheet: Sheet) -> list[str]:
         "  variant: direct",
         '  zero_stroke_position: {value: 0, unit: m, source: "the position counts from the retracted end"}',
         '  direction: {value: 1, unit: "1", source: "extension counts as positive"}',
-        *(f"  {line}" for line in _play(sheet)),
+        *(f"  {line}" for line in play(sheet)),
         "load:",
         "  variant: sliding",
         f"  {asked(sheet, 'mass', 'inertia')}",
