@@ -9,10 +9,13 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.cli.app import run
+from hydrolek_drake.diagnosis.structures.candidates import candidates_of
+from hydrolek_drake.effects.scales import hydraulic_scales
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import built_in_rigs, load_rig
 from hydrolek_drake.rigs.reading.json_schema import rig_schema
 from hydrolek_drake.rigs.reading.tree import rig_from_tree
+from hydrolek_drake.rollout.one_point import stroke_and_lever
 from hydrolek_drake.wizard import questions, read_answers
 from hydrolek_drake.wizard.making import text_of, written_rig
 from hydrolek_drake.wizard.sheet import Sheet
@@ -52,6 +55,31 @@ def test_the_numbers_of_a_link_follow_from_its_sheet(link):
     length = np.sqrt(a * a + b * b - 2 * a * b * np.cos(included))
     assert np.isclose(length - link.value("linkage.zero_stroke_length"), 0.1, atol=1e-4)
     assert link.value("load.lower_stop") < 0.1 < link.value("load.upper_stop")
+
+
+@pytest.mark.parametrize(("sheet", "lever"), [(LINK, None), (SLIDE, 1.0)])
+def test_a_worn_pin_is_looked_for_on_every_machine(sheet, lever):
+    """Behind the play are a steel rod and as much again; the largest force presses the pin's sides in by 0.1 mm."""
+    _, rig = written_rig("machine", sheet)
+    if lever is None:
+        lever = stroke_and_lever(rig.value("load.initial_position"), rig.records()[0])[1]
+    area = rig.value("cylinder.area_a")
+    rod = 2.0 * 7850.0 * (area - rig.value("cylinder.area_b")) * rig.value("cylinder.stroke")
+    assert rig.value("linkage.play_inertia") == pytest.approx(rod * lever**2, rel=1e-3)
+    force = area * rig.value("supply.pressure")
+    assert rig.value("linkage.play_stiffness") == pytest.approx(force * lever**2 / 1e-4, rel=0.03)
+    scales = hydraulic_scales(rig.records()[0], 1e-4, 0.2, 0.5, 40.0, 0.0, (0.2, 0.2))
+    [play] = [c for c in candidates_of(rig, "joint", scales) if c.id == "linkage.backlash"]
+    assert [free.path.rpartition(".")[2] for free in play.numbers] == [
+        "play_inertia", "play_stiffness", "play_damping",
+    ]  # fmt: skip
+
+
+def test_how_far_from_the_axis_a_payload_hangs_is_open_where_its_weight_shows(link):
+    lowest, highest = link.entries["joints.joint.load.payload_inertia"].range
+    assert lowest < 0.5**2 < highest
+    _, upright = written_rig("upright", LINK | {"upright": "yes"})
+    assert upright.entries["joints.joint.load.payload_inertia"].range is None
 
 
 def test_what_nobody_said_is_assumed_and_wide(link):
