@@ -30,25 +30,27 @@ def end_stops(sheet: Sheet) -> list[str]:
 
 def play(sheet: Sheet) -> list[str]:
     """What meets where a pin is worn: the rod's side, and how hard its contact is. Counts with a play alone."""
-    depth, spread = fixed("play_depth"), fixed("stop_depth_factor")["value"]
     lever, of = (sheet.lever, "rad") if sheet.turns else (1.0, "m")
     force, inertia_unit = ("N m", "kg m^2") if sheet.turns else ("N", "kg")
-    rod, unsure = fixed("moving_with_rod"), fixed("moving_with_rod_factor")
+    rod, less, more = fixed("moving_with_rod"), fixed("moving_with_rod_less"), fixed("moving_with_rod_more")
+    contact, softer, harder = fixed("play_contact"), fixed("play_softer"), fixed("play_harder")
     rod_area = sheet.area_a - sheet.area_b
     inertia = rod["value"] * fixed("steel")["value"] * rod_area * sheet["stroke"] * lever**2
-    stiffness = sheet.force * lever**2 / (depth["value"] * si_factor(depth["unit"], "m"))
+    stiffness = inertia * (2.0 * math.pi * contact["value"]) ** 2
     damping = math.sqrt(stiffness * inertia)
-    moves = f"{rod['source']}; {unsure['source']}"
-    closes = f"assumed: half of critical with the rod; {fixed('stop_depth_factor')['source']}"
-    around = inertia / unsure["value"], inertia * unsure["value"]
+    lightest, heaviest = inertia / less["value"], inertia * more["value"]
+    softest, hardest = stiffness / softer["value"], stiffness * harder["value"]
+    spread = more["value"]
     return [
-        entry("play_inertia", inertia, inertia_unit, moves, around),
         entry(
-            "play_stiffness",
-            stiffness,
-            f"{force}/{of}",
-            depth["source"],
-            (stiffness / spread, stiffness * spread),
+            "play_inertia", inertia, inertia_unit, f"{rod['source']}; {more['source']}", (lightest, heaviest)
         ),
-        entry("play_damping", damping, f"{force} s/{of}", closes, (damping / spread, damping * spread)),
+        entry("play_stiffness", stiffness, f"{force}/{of}", contact["source"], (softest, hardest)),
+        entry(
+            "play_damping",
+            damping,
+            f"{force} s/{of}",
+            f"assumed: half of critical with the rod; {more['source']}",
+            (damping / spread, damping * spread),
+        ),
     ]
