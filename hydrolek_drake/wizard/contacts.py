@@ -30,27 +30,26 @@ def end_stops(sheet: Sheet) -> list[str]:
 
 def play(sheet: Sheet) -> list[str]:
     """What meets where a pin is worn: the rod's side, and how hard its contact is. Counts with a play alone."""
-    lever, of = (sheet.lever, "rad") if sheet.turns else (1.0, "m")
-    force, inertia_unit = ("N m", "kg m^2") if sheet.turns else ("N", "kg")
-    rod, less, more = fixed("moving_with_rod"), fixed("moving_with_rod_less"), fixed("moving_with_rod_more")
-    contact, softer, harder = fixed("play_contact"), fixed("play_softer"), fixed("play_harder")
-    rod_area = sheet.area_a - sheet.area_b
-    inertia = rod["value"] * fixed("steel")["value"] * rod_area * sheet["stroke"] * lever**2
+    force, of, inertia_unit = ("N m", "rad", "kg m^2") if sheet.turns else ("N", "m", "kg")
+    moving = sheet["mass"] * sheet["length"] ** 2 / 3.0 if sheet.turns else sheet["mass"]
+    behind, contact = fixed("behind_play"), fixed("play_contact")
+    spread, harder = fixed("behind_play_factor"), fixed("stop_depth_factor")
+    inertia = behind["value"] * moving
     stiffness = inertia * (2.0 * math.pi * contact["value"]) ** 2
     damping = math.sqrt(stiffness * inertia)
-    lightest, heaviest = inertia / less["value"], inertia * more["value"]
-    softest, hardest = stiffness / softer["value"], stiffness * harder["value"]
-    spread = more["value"]
+    closed = f"assumed: half of critical with the rod's side; {harder['source']}"
+
+    def around(value: float, factor: float) -> tuple[float, float]:
+        return value / factor, value * factor
+
     return [
+        entry("play_inertia", inertia, inertia_unit, behind["source"], around(inertia, spread["value"])),
         entry(
-            "play_inertia", inertia, inertia_unit, f"{rod['source']}; {more['source']}", (lightest, heaviest)
+            "play_stiffness",
+            stiffness,
+            f"{force}/{of}",
+            contact["source"],
+            around(stiffness, harder["value"]),
         ),
-        entry("play_stiffness", stiffness, f"{force}/{of}", contact["source"], (softest, hardest)),
-        entry(
-            "play_damping",
-            damping,
-            f"{force} s/{of}",
-            f"assumed: half of critical with the rod; {more['source']}",
-            (damping / spread, damping * spread),
-        ),
+        entry("play_damping", damping, f"{force} s/{of}", closed, around(damping, spread["value"])),
     ]
