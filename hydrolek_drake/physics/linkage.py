@@ -143,12 +143,12 @@ def mean_play_torque(
 ) -> float:
     """Mean of `play_torque` over the `h` seconds to come [N m].
 
-    The sides meet and part at any moment of a step, and the moment jumps there by the damping. On the straight way from
-    the lead at its beginning to that at its end the moment has a mean in closed form (the discrete gradient of
-    Gonzalez, Journal of Nonlinear Science 6, 1996): the share of the way in contact counts, so that the mean, and what
-    a rollout makes of it, has a slope in all that says when the sides meet. The way is foretold with that mean itself and with
-    all else as it acts at the beginning (in contact the implicit midpoint rule, which is stable for a contact of any
-    hardness): pace = v + h/2 (parting - yields mean).
+    The sides meet and part at any moment of a step, and the moment jumps there by the damping. On the straight way
+    from the lead at its beginning to that at its end the moment has a mean in closed form (the discrete gradient of
+    Gonzalez, Journal of Nonlinear Science 6, 1996): the share of the way in contact counts, so that the mean, and
+    what a rollout makes of it, has a slope in all that says when the sides meet. The way is foretold with that mean
+    itself and with all else as it acts at the beginning (in contact the implicit midpoint rule, which is stable for
+    a contact of any hardness): pace = v + h/2 (parting - yields mean).
 
     Args:
         lead: of the cylinder's side [rad].

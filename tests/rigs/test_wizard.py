@@ -58,11 +58,11 @@ def test_the_numbers_of_a_link_follow_from_its_sheet(link):
 
 @pytest.mark.parametrize(("sheet", "moving"), [(LINK, 20.0 * 0.5**2 / 3.0), (SLIDE, 8.0)])
 def test_a_worn_pin_is_looked_for_on_every_machine(sheet, moving):
-    """Behind the play is a tenth of what moves, which swings at 400 Hz in a closed contact."""
+    """Behind the play is a tenth of what moves, which swings at 100 Hz in a closed contact."""
     _, rig = written_rig("machine", sheet)
     assert rig.value("linkage.play_inertia") == pytest.approx(0.1 * moving, rel=1e-3)
     swings = np.sqrt(rig.value("linkage.play_stiffness") / rig.value("linkage.play_inertia"))
-    assert swings == pytest.approx(2.0 * np.pi * 400.0, rel=1e-3)
+    assert swings == pytest.approx(2.0 * np.pi * 100.0, rel=1e-3)
     scales = hydraulic_scales(rig.records()[0], 1e-4, 0.2, 0.5, 40.0, 0.0, (0.2, 0.2))
     [play] = [c for c in candidates_of(rig, "joint", scales) if c.id == "linkage.backlash"]
     assert [free.path.rpartition(".")[2] for free in play.numbers] == [

@@ -165,12 +165,10 @@ class Workbench:
 
         Args:
             effects: of the structure.
-            coarse: so many times as long; where the sides of a play meet, the rig's own step at most: what is behind
-                a play is light and swings fast against the oil.
+            coarse: so many times as long.
         """
         share = 1.0 if self.together else min((c.step_share for c in effects), default=1.0)
-        longest = 1.0 if any(c.sudden for c in effects) and not self.together else math.inf
-        return min(share * coarse, longest) * self.fine
+        return share * coarse * self.fine
 
     @property
     def together(self) -> bool:
