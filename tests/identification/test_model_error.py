@@ -19,7 +19,7 @@ NOISE_RAD = 8e-4
 
 
 def _experiment(share: str):
-    rig = load_rig("hopsan_link", {"integration.model_error": share})
+    rig = load_rig("hopsan_link", {"integration.model_error": share, "integration.time_error": "0 ms"})
     time = np.arange(0.0, 4.0, 0.01)
     volts = 4.0 * np.sin(3.0 * time)
     done = roll_out(rig.records(), time, volts, time, longest_step=5e-4).signals
