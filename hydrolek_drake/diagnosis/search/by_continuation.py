@@ -88,7 +88,8 @@ def continued_to_the_end(
     A race lets its fits take some steps of an observer only, since there are many of them. Where a joint sticks and
     slips, that is too few: the fit leaves the flat part of the valley too soon and ends in a local minimum of the next
     observer. A free rollout leaves no less than an observer, which is led by what was measured: a structure whose
-    observer leaves nearly as much as the best fit so far goes no further.
+    observer leaves nearly as much as the best fit so far goes no further. The slowest observer leaves nearly what a
+    free rollout does: after it all go on that could still bring what one addition must.
 
     Args:
         bench: data and problems.
@@ -111,10 +112,12 @@ def continued_to_the_end(
     ]
     rungs = steps_for(settings.long, left < NOISE.far)
     runners = entered(bench, entrants, rungs[0], cores) if entrants else []
-    for rung in rungs:
+    brings = math.sqrt(max(left**2 - gain_needed(best.fit) / max(best.fit.counted, 1), 0.0))
+    for number, rung in enumerate(rungs):
         if runners:
             ended = run(bench, runners, (rung,), cores, traced("to the end"))
-            runners = [each for each in ended if over_noise_of(each) < settings.nearer * left]
+            reach = settings.nearer * left if number < len(rungs) - 2 else brings
+            runners = [each for each in ended if over_noise_of(each) < reach]
     return hypotheses_of(bench, runners, rungs[-1])
 
 
