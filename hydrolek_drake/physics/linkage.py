@@ -138,6 +138,47 @@ def _pressed(lead: float, half: float) -> float:
 
 
 @njit
+def _pace(lead: float, before: float, free: float, halved: float, h: float, half: float, joint: Any) -> float:
+    """Mean rate of the lead over a step [rad/s]: pace = v + h/2 (parting - yields mean), with the mean on that way.
+
+    The mean does the work of the contact on the way, h pace mean = (after - before)(k/2 (before + after) + d pace).
+    Within one side's contact that is linear in the pace (the implicit midpoint rule), where sides meet or part
+    a quadratic, of which one root ends where the way was taken to end.
+
+    Args:
+        lead: towards the side that is in contact, or is being approached [rad].
+        before: by how much that is pressed together [rad].
+        free: pace without contact [rad/s].
+        halved: half of `yields`, see `mean_play_torque`.
+        h: step [s].
+        half: of the play [rad].
+        joint: parameter record.
+    """
+    p = joint.linkage
+    stiff, damped = halved * p.play_stiffness, halved * p.play_damping
+    squared = 1.0 + h * (
+        0.5 * h * stiff + damped
+    )  # coefficient of the pace's square where the way ends in contact
+    if before == 0.0:
+        if lead + h * free <= half:
+            return free
+        short = lead - half  # the sides meet
+        linear, constant = h * stiff * short + damped * short - free, 0.5 * stiff * short * short
+        return (math.sqrt(max(linear * linear - 4.0 * squared * constant, 0.0)) - linear) / (2.0 * squared)
+    pace = (free - h * stiff * before) / squared
+    if lead + h * pace >= half:
+        return pace
+    linear = -free - damped * before  # they part
+    pace = -0.5 * (linear + math.sqrt(linear * linear + 2.0 * stiff * before * before))
+    if lead + h * pace >= -half:
+        return pace
+    across = lead + half  # and meet on the other side
+    linear = h * stiff * across + damped * (across - before) - free
+    constant = 0.5 * stiff * (across * across - before * before)
+    return -(linear + math.sqrt(max(linear * linear - 4.0 * squared * constant, 0.0))) / (2.0 * squared)
+
+
+@njit
 def mean_play_torque(
     lead: float, lead_velocity: float, parting: float, yields: float, h: float, joint: Any
 ) -> float:
@@ -147,8 +188,7 @@ def mean_play_torque(
     from the lead at its beginning to that at its end the moment has a mean in closed form (the discrete gradient of
     Gonzalez, Journal of Nonlinear Science 6, 1996): the share of the way in contact counts, so that the mean, and
     what a rollout makes of it, has a slope in all that says when the sides meet. The way is foretold with that mean
-    itself and with all else as it acts at the beginning (in contact the implicit midpoint rule, which is stable for
-    a contact of any hardness): pace = v + h/2 (parting - yields mean).
+    itself, see `_pace`, so that a contact of any hardness gains no energy.
 
     Args:
         lead: of the cylinder's side [rad].
@@ -163,19 +203,11 @@ def mean_play_torque(
     p = joint.linkage
     before = _pressed(lead, half)
     free = lead_velocity + 0.5 * h * parting
-    if before == 0.0:  # of a way without contact so much would lie in it
-        beyond = _pressed(lead + h * free, half)
-        closed = beyond / (h * free) if beyond != 0.0 else 0.0
-    else:
-        closed = 1.0
-    yielding = 0.5 * h * yields * closed
-    pace = (free - yielding * p.play_stiffness * before) / (
-        1.0 + yielding * (0.5 * h * closed * p.play_stiffness + p.play_damping)
-    )
-    ahead = lead + h * pace
-    after = _pressed(ahead, half)
-    way = ahead - lead
+    side = math.copysign(1.0, before if before != 0.0 else free)
+    pace = side * _pace(side * lead, side * before, side * free, 0.5 * yields, h, half, joint)
+    way = h * pace
     if way == 0.0:
         return play_torque(lead, lead_velocity, joint)
+    after = _pressed(lead + way, half)
     share = min(max((after - before) / way, 0.0), 1.0)
     return share * (0.5 * p.play_stiffness * (before + after) + p.play_damping * pace)

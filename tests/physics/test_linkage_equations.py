@@ -84,3 +84,34 @@ def test_the_mean_of_a_play_has_no_leap_where_the_sides_meet_a_step_sooner(bench
     )  # the end of the step passes the edge of the gap
     means = [mean_play_torque(lead, 0.3, 0.0, 0.0, step, joint) for lead in leads]
     assert np.abs(np.diff(means)).max() < 0.02 * play_torque(0.0075 + 1e-9, 0.3, joint)
+
+
+@pytest.mark.parametrize("hardness", [1.0, 1e4])
+def test_in_contact_a_play_takes_the_implicit_midpoint_rule(bench_joint, hardness):
+    """The mean is the contact's moment in the middle of a way that this mean itself decelerates."""
+    gap, step, yields, parting = 0.015, 1e-3, 0.6, 40.0
+    joint = bench_joint({"effects.linkage.backlash.gap_rad": gap, "linkage.play_stiffness": hardness * 2e5})
+    stiffness, damping = joint["linkage"]["play_stiffness"], joint["linkage"]["play_damping"]
+    lead, velocity = 0.5 * gap + 1.2 * parting / (yields * stiffness), 0.0
+    mean = mean_play_torque(lead, velocity, parting, yields, step, joint)
+    pace = velocity + 0.5 * step * (parting - yields * mean)
+    assert lead + step * pace > 0.5 * gap  # still pressed together
+    middle = lead - 0.5 * gap + 0.5 * step * pace
+    # hard sides are pressed together by nanometres beside a play of millimetres, of which six digits are left
+    assert mean == pytest.approx(stiffness * middle + damping * pace, rel=1e-6)
+
+
+@pytest.mark.parametrize("turns", [0.1, 1.0, 10.0, 100.0])
+def test_a_play_gains_no_energy_however_hard_it_closes(bench_joint, turns):
+    """Two bodies that meet at 0.3 rad/s, a contact that swings by so many radians in a step, no damping."""
+    gap, step, yields = 0.015, 1e-3, 0.6
+    stiffness = (turns / step) ** 2 / yields
+    joint = bench_joint({
+        "effects.linkage.backlash.gap_rad": gap, "linkage.play_stiffness": stiffness, "linkage.play_damping": 0.0,
+    })  # fmt: skip
+    lead, velocity, fastest = 0.0, 0.3, 0.0
+    for _ in range(2000):
+        ahead = velocity - step * yields * mean_play_torque(lead, velocity, 0.0, yields, step, joint)
+        lead, velocity = lead + 0.5 * step * (velocity + ahead), ahead
+        fastest = max(fastest, abs(velocity))
+    assert fastest <= 0.3 * 1.01

@@ -7,10 +7,9 @@ from pathlib import Path
 import jsonschema
 import numpy as np
 import pytest
+from sheets import LINK, SLIDE
 
 from hydrolek_drake.cli.app import run
-from hydrolek_drake.diagnosis.structures.candidates import candidates_of
-from hydrolek_drake.effects.scales import hydraulic_scales
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import built_in_rigs, load_rig
 from hydrolek_drake.rigs.reading.json_schema import rig_schema
@@ -19,17 +18,6 @@ from hydrolek_drake.wizard import questions, read_answers
 from hydrolek_drake.wizard.making import text_of, written_rig
 from hydrolek_drake.wizard.sheet import Sheet
 from hydrolek_drake.yaml_files import parse_yaml, read_yaml
-
-LINK = {
-    "moves": "link", "bore": "40 mm", "rod": "22 mm", "stroke": "0.2 m", "base_mount": "0.10, -0.30 m",
-    "link_mount": "0.25, 0 m", "mid_stroke_at": "0.1 rad", "mass": "20 kg", "length": "0.5 m", "spool_diameter": "6",
-    "port_shares": "1 1 0.8 0.8", "supply": "pump", "supply_pressure": "120 bar", "displacement": "30 cm^3/rev",
-}  # fmt: skip
-SLIDE = {
-    "moves": "slide", "bore": "25", "rod": "16", "stroke": "300", "mass": "8", "rated_flow": "24 l/min",
-    "rated_drop": "5 bar", "supply": "constant", "supply_pressure": "6 MPa",
-}  # fmt: skip
-
 
 SCREW = {
     "moves": "screw", "travel": "160 mm", "lead": "5 mm", "torque_constant": "1.5 N m/A", "peak_current": "5 A",
@@ -54,27 +42,6 @@ def test_the_numbers_of_a_link_follow_from_its_sheet(link):
     length = np.sqrt(a * a + b * b - 2 * a * b * np.cos(included))
     assert np.isclose(length - link.value("linkage.zero_stroke_length"), 0.1, atol=1e-4)
     assert link.value("load.lower_stop") < 0.1 < link.value("load.upper_stop")
-
-
-@pytest.mark.parametrize(("sheet", "moving"), [(LINK, 20.0 * 0.5**2 / 3.0), (SLIDE, 8.0)])
-def test_a_worn_pin_is_looked_for_on_every_machine(sheet, moving):
-    """Behind the play is a tenth of what moves, which swings at 100 Hz in a closed contact."""
-    _, rig = written_rig("machine", sheet)
-    assert rig.value("linkage.play_inertia") == pytest.approx(0.1 * moving, rel=1e-3)
-    swings = np.sqrt(rig.value("linkage.play_stiffness") / rig.value("linkage.play_inertia"))
-    assert swings == pytest.approx(2.0 * np.pi * 100.0, rel=1e-3)
-    scales = hydraulic_scales(rig.records()[0], 1e-4, 0.2, 0.5, 40.0, 0.0, (0.2, 0.2))
-    [play] = [c for c in candidates_of(rig, "joint", scales) if c.id == "linkage.backlash"]
-    assert [free.path.rpartition(".")[2] for free in play.numbers] == [
-        "play_inertia", "play_stiffness", "play_damping",
-    ]  # fmt: skip
-
-
-def test_how_far_from_the_axis_a_payload_hangs_is_open_where_its_weight_shows(link):
-    lowest, highest = link.entries["joints.joint.load.payload_inertia"].range
-    assert lowest < 0.5**2 < highest
-    _, upright = written_rig("upright", LINK | {"upright": "yes"})
-    assert upright.entries["joints.joint.load.payload_inertia"].range is None
 
 
 def test_what_nobody_said_is_assumed_and_wide(link):

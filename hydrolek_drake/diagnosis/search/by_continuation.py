@@ -12,7 +12,7 @@ from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
 from hydrolek_drake.diagnosis.search.openings import Opening, observed, surely_above
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import NOISE, Rung, Settings
+from hydrolek_drake.diagnosis.settings import FITS, NOISE, Rung, Settings
 from hydrolek_drake.diagnosis.structures.addition import names_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
@@ -113,10 +113,10 @@ def continued_to_the_end(
     rungs = steps_for(settings.long, left < NOISE.far)
     runners = entered(bench, entrants, rungs[0], cores) if entrants else []
     brings = math.sqrt(max(left**2 - gain_needed(best.fit) / max(best.fit.counted, 1), 0.0))
-    for number, rung in enumerate(rungs):
+    for rung in rungs:
         if runners:
             ended = run(bench, runners, (rung,), cores, traced("to the end"))
-            reach = settings.nearer * left if number < len(rungs) - 2 else brings
+            reach = brings if rung.observer_s >= FITS.observers_s[-1] else settings.nearer * left
             runners = [each for each in ended if over_noise_of(each) < reach]
     return hypotheses_of(bench, runners, rungs[-1])
 

@@ -6,7 +6,8 @@ experiments are lists of their own (`laws.terms`, `laws.inputs`, `evidence.propo
 """
 
 from hydrolek_drake.diagnosis.settings.evidence import DATA, EVIDENCE, EXPERIMENTS, GAINS, NOISE
-from hydrolek_drake.diagnosis.settings.search import DROPOUTS, FITS, LOCATING, Rung, Settings
+from hydrolek_drake.diagnosis.settings.search import FITS, Rung, Settings
+from hydrolek_drake.diagnosis.settings.unlisted import DROPOUTS, LOCATING
 
 __all__ = [
     "DATA",

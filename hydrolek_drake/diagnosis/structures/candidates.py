@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
@@ -10,7 +10,7 @@ from hydrolek_drake.diagnosis.settings import FITS
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.effects import EFFECTS, Effect
 from hydrolek_drake.effects.scales import Scales
-from hydrolek_drake.identification.parameter_set import Free
+from hydrolek_drake.identification.parameter_set import Free, free_parameters
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.machine.rig import declaration
 
@@ -209,18 +209,16 @@ def _candidate(effect: Effect, rig: Rig, joint: str, scales: Scales) -> Candidat
         tuple(free),
         tuple(dict(c) for c in itertools.product(*starts)),
         utmost,
-        tuple(_numbers(effect, rig, joint)),
+        _numbers(effect, rig, joint),
         getattr(scales, effect.beneath) if effect.beneath else 0.0,
     )
 
 
-def _numbers(effect: Effect, rig: Rig, joint: str) -> Iterator[Free]:
-    """Numbers that it reads and that the rig gives a range."""
-    for name in effect.reads:
-        path = f"joints.{joint}.{name}"
-        entry = rig.entries.get(path)
-        if entry is not None and entry.range is not None:
-            yield Free(path, *entry.range, log=entry.scale == "log")
+def _numbers(effect: Effect, rig: Rig, joint: str) -> tuple[Free, ...]:
+    """Numbers that it reads and that the rig lets vary."""
+    ranged = rig.free_parameters()
+    paths = [f"joints.{joint}.{name}" for name in effect.reads]
+    return free_parameters(rig, [path for path in paths if path in ranged])
 
 
 Exchange = tuple[Addition, Candidate, tuple[Addition, ...]]

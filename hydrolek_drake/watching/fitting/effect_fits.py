@@ -110,7 +110,7 @@ def in_reach(
 ) -> list[str]:
     """Effects whose fits may still become the best one, the best first; others imitate that one at most.
 
-    Nothing is below the noise: where the best leaves no more, what is far above it need not be led on.
+    Nothing is below the noise: where the best leaves no more, what is far above it need not be fitted further.
 
     Args:
         session: rig and reference.

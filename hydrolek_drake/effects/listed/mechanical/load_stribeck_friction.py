@@ -24,7 +24,7 @@ EFFECT = Effect(
             lowest=0.0,
             positive=True,
         ),
-        Parameter("fading_exponent", "1", "exponent of its fading", neutral=2.0, lowest=0.5, positive=True),
+        Parameter("fading_exponent", "1", "exponent of its fading", neutral=2.0, lowest=0.5),
     ),
     formula=Formula(
         r"F = \left( F_C + F_S e^{-|v/v_S|^n} \right) \tanh \left( \frac{v}{v_0} \right)",

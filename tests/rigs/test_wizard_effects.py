@@ -1,0 +1,31 @@
+"""What the wizard states of effects that a machine may have: numbers that count with these alone."""
+
+import numpy as np
+import pytest
+from sheets import LINK, SLIDE
+
+from hydrolek_drake.diagnosis.structures.candidates import candidates_of
+from hydrolek_drake.effects.scales import hydraulic_scales
+from hydrolek_drake.wizard.making import written_rig
+
+
+@pytest.mark.parametrize(("sheet", "moving"), [(LINK, 20.0 * 0.5**2 / 3.0), (SLIDE, 8.0)])
+def test_a_worn_pin_is_looked_for_on_every_machine(sheet, moving):
+    """Behind the play is a tenth of what moves, which swings at 100 Hz in a closed contact."""
+    _, rig = written_rig("machine", sheet)
+    assert rig.value("linkage.play_inertia") == pytest.approx(0.1 * moving, rel=1e-3)
+    swings = np.sqrt(rig.value("linkage.play_stiffness") / rig.value("linkage.play_inertia"))
+    assert swings == pytest.approx(2.0 * np.pi * 100.0, rel=1e-3)
+    scales = hydraulic_scales(rig.records()[0], 1e-4, 0.2, 0.5, 40.0, 0.0, (0.2, 0.2))
+    [play] = [c for c in candidates_of(rig, "joint", scales) if c.id == "linkage.backlash"]
+    assert [free.path.rpartition(".")[2] for free in play.numbers] == [
+        "play_inertia", "play_stiffness", "play_damping",
+    ]  # fmt: skip
+
+
+def test_how_far_from_the_axis_a_payload_hangs_is_open_where_its_weight_shows():
+    _, link = written_rig("link", LINK)
+    lowest, highest = link.entries["joints.joint.load.payload_inertia"].range
+    assert lowest < 0.5**2 < highest
+    _, upright = written_rig("upright", LINK | {"upright": "yes"})
+    assert upright.entries["joints.joint.load.payload_inertia"].range is None
