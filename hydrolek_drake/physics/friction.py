@@ -6,6 +6,9 @@ from hydrolek_drake.physics.smooth import exponential, hyperbolic_tangent, logar
 AT_REST = 1e-24
 """Squared ratio of speeds below which none has faded, whatever the exponent; a logarithm must not be of zero."""
 
+GAUSSIAN = 2.0
+"""Exponent of a fading whose square needs no logarithm."""
+
 FURTHER = 1.001
 """The slope is told over a thousandth of the velocity, over which a friction's curve is straight."""
 
@@ -45,7 +48,9 @@ def stribeck(
     if coulomb == 0.0 and at_rest == 0.0:
         return 0.0, 0.0
     ratio = velocity / fading
-    faded = exponential(0.5 * exponent * logarithm(max(ratio * ratio, AT_REST)))
+    faded = ratio * ratio
+    if exponent != GAUSSIAN:  # a power costs a third of a rollout
+        faded = exponential(0.5 * exponent * logarithm(max(faded, AT_REST)))
     return coulomb_friction(velocity, coulomb + at_rest * exponential(-faded), smooth)
 
 
