@@ -59,15 +59,16 @@ def as_json(diagnosis: Diagnosis) -> dict[str, Any]:
 
 
 def effects_json(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """What was added to the model, the most probable first."""
+    """What was added to the model, the most probable first; of its numbers those that were fitted."""
     if diagnosis.conclusion is None:
         return []
     told: list[dict[str, Any]] = []
     for candidate in diagnosis.best.hypothesis.listed:
         parameters = {}
         for parameter in candidate.effect.parameters:
-            known = diagnosis.intervals[path_of(candidate, parameter)]
-            parameters[parameter.name] = {"value": known.value, "low": known.low, "high": known.high}
+            known = diagnosis.intervals.get(path_of(candidate, parameter))
+            if known is not None:
+                parameters[parameter.name] = {"value": known.value, "low": known.low, "high": known.high}
         told.append(
             {
                 "id": candidate.id,

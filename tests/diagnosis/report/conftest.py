@@ -81,7 +81,7 @@ def named() -> Callable[..., Diagnosis]:
             held_out=held_out,
             locations=places,
             intervals={
-                path: Interval(value, value * (1.0 - DEVIATION), value * (1.0 + DEVIATION))
+                path: Interval(value, value - DEVIATION * abs(value), value + DEVIATION * abs(value))
                 for path, value in best.hypothesis.values.items()
             },
             law=None,
@@ -101,9 +101,10 @@ def _recorded(machine, rig, joint: str, seconds: float, seed: int):
     volts = np.repeat(random.uniform(-limit, limit, round(2 * seconds) + 1), 50)[: time.size]
     volts[:50] = 0.0
     start = machine.value(f"joints.{joint}.load.initial_position")
-    signals = {f"{joint}.command": volts, f"{joint}.angle": start + random.normal(0.0, 0.1, time.size)}
+    where = f"{joint}.{'position' if rig.variant(joint, 'load') == 'sliding' else 'angle'}"
+    signals = {f"{joint}.command": volts, where: start + random.normal(0.0, 0.1, time.size)}
     blank = Recording("made", time, signals, Path("made.csv"))
     reading = experiments_of(machine, blank)[0].simulate(machine.records()).signals.reading
     noisy = reading + np.radians(0.05) * random.standard_normal(time.size)
-    signals = {f"{joint}.command": volts, f"{joint}.angle": noisy}
+    signals = {f"{joint}.command": volts, where: noisy}
     return experiments_of(rig, Recording(f"made {seed}", time, signals, Path("made.csv")))[0]
