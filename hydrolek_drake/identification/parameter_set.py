@@ -8,7 +8,7 @@ import numpy as np
 
 from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.physics.records import flat
+from hydrolek_drake.physics.records import copied, flat
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.machine.rig import declaration
 
@@ -111,7 +111,7 @@ class ParameterSet:
 
     def records(self, unit: np.ndarray) -> np.ndarray:
         """Records of all joints, shape (n joints,), for a place in the unit cube."""
-        records = self._base.copy()
+        records = copied(self._base)
         self._set(records, unit)
         return records
 

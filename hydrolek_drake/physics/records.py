@@ -72,6 +72,11 @@ def flat(joints: np.ndarray) -> np.ndarray:
     return joints.view(np.float64).reshape(len(joints), JOINT.itemsize // 8)
 
 
+def copied(joints: np.ndarray) -> np.ndarray:
+    """The records again, with memory of their own; as vectors, since NumPy copies records number by number."""
+    return flat(joints).copy().view(JOINT).reshape(len(joints))
+
+
 def position_of(section: str, name: str) -> int:
     """Where a parameter stands in a flat record; `section` is a stage, "driven", or an effect's key."""
     if section in STAGES or section == "driven":

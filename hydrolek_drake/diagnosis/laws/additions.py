@@ -16,6 +16,7 @@ from hydrolek_drake.diagnosis.laws.terms import Span, Term, law_record
 from hydrolek_drake.diagnosis.settings import FITS, GAINS, LOCATING
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.physics.law import PLACED, TERM_NAMES
+from hydrolek_drake.physics.records import copied
 from hydrolek_drake.rigs import Rig
 
 
@@ -225,7 +226,7 @@ class WithTerms(ParameterSet):
 
     def records(self, unit: np.ndarray) -> np.ndarray:
         """Records of all joints, shape (n joints,), for a place in the unit cube."""
-        records = self._base.copy()
+        records = copied(self._base)
         self._set(records, unit[: self._of_rig])
         values = {
             p.path: p.from_unit(float(u))

@@ -17,8 +17,24 @@ from hydrolek_drake.diagnosis.structures.addition import names_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
 
-def continued(bench: Workbench, opening: Opening, settings: Settings, cores: int) -> list[Runner]:
-    """A race by continuation, from the rig's own numbers and from where the structure was fitted, the best first."""
+def continued(
+    bench: Workbench, opening: Opening, left: float, settings: Settings, cores: int
+) -> list[Runner]:
+    """A race by continuation, from the rig's own numbers and from where the structure was fitted.
+
+    Near the noise, where what is left may be as fast as the observer, slower ones are asked only for what a faster one
+    leaves clearly less of than free rollouts do.
+
+    Args:
+        bench: data and problems.
+        opening: the structure and its additions.
+        left: by the best free rollout, over the noise.
+        settings: of the search.
+        cores: that roll out at the same time.
+
+    Returns:
+        What goes on, the best first.
+    """
     parent = opening.parent
     own, fitted = Start(parent.effects, opening.sizes), Start(parent.effects, parent.values)
     pulled = opening.pulled or observed(bench, parent, opening.own, settings, cores)[0]
@@ -29,7 +45,12 @@ def continued(bench: Workbench, opening: Opening, settings: Settings, cores: int
         for begun in (own, fitted)
     ]
     heats = steps_for(settings.continued, parent.fit.over_noise < NOISE.far)
-    return run(bench, entered(bench, entrants, heats[0], cores), heats, cores, traced("observed"))
+    runners = entered(bench, entrants, heats[0], cores)
+    for heat in heats:
+        runners = run(bench, runners, (heat,), cores, traced("observed")) if runners else []
+        if left < NOISE.far:
+            runners = [r for r in runners if over_noise_of(r) < settings.nearer * left]
+    return runners
 
 
 def continued_nominal(

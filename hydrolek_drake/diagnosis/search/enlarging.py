@@ -59,7 +59,7 @@ def enlarged(
         runners = [*run(bench, runners[:1], settings.ended, cores, traced("first to the end")), *runners[1:]]
     reached = min((over_noise_of(r) for r in runners), default=math.inf)
     if reached > enough and parent.fit.over_noise > enough:
-        runners += continued(bench, opening, settings, cores)
+        runners += continued(bench, opening, reached, settings, cores)
     ended = run(bench, runners, settings.ended, cores, traced("end")) if runners else []
     better = None
     reached = min((over_noise_of(r) for r in ended), default=math.inf)

@@ -11,6 +11,7 @@ from hydrolek_drake.identification.experiments.start import without_offset
 from hydrolek_drake.identification.experiments.thinning import Blocks, block_size
 from hydrolek_drake.physics.driven import FOLLOWED
 from hydrolek_drake.physics.probes import PROBES, SUPPLY
+from hydrolek_drake.physics.records import copied
 from hydrolek_drake.rollout.kernel import PULLED
 from hydrolek_drake.rollout.rest import rest_state_at_reading, state_at_reading
 from hydrolek_drake.rollout.rollout import Outcome, Signals
@@ -106,7 +107,7 @@ class Experiment:
         """The rollout that `simulate` makes, to be made beside others (`rollout.lanes`); arguments as there."""
         record = records[self.index : self.index + 1]
         if self.cut is not None:
-            record = record.copy()
+            record = copied(record)
             record["driven"][self.cut] = FOLLOWED
         return Run(
             record,

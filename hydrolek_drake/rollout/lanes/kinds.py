@@ -4,6 +4,7 @@ from functools import cache
 
 import numpy as np
 
+from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.catalogue import EFFECTS
 from hydrolek_drake.physics.driven import DRIVEN
 from hydrolek_drake.physics.law import MOST_TERMS
@@ -46,14 +47,26 @@ def kind_of(joint: np.ndarray, spool_steps: int, law: np.ndarray | None = None, 
         if all(numbers[size] == neutral for size, neutral in sizes):
             known |= {place: float(neutral) for place, neutral in places}
     known |= {place: 0.0 for place in sometimes if not numbers[place] > 0.0}
-    steps = int(steps_needed(spool_steps, joint[0]))
+    steps = int(_steps_in(spool_steps, joint))
     if law is None:
-        return Kind(tuple(sorted(known.items())), steps, probed=probed)
+        return _kind(tuple(sorted(known.items())), steps, 0, False, probed)
     terms = next(count for count in TERMS if count >= len(law))
     # that a law acts early costs a fifth of a step, and is taken for granted where another kind would be compiled; with
     # inputs from outside commands are rounded otherwise then
     early = bool(acts_early(law, joint[0])) if probed else True
-    return Kind(tuple(sorted(known.items())), steps, terms, early, probed)
+    return _kind(tuple(sorted(known.items())), steps, terms, early, probed)
+
+
+@njit
+def _steps_in(spool_steps: int, joints: np.ndarray) -> int:
+    """Steps of the spool of the first of some joints: an array is handed over faster than a record."""
+    return steps_needed(spool_steps, joints[0])
+
+
+@cache
+def _kind(known: "_Places", steps: int, terms: int, early: bool, probed: bool) -> Kind:
+    """The one kind of which so much is known."""
+    return Kind(known, steps, terms, early, probed)
 
 
 _Places = tuple[tuple[int, float], ...]

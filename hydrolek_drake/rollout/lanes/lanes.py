@@ -141,7 +141,7 @@ def one_table(kind: Kind, runs: Sequence[Run], laws: Sequence[np.ndarray | None]
     lanes = [*runs, *[runs[-1]] * (LANES - len(runs))]
     joints = np.empty(LANES, dtype=JOINT)
     for lane, run in enumerate(lanes):
-        joints[lane] = run.joint[0]
+        flat(joints)[lane] = flat(run.joint)[0]
     commands = [_changes(run.command_times, run.command_values) for run in lanes]
     for run in runs:
         check_times(run.command_times, run.command_values, run.times)
