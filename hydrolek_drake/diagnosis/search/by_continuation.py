@@ -7,7 +7,7 @@ from dataclasses import replace
 from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant, Runner, Start, entered
 from hydrolek_drake.diagnosis.fitting.local_search import has_other_minima, searched_near
-from hydrolek_drake.diagnosis.fitting.race import hypotheses_of, run
+from hydrolek_drake.diagnosis.fitting.race import above_noise, hypotheses_of, run
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
 from hydrolek_drake.diagnosis.search.openings import Opening, observed, surely_above
@@ -110,7 +110,8 @@ def continued_to_the_end(
     slips, that is too few: the fit leaves the flat part of the valley too soon and ends in a local minimum of the next
     observer. A free rollout leaves no less than an observer, which is led by what was measured: a structure whose
     observer leaves nearly as much as the best fit so far goes no further. The slowest observer leaves nearly what a
-    free rollout does: after it all go on that could still bring what one addition must.
+    free rollout does: after it all go on that leave less than the best fit so far; and where a free rollout of the
+    first part is at the noise, those are out that are not.
 
     Args:
         bench: data and problems.
@@ -125,20 +126,23 @@ def continued_to_the_end(
     left = best.fit.over_noise
     if left <= surely_above(bench, best):
         return []
-    chosen = {each.ids: each for each in sorted(fits, key=cost, reverse=True)}
+    ranked = sorted(fits, key=cost)
+    chosen = list(dict.fromkeys(each.ids for each in ranked))[: settings.to_the_end]
     entrants = [
         Entrant(each.effects, values)
-        for each in list(chosen.values())[-settings.to_the_end :]
-        for values in (of_additions(each.values), each.values)
+        for ids in chosen
+        for number, each in enumerate([h for h in ranked if h.ids == ids][: settings.starts])
+        for values in ((of_additions(each.values), each.values) if number == 0 else (each.values,))
     ]
     rungs = steps_for(settings.long, left < NOISE.far)
     runners = entered(bench, entrants, rungs[0], cores) if entrants else []
-    brings = math.sqrt(max(left**2 - gain_needed(best.fit) / max(best.fit.counted, 1), 0.0))
     for rung in rungs:
         if runners:
             ended = run(bench, runners, (rung,), cores, traced("to the end"))
-            reach = brings if rung.observer_s >= FITS.observers_s[-1] else settings.nearer * left
+            reach = left if rung.observer_s >= FITS.closer_s[-1] else settings.nearer * left
             runners = [each for each in ended if over_noise_of(each) < reach]
+            if math.isinf(rung.observer_s):
+                runners = [each for each in runners if not above_noise(each)] or runners
     return hypotheses_of(bench, runners, rungs[-1])
 
 
