@@ -10,7 +10,7 @@ import numpy as np
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import end_stops, hooks
-from hydrolek_drake.physics.fluid import effective_bulk_modulus, softened
+from hydrolek_drake.physics.fluid import softened, stiffness
 from hydrolek_drake.physics.lines import hose
 from hydrolek_drake.physics.linkages import ball_screw, servo_screw
 from hydrolek_drake.physics.parameters import Parameter, Stage
@@ -198,8 +198,8 @@ def pressure_rates(
     """
     p = joint.cylinder
     volume_a, volume_b = counted_volumes(stroke, joint)
-    stiffness_a = effective_bulk_modulus(p_a, joint) / volume_a
-    stiffness_b = effective_bulk_modulus(p_b, joint) / volume_b
+    stiffness_a = stiffness(volume_a, p_a, joint)
+    stiffness_b = stiffness(volume_b, p_b, joint)
     if rare(joint) and joint.hose.variant != hose.NONE:
         more_a, more_b = hose.gives_way(joint)
         _, stiffness_a = softened(more_a, 0.0, stiffness_a)

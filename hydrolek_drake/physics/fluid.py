@@ -43,7 +43,9 @@ STAGE = Stage(
 
 
 @njit
-def orifice_conductance(area: float, drop: float, coefficient: float, joint: Any) -> float:
+def orifice_conductance(
+    area: float, drop: float, coefficient: float, joint: Any, in_series: float = 1.0
+) -> float:
     """Flow over pressure drop [m^3/(s Pa)] of an orifice, equation (4.7) made smooth through zero.
 
     Q = C_q A sqrt(2/rho) dp / (dp^2 + dp_t^2)^(1/4), which is (4.7) for |dp| well above the laminar
@@ -54,10 +56,11 @@ def orifice_conductance(area: float, drop: float, coefficient: float, joint: Any
         drop: pressure drop dp [Pa].
         coefficient: contraction coefficient C_q.
         joint: parameter record.
+        in_series: drop over all that the flow passes, over that of the orifice: 1 where it is alone.
     """
     fluid = joint.fluid
     smooth = math.sqrt(drop * drop + fluid.laminar_transition * fluid.laminar_transition)
-    return coefficient * area * math.sqrt(2.0 / (fluid.density * smooth))
+    return coefficient * area * math.sqrt(2.0 / (fluid.density * smooth * in_series))
 
 
 LEAST_CAPACITY = 0.1
@@ -83,8 +86,13 @@ def softened(capacity: float, rate: float, stiffness: float) -> tuple[float, flo
 
 
 @njit
-def effective_bulk_modulus(pressure: float, joint: Any) -> float:
-    """Bulk modulus at a pressure [Pa]; entrained air softens the oil where the pressure is low."""
+def stiffness(volume: float, pressure: float, joint: Any) -> float:
+    """Rise of the pressure for the oil that a volume takes, B/V [Pa/m^3]; air softens oil of a low pressure.
+
+    Args:
+        volume: [m^3].
+        pressure: [Pa].
+        joint: parameter record.
+    """
     bulk_modulus = joint.fluid.bulk_modulus
-    more = hooks.compressibility(pressure, joint)
-    return bulk_modulus if more == 0.0 else bulk_modulus / (1.0 + bulk_modulus * more)
+    return bulk_modulus / (volume * (1.0 + bulk_modulus * hooks.compressibility(pressure, joint)))

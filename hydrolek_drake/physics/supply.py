@@ -5,7 +5,7 @@ from typing import Any
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
-from hydrolek_drake.physics.fluid import effective_bulk_modulus, softened
+from hydrolek_drake.physics.fluid import softened, stiffness
 from hydrolek_drake.physics.lines import accumulator
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.relief_valve import relieved_by_valve
@@ -125,11 +125,11 @@ def rate_of_change(remembered: float, relief: float, drawn: float, joint: Any) -
     p = joint.supply
     if rare(joint) and p.variant == PUMP:
         pressure, opened = p.pressure + remembered, max(relief, 0.0)
-        stiffness = effective_bulk_modulus(max(pressure, 0.0), joint) / p.line_volume
+        stiff = stiffness(p.line_volume, max(pressure, 0.0), joint)
         if joint.accumulator.variant != accumulator.NONE:
-            _, stiffness = softened(accumulator.gas_capacity(pressure, joint), 0.0, stiffness)
-        slope = -stiffness / p.relief_slope
-        rate = stiffness * (pumped(pressure, joint) - drawn)
+            _, stiff = softened(accumulator.gas_capacity(pressure, joint), 0.0, stiff)
+        slope = -stiff / p.relief_slope
+        rate = stiff * (pumped(pressure, joint) - drawn)
         drop = max(pressure - p.tank_pressure, 0.0)
         rate += slope * opened * (math.sqrt(drop / (p.pressure + opened - p.tank_pressure)) - 1.0)
         if pressure <= p.tank_pressure:

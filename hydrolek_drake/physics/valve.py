@@ -87,7 +87,8 @@ def widened(opened: Openings, more: float) -> Openings:
 @njit
 def _opened(beyond: float, travel: float) -> float:
     """Share of full opening of a land that is `beyond` its overlap, out of the `travel` to full opening [m]."""
-    return min(max(beyond / travel, 0.0), 1.0) if beyond > 0.0 else 0.0
+    per_travel = 1.0 / travel  # the same in both stages of a step
+    return min(max(beyond * per_travel, 0.0), 1.0) if beyond > 0.0 else 0.0
 
 
 @njit
@@ -143,13 +144,13 @@ def edge_conductances(
         coefficient = p.discharge * gain
         choke = hooks.port_drop(joint)
         if opened.pa > 0.0:
-            area = _choked(opened.pa, choke) * p.max_area_a
-            pa += orifice_conductance(area, p_supply - p_a, coefficient, joint)
-            bt += orifice_conductance(area, p_b - p_tank, coefficient, joint)
+            area, both = opened.pa * p.max_area_a, _in_series(opened.pa, choke)
+            pa += orifice_conductance(area, p_supply - p_a, coefficient, joint, both)
+            bt += orifice_conductance(area, p_b - p_tank, coefficient, joint, both)
         if opened.pb > 0.0:
-            area = _choked(opened.pb, choke) * p.max_area_b
-            pb += orifice_conductance(area, p_supply - p_b, coefficient, joint)
-            at += orifice_conductance(area, p_a - p_tank, coefficient, joint)
+            area, both = opened.pb * p.max_area_b, _in_series(opened.pb, choke)
+            pb += orifice_conductance(area, p_supply - p_b, coefficient, joint, both)
+            at += orifice_conductance(area, p_a - p_tank, coefficient, joint, both)
     elif p.variant == PRESSURE_COMPENSATED:
         if opened.pa > 0.0:
             pa += gain * _compensated_conductance(opened.pa, p_supply - p_a, joint)
@@ -161,17 +162,29 @@ def edge_conductances(
         coefficient = p.discharge * gain
         choke = hooks.port_drop(joint)
         if opened.pa > 0.0:
-            area = _choked(opened.pa, choke) * p.area_gradient_pa * (p.full_opening - p.overlap_pa)
-            pa += orifice_conductance(area, p_supply - p_a, coefficient, joint)
+            area, both = (
+                _area(opened.pa, p.area_gradient_pa, p.overlap_pa, joint),
+                _in_series(opened.pa, choke),
+            )
+            pa += orifice_conductance(area, p_supply - p_a, coefficient, joint, both)
         if opened.bt > 0.0:
-            area = _choked(opened.bt, choke) * p.area_gradient_bt * (p.full_opening - p.overlap_bt)
-            bt += orifice_conductance(area, p_b - p_tank, coefficient, joint)
+            area, both = (
+                _area(opened.bt, p.area_gradient_bt, p.overlap_bt, joint),
+                _in_series(opened.bt, choke),
+            )
+            bt += orifice_conductance(area, p_b - p_tank, coefficient, joint, both)
         if opened.pb > 0.0:
-            area = _choked(opened.pb, choke) * p.area_gradient_pb * (p.full_opening - p.overlap_pb)
-            pb += orifice_conductance(area, p_supply - p_b, coefficient, joint)
+            area, both = (
+                _area(opened.pb, p.area_gradient_pb, p.overlap_pb, joint),
+                _in_series(opened.pb, choke),
+            )
+            pb += orifice_conductance(area, p_supply - p_b, coefficient, joint, both)
         if opened.at > 0.0:
-            area = _choked(opened.at, choke) * p.area_gradient_at * (p.full_opening - p.overlap_at)
-            at += orifice_conductance(area, p_a - p_tank, coefficient, joint)
+            area, both = (
+                _area(opened.at, p.area_gradient_at, p.overlap_at, joint),
+                _in_series(opened.at, choke),
+            )
+            at += orifice_conductance(area, p_a - p_tank, coefficient, joint, both)
     elif rare(joint) and p.variant == FLOW_MAP:
         if opened.pa > 0.0:
             flows = flow_map.flows_towards_a(opened.pa, joint)
@@ -192,14 +205,18 @@ def edge_conductances(
 
 
 @njit
-def _choked(opening: float, port_drop: float) -> float:
-    """Share of full opening of one orifice that stands for an edge and its port in series.
+def _in_series(opening: float, port_drop: float) -> float:
+    """Drop over an edge and its port in series, over that of the edge.
 
     Both take the same flow Q, the edge with the drop dp_e ~ (Q / s)^2, the port with port_drop s^2 dp_e.
     """
-    if port_drop == 0.0:
-        return opening
-    return opening / math.sqrt(1.0 + port_drop * opening * opening)
+    return 1.0 + port_drop * opening * opening
+
+
+@njit
+def _area(opening: float, gradient: float, overlap: float, joint: Any) -> float:
+    """Area of one of four edges that is open by a share [m^2]."""
+    return opening * gradient * (joint.valve.full_opening - overlap)
 
 
 @njit

@@ -229,27 +229,28 @@ def rates(
             further, _ = hooks.rod_friction(FURTHER * v, stroke, joint)
             slope_f += slope_of_growth(rubbing, secant, further, v)
     lead_acceleration = slope_lead = through = 0.0
+    per_inertia = 1.0 / inertia  # a division takes as long as ten products
     if playing:
-        side_inertia = joint.linkage.play_inertia
+        per_side = 1.0 / joint.linkage.play_inertia
         if contact is None:
-            parting, yields = moment / side_inertia + resisting / inertia, 1.0 / side_inertia + 1.0 / inertia
+            parting, yields = moment * per_side + resisting * per_inertia, per_side + per_inertia
             through = linkage.mean_play_torque(s.lead_q - s.q, s.lead_w - s.w, parting, yields, h, joint)
         else:
             through = contact
-        lead_acceleration = (moment - through) / side_inertia
-        slope_lead = -slope_f * lever * lever / side_inertia
-        turned_by = lever / side_inertia
-        acceleration = (through - resisting) / inertia
-        slope_w = -slope_r / inertia
+        lead_acceleration = (moment - through) * per_side
+        slope_lead = -slope_f * lever * lever * per_side
+        turned_by = lever * per_side
+        acceleration = (through - resisting) * per_inertia
+        slope_w = -slope_r * per_inertia
     else:
-        acceleration = (moment - resisting) / inertia
-        slope_w = -(slope_f * lever * lever + slope_r) / inertia
-        turned_by = lever / inertia
+        acceleration = (moment - resisting) * per_inertia
+        slope_w = -(slope_f * lever * lever + slope_r) * per_inertia
+        turned_by = lever * per_inertia
     tilt_acceleration = slope_tilt = tilted_by = 0.0
     if rocking:
         tilt_acceleration, slope_tilt = base.base_acceleration(s.tilt, s.tilt_rate, moment, joint)
-        slope_tilt -= slope_f * lever * lever / hooks.base_inertia(joint)
         tilted_by = lever / hooks.base_inertia(joint)
+        slope_tilt -= slope_f * lever * tilted_by
     return (
         State(
             rate_a,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from hydrolek_drake.physics.fluid import effective_bulk_modulus, orifice_conductance
+from hydrolek_drake.physics.fluid import orifice_conductance, stiffness
 
 AREA, COEFFICIENT = 0.37e-6, 0.63
 
@@ -49,14 +49,12 @@ def test_flow_is_odd_smooth_and_rising_through_zero(bench_joint):
 def test_bulk_modulus_without_air_is_the_oil_s_at_any_pressure(bench_joint):
     joint = bench_joint()
     for pressure in (0.0, 3e3, 7.3e6):
-        assert_allclose(effective_bulk_modulus(pressure, joint), 1.0e9, rtol=1e-14)
+        assert_allclose(stiffness(1.0, pressure, joint), 1.0e9, rtol=1e-14)
 
 
 def test_bulk_modulus_with_air_is_two_springs_in_series(bench_joint):
     joint = bench_joint({"effects.fluid.entrained_air.air_fraction": 0.07})
     pressure = 0.9e6
-    assert_allclose(
-        1 / effective_bulk_modulus(pressure, joint), 1 / 1e9 + 0.07 * 1e5 / pressure**2, rtol=1e-13
-    )
+    assert_allclose(1 / stiffness(1.0, pressure, joint), 1 / 1e9 + 0.07 * 1e5 / pressure**2, rtol=1e-13)
     # below the atmosphere the air's stiffness stays that at the atmosphere
-    assert_allclose(1 / effective_bulk_modulus(2e4, joint), 1 / 1e9 + 0.07 / 1e5, rtol=1e-13)
+    assert_allclose(1 / stiffness(1.0, 2e4, joint), 1 / 1e9 + 0.07 / 1e5, rtol=1e-13)

@@ -60,7 +60,7 @@ def enlarged(
     reached = min((over_noise_of(r) for r in runners), default=math.inf)
     if reached > enough and parent.fit.over_noise > enough:
         runners += continued(bench, opening, reached, settings, cores)
-    ended = run(bench, runners, settings.ended, cores, traced("end")) if runners else []
+    ended = _ended(bench, runners, enough, settings, cores)
     better = None
     reached = min((over_noise_of(r) for r in ended), default=math.inf)
     if (
@@ -83,6 +83,17 @@ def enlarged(
     _widened(bench, found, settings, cores)
     _lessened(bench, found, candidates, settings, cores)
     return better is not None and better.fit.over_noise <= settings.nearer * parent.fit.over_noise
+
+
+def _ended(
+    bench: Workbench, runners: Sequence[Runner], enough: float, settings: Settings, cores: int
+) -> list[Runner]:
+    """The end of the races; what is not at the noise need not be known to the last square."""
+    ended = list(runners)
+    for rung in settings.ended:
+        if ended and (rung is settings.ended[0] or over_noise_of(ended[0]) <= enough):
+            ended = run(bench, ended, (rung,), cores, traced("end"))
+    return ended
 
 
 def _led_on(

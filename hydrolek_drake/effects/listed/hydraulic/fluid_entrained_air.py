@@ -50,7 +50,8 @@ def compressibility(pressure: float, joint: Any) -> float:
         return 0.0
     atmosphere = joint.fluid.atmospheric_pressure
     if rare(joint) and joint.fluid.air_exponent >= 1.0:  # not a number but in its variant
-        n, above_vacuum = joint.fluid.air_exponent, max(pressure, 0.0) + atmosphere
-        return fraction * exponential(logarithm(atmosphere / above_vacuum) / n) / (n * above_vacuum)
+        per_n, per_pressure = 1.0 / joint.fluid.air_exponent, 1.0 / (max(pressure, 0.0) + atmosphere)
+        share = exponential(per_n * logarithm(atmosphere * per_pressure))
+        return fraction * share * per_n * per_pressure
     absolute = max(pressure, atmosphere)
     return fraction * atmosphere / (absolute * absolute)
