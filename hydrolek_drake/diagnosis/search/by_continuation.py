@@ -14,6 +14,7 @@ from hydrolek_drake.diagnosis.search.openings import Opening, observed, surely_a
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import FITS, NOISE, Rung, Settings
 from hydrolek_drake.diagnosis.structures.addition import names_of
+from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
 
@@ -129,10 +130,7 @@ def continued_to_the_end(
     ranked = sorted(fits, key=cost)
     chosen = list(dict.fromkeys(each.ids for each in ranked))[: settings.to_the_end]
     entrants = [
-        Entrant(each.effects, values)
-        for ids in chosen
-        for number, each in enumerate([h for h in ranked if h.ids == ids][: settings.starts])
-        for values in ((of_additions(each.values), each.values) if number == 0 else (each.values,))
+        entrant for ids in chosen for entrant in _starts([h for h in ranked if h.ids == ids], left, settings)
     ]
     rungs = steps_for(settings.long, left < NOISE.far)
     runners = entered(bench, entrants, rungs[0], cores) if entrants else []
@@ -144,6 +142,26 @@ def continued_to_the_end(
             if math.isinf(rung.observer_s):
                 runners = [each for each in runners if not above_noise(each)] or runners
     return hypotheses_of(bench, runners, rungs[-1])
+
+
+def _starts(fits: Sequence[Hypothesis], left: float, settings: Settings) -> list[Entrant]:
+    """Where a structure is continued from: the minima in which it ended, and the rig's own numbers.
+
+    Far from the noise also both with what was added last at each place where its search begins: a soft base rings, and
+    its fit has a local minimum for every swing that its frequency is off.
+
+    Args:
+        fits: of the structure, the best first.
+        left: over the noise, by the best structure.
+        settings: of the search.
+    """
+    best = fits[0]
+    own = of_additions(best.values)
+    begun = [own, *(each.values for each in fits[: settings.starts])]
+    last = best.effects[-1] if best.effects else None
+    if isinstance(last, Candidate) and left > NOISE.far:
+        begun += [{**values, **start} for start in last.starts for values in (own, best.values)]
+    return [Entrant(best.effects, values) for values in begun]
 
 
 def over_noise_of(runner: Runner) -> float:

@@ -134,6 +134,7 @@ class Settings:
     """The end of both races."""
 
     long: tuple[Rung, ...] = (
+        Rung(FITS.closer_s[0], FITS.coarse, 10.0, 12, 6, share=3e-4, each=3),
         *(
             Rung(t, FITS.coarse, seconds, 40, 4, share=3e-4, elsewhere=True)
             for t, seconds in zip(FITS.closer_s, (10.0, 20.0, 20.0, 20.0), strict=True)

@@ -28,7 +28,7 @@ EFFECT = Effect(
     size="stiffness_Nm_per_rad",
     weakens=True,
     search={
-        "stiffness_Nm_per_rad": Search("load_stiffness", 10000, (300.0, 30.0, 5.0), lowest=1, log=True),
+        "stiffness_Nm_per_rad": Search("load_stiffness", 10000, (300.0, 30.0, 5.0, 1.5), lowest=1, log=True),
         "inertia_kg_m2": Search("inertia", 30, (1.0, 0.3), lowest=0.03, log=True),
     },
     source="thesis 6.1.5: moving faster 'could lead to some movement of the platform base'",
