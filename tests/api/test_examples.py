@@ -39,7 +39,13 @@ def _run(name, *arguments, cwd):
     [
         ("replay", "practice_01", 12.0, "joint.angle"),
         pytest.param("fit", "practice_01", 6.0, "supply.pressure", marks=pytest.mark.thorough),
-        ("own_machine", "practice_01", 8.0, "after: joint.angle: model and recording agree to the noise"),
+        pytest.param(
+            "own_machine",
+            "practice_01",
+            8.0,
+            "after: joint.angle: model and recording agree to the noise",
+            marks=pytest.mark.thorough,
+        ),
         pytest.param("diagnose", "practice_02", 8.0, "none", marks=pytest.mark.long("half a minute")),
     ],
 )

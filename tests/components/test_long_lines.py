@@ -175,6 +175,7 @@ def test_the_diagram_has_the_same_waves(with_component):
     assert_allclose(moved.signals.position, alone.position, atol=2e-4)
 
 
+@pytest.mark.thorough
 def test_a_rollout_goes_on_with_its_waves_where_it_ended(with_component):
     record = with_component("long_line").records()
     times = np.arange(0.0, 0.6, 0.01)

@@ -33,6 +33,7 @@ def planted(two_joints, machine, recorded_together):
     return recording, experiments_of(two_joints, recording)
 
 
+@pytest.mark.thorough
 def test_a_fit_of_two_joints_by_command_finds_what_was_planted_to_the_noise(
     two_joints, machine, planted, recorded_together
 ) -> None:

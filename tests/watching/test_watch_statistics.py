@@ -114,6 +114,7 @@ def test_healthy_series_raise_no_more_alarms_than_was_allowed():
     assert alarms / 120 <= 0.2
 
 
+@pytest.mark.thorough
 def test_what_a_short_reference_is_wrong_about_is_no_fault():
     """It makes the same sizes in all recordings, which would add up to alarms if each were taken by itself."""
     rng = np.random.default_rng(17)

@@ -56,6 +56,7 @@ def _true_place(bench: Workbench, machine: Rig, effects) -> np.ndarray:
     return parameters.unit({path: machine.value(path) for path in parameters.paths})
 
 
+@pytest.mark.thorough
 def test_a_droop_that_the_joints_share_is_fitted_to_its_size(begun, machine, recorded_together) -> None:
     bench, found = begun
     recorded = bench.training
