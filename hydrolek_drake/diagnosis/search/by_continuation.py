@@ -23,8 +23,8 @@ def continued(
 ) -> list[Runner]:
     """A race by continuation, from the rig's own numbers and from where the structure was fitted.
 
-    Near the noise, where what is left may be as fast as the observer, slower ones are asked only for what a faster one
-    leaves clearly less of than free rollouts do.
+    Not far from the noise, where what is left may be as fast as the observer, slower ones are asked only for what a
+    faster one leaves clearly less of than free rollouts do; where these explain the data but for a little, for all.
 
     Args:
         bench: data and problems.
@@ -49,7 +49,7 @@ def continued(
     runners = entered(bench, entrants, heats[0], cores)
     for heat in heats:
         runners = run(bench, runners, (heat,), cores, traced("observed")) if runners else []
-        if left < NOISE.far:
+        if left < NOISE.far and settings.nearer * left > NOISE.explained:
             runners = [r for r in runners if over_noise_of(r) < settings.nearer * left]
     return runners
 
@@ -138,7 +138,7 @@ def continued_to_the_end(
         if runners:
             ended = run(bench, runners, (rung,), cores, traced("to the end"))
             reach = left if rung.observer_s >= FITS.closer_s[-1] else settings.nearer * left
-            runners = [each for each in ended if over_noise_of(each) < reach]
+            runners = [each for each in ended if over_noise_of(each) < reach or not above_noise(each)]
             if math.isinf(rung.observer_s):
                 runners = [each for each in runners if not above_noise(each)] or runners
     return hypotheses_of(bench, runners, rungs[-1])
