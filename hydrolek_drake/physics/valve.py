@@ -161,30 +161,10 @@ def edge_conductances(
     elif rare(joint) and p.variant == FOUR_EDGES:
         coefficient = p.discharge * gain
         choke = hooks.port_drop(joint)
-        if opened.pa > 0.0:
-            area, both = (
-                _area(opened.pa, p.area_gradient_pa, p.overlap_pa, joint),
-                _in_series(opened.pa, choke),
-            )
-            pa += orifice_conductance(area, p_supply - p_a, coefficient, joint, both)
-        if opened.bt > 0.0:
-            area, both = (
-                _area(opened.bt, p.area_gradient_bt, p.overlap_bt, joint),
-                _in_series(opened.bt, choke),
-            )
-            bt += orifice_conductance(area, p_b - p_tank, coefficient, joint, both)
-        if opened.pb > 0.0:
-            area, both = (
-                _area(opened.pb, p.area_gradient_pb, p.overlap_pb, joint),
-                _in_series(opened.pb, choke),
-            )
-            pb += orifice_conductance(area, p_supply - p_b, coefficient, joint, both)
-        if opened.at > 0.0:
-            area, both = (
-                _area(opened.at, p.area_gradient_at, p.overlap_at, joint),
-                _in_series(opened.at, choke),
-            )
-            at += orifice_conductance(area, p_a - p_tank, coefficient, joint, both)
+        pa += _edge(opened.pa, p.area_gradient_pa, p.overlap_pa, p_supply - p_a, choke, coefficient, joint)
+        bt += _edge(opened.bt, p.area_gradient_bt, p.overlap_bt, p_b - p_tank, choke, coefficient, joint)
+        pb += _edge(opened.pb, p.area_gradient_pb, p.overlap_pb, p_supply - p_b, choke, coefficient, joint)
+        at += _edge(opened.at, p.area_gradient_at, p.overlap_at, p_a - p_tank, choke, coefficient, joint)
     elif rare(joint) and p.variant == FLOW_MAP:
         if opened.pa > 0.0:
             flows = flow_map.flows_towards_a(opened.pa, joint)
@@ -214,9 +194,20 @@ def _in_series(opening: float, port_drop: float) -> float:
 
 
 @njit
-def _area(opening: float, gradient: float, overlap: float, joint: Any) -> float:
-    """Area of one of four edges that is open by a share [m^2]."""
-    return opening * gradient * (joint.valve.full_opening - overlap)
+def _edge(
+    opening: float,
+    gradient: float,
+    overlap: float,
+    drop: float,
+    port_drop: float,
+    coefficient: float,
+    joint: Any,
+) -> float:
+    """Conductance of one of four edges that is open by a share [m^3/(s Pa)]."""
+    if opening <= 0.0:
+        return 0.0
+    area = opening * gradient * (joint.valve.full_opening - overlap)
+    return orifice_conductance(area, drop, coefficient, joint, _in_series(opening, port_drop))
 
 
 @njit

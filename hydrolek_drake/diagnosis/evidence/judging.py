@@ -208,16 +208,13 @@ def _predicted(
         is_far = one.over_noise > NOISE.far or float(residuals @ residuals) - chi_squared > EVIDENCE.nearby
         far.append(is_far and any(h is d for d in doubtful) and not own_of_recordings(h).any())
         judged.append(one)
-    chosen = [i for i, is_far in enumerate(far) if is_far and not _ahead_alone(judged[i], judged, doubtful)]
+    # the only one in doubt, and denser than all others, would be more so
+    decided = len(doubtful) == 1 and max(judged, key=lambda j: j.log_density).hypothesis is doubtful[0]
+    chosen = [i for i, is_far in enumerate(far) if is_far and not decided]
     again = _beyond(bench, [judged[i].hypothesis for i in chosen], held_out, settings, cores)
     for i, squares in zip(chosen, again, strict=True):
         judged[i] = replace(judged[i], chi_squared=squares)
     return judged
-
-
-def _ahead_alone(judged: Judged, others: Sequence[Judged], doubtful: Sequence[Hypothesis]) -> bool:
-    """Whether a structure is the only one in doubt and denser than the others: fitted to both data it is more so."""
-    return len(doubtful) == 1 and all(j.log_density <= judged.log_density for j in others)
 
 
 def _beyond(

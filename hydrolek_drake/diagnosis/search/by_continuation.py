@@ -137,7 +137,7 @@ def continued_to_the_end(
     for rung in rungs:
         if runners:
             ended = run(bench, runners, (rung,), cores, traced("to the end"))
-            reach = left if rung.observer_s >= FITS.closer_s[-1] else settings.nearer * left
+            reach = left if rung.observer_s >= FITS.continuation_s[-1] else settings.nearer * left
             runners = [each for each in ended if over_noise_of(each) < reach or not above_noise(each)]
             if math.isinf(rung.observer_s):
                 runners = [each for each in runners if not above_noise(each)] or runners

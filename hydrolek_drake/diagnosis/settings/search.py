@@ -12,7 +12,7 @@ class Fits:
     """Time constants of observers [s], each five or six times the one before: what they forget makes few local
     minima, what they remember tells slow things."""
 
-    closer_s: tuple[float, ...] = (0.03, 0.1, 0.3, 1.0)
+    continuation_s: tuple[float, ...] = (0.03, 0.1, 0.3, 1.0)
     """The same where a structure is continued to the end, each three times the one before. The fastest remembers some
     samples of a recording, and one swing of a joint against its oil."""
 
@@ -134,10 +134,10 @@ class Settings:
     """The end of both races."""
 
     long: tuple[Rung, ...] = (
-        Rung(FITS.closer_s[0], FITS.coarse, 10.0, 12, 6, share=3e-4, each=3),
+        Rung(FITS.continuation_s[0], FITS.coarse, 10.0, 12, 6, share=3e-4, each=3),
         *(
             Rung(t, FITS.coarse, seconds, 40, 4, share=3e-4, elsewhere=True)
-            for t, seconds in zip(FITS.closer_s, (10.0, 20.0, 20.0, 20.0), strict=True)
+            for t, seconds in zip(FITS.continuation_s, (10.0, 20.0, 20.0, 20.0), strict=True)
         ),
         Rung(math.inf, 1.0, 20.0, 40, 4, share=3e-4, elsewhere=True),
         Rung(math.inf, 1.0, math.inf, 60, 4, share=1e-4, elsewhere=True),

@@ -27,6 +27,8 @@ SOMETIMES = (
 )
 """Parameters of the stages that most machines have at zero, and that cost as much."""
 
+_Places = tuple[tuple[int, float], ...]
+
 TERMS = (1, 2, MOST_TERMS)
 """Numbers of a law's terms for which loops are compiled; a law in between gets terms of no size."""
 
@@ -64,12 +66,9 @@ def _steps_in(spool_steps: int, joints: np.ndarray) -> int:
 
 
 @cache
-def _kind(known: "_Places", steps: int, terms: int, early: bool, probed: bool) -> Kind:
+def _kind(known: _Places, steps: int, terms: int, early: bool, probed: bool) -> Kind:
     """The one kind of which so much is known."""
     return Kind(known, steps, terms, early, probed)
-
-
-_Places = tuple[tuple[int, float], ...]
 
 
 @cache
