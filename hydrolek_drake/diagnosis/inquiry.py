@@ -132,7 +132,7 @@ class Inquiry:
                 training, chosen, kept = mixed(training, held_out)
                 remarks = (BY_BOTH,)
             again = known.bench.with_training(training, signals_apart=far)
-            known, found = self._known(again, chosen, _begun_from(found))
+            known, found = self._known(again, chosen, _begun_from(found, self.settings))
             if far and (told := _told_apart(known.bench)):
                 remarks = (*remarks, SIGNALS_APART.format(told=told))
         best = likeliest_side(known.judged).hypothesis
@@ -291,8 +291,6 @@ def _told_apart(bench: Workbench) -> str:
     )
 
 
-def _begun_from(found: Tried) -> Tried:
+def _begun_from(found: Tried, settings: Settings) -> Tried:
     """A search that goes on from what another one found."""
-    again = Tried()
-    again.seeds = list(found.hypotheses.values())
-    return again
+    return Tried(seeds=found.near_the_best(settings))

@@ -8,6 +8,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.race import race
+from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal
 from hydrolek_drake.diagnosis.search.nominal import as_weighed
 from hydrolek_drake.diagnosis.settings import NOISE, Settings
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, candidates_of
@@ -213,14 +214,11 @@ def _fitted(bench: Workbench, cores: int) -> Hypothesis:
     settings = Settings()
     first = race(bench, [Entrant((), {})], (*settings.free, *settings.ended), cores)[0]
     best = as_weighed(bench, first, settings, cores)
-    if (
-        isinstance(bench, ReferenceBench) and best.fit.over_noise > NOISE.at
-    ):  # there are more local minima then
-        middle = {free.path: free.from_unit(0.5) for free in bench.nominal}
-        begun = [Entrant((), {}), Entrant((), middle), Entrant((), best.values)]
-        led = race(bench, begun, (*settings.long, settings.ended[-1]), cores)[0]
-        led = as_weighed(bench, led, settings, cores)
-        best = min(best, led, key=lambda each: each.fit.objective)
+    if isinstance(bench, ReferenceBench) and best.fit.over_noise > NOISE.at:
+        # there are more local minima then
+        led = continued_nominal(bench, best, best.fit.over_noise, settings, cores)
+        if led is not None:
+            best = min(best, as_weighed(bench, led, settings, cores), key=lambda each: each.fit.objective)
     return best
 
 

@@ -30,9 +30,9 @@ ROUNDS = 8
 LEFT_OUT = 6
 """So many reference recordings are each asked by what the others tell: enough to see how a healthy machine varies."""
 
-OBSERVED = ((4, 12), (8, 6), (12, 3))
-"""Steps with each observer at most where no effect leads to the noise, and so many fits that go on: as many as in a
-race of the diagnosis."""
+OBSERVED = ((0.1, 4, 12), (0.5, 8, 6), (3.0, 12, 3))
+"""Where no effect leads to the noise: time constants of observers [s], steps with each at most, and so many fits
+that go on."""
 
 CONTINUED = 32
 """Steps at the end of these at most."""

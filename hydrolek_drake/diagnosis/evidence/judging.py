@@ -32,7 +32,7 @@ from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
 from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
 from hydrolek_drake.diagnosis.search.from_the_cut import fitted_behind
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE, Settings
+from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS, GAINS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.least_squares import Fit
@@ -195,7 +195,7 @@ def _predicted(
             )
             places.append(Place(problem, bench.movable(effects, problem.parameters), unit, exact=True))
     told = iter(with_slopes(places, bench.pool, cores))
-    judged, far = [], []
+    judged, far, both = [], [], []
     doubtful = _in_doubt(hypotheses, min(hypotheses, key=cost))
     for own in begun:
         h = own.hypothesis
@@ -208,30 +208,55 @@ def _predicted(
         is_far = one.over_noise > NOISE.far or float(residuals @ residuals) - chi_squared > EVIDENCE.nearby
         far.append(is_far and any(h is d for d in doubtful) and not own_of_recordings(h).any())
         judged.append(one)
+        both.append((residuals, slopes))
     # the only one in doubt, and denser than all others, would be more so
     decided = len(doubtful) == 1 and max(judged, key=lambda j: j.log_density).hypothesis is doubtful[0]
-    chosen = [i for i, is_far in enumerate(far) if is_far and not decided]
-    again = _beyond(bench, [judged[i].hypothesis for i in chosen], held_out, settings, cores)
-    for i, squares in zip(chosen, again, strict=True):
-        judged[i] = replace(judged[i], chi_squared=squares)
+    chosen = [] if decided else [i for i, is_far in enumerate(far) if is_far]
+    fits = {
+        i: replace(
+            _to_both(bench, judged[i].hypothesis, held_out, settings),
+            residuals=np.concatenate([judged[i].hypothesis.fit.residuals, both[i][0]]),
+            slopes=np.concatenate([judged[i].hypothesis.fit.jacobian, both[i][1]]),
+        )
+        for i in chosen
+    }
+    for renewing in (False, True):
+        ended = _fitted_to_both(bench, list(fits.values()), settings, cores, renewing=renewing)
+        fits = dict(zip(fits, ended, strict=True))
+        for i, place in fits.items():
+            beyond = max(place.objective - judged[i].hypothesis.fit.objective, 0.0)
+            judged[i] = replace(judged[i], chi_squared=beyond)
+        # slopes of where the fits began tell well enough who is beyond doubt
+        least = max((j.log_density for j in judged), default=0.0) - EVIDENCE.out_of_reach
+        near = [i for i, j in enumerate(judged) if j.log_density > least]
+        fits = {i: place for i, place in fits.items() if i in near} if len(near) > 1 else {}
     return judged
 
 
-def _beyond(
-    bench: Workbench,
-    hypotheses: Sequence[Hypothesis],
-    held_out: Sequence[Experiment],
-    settings: Settings,
-    cores: int,
-) -> list[float]:
-    """Squares that structures fitted to both data leave beyond those that they leave of the training data alone."""
-    both, again = [*bench.training, *held_out], []
-    for h in hypotheses:
-        problem = problem_with(bench, h.effects, bench.step_for(h.effects, settings.last.coarse), both)
-        again.append(Place(problem, bench.movable(h.effects, problem.parameters), h.fit.unit))
+def _to_both(
+    bench: Workbench, hypothesis: Hypothesis, held_out: Sequence[Experiment], settings: Settings
+) -> Place:
+    """Where the fit of a structure to the training data and others begins."""
+    step = bench.step_for(hypothesis.effects, settings.last.coarse)
+    problem = problem_with(bench, hypothesis.effects, step, [*bench.training, *held_out])
+    return Place(problem, bench.movable(hypothesis.effects, problem.parameters), hypothesis.fit.unit)
+
+
+def _fitted_to_both(
+    bench: Workbench, places: Sequence[Place], settings: Settings, cores: int, *, renewing: bool
+) -> list[Place]:
+    """Structures fitted to the training data and others; not renewing, with the slopes that they have."""
     rung = settings.again
-    fitted = descend(again, rung.rounds, bench.pool, cores, share=rung.share, stop=bench.alive)
-    return [max(p.objective - h.fit.objective, 0.0) for p, h in zip(fitted, hypotheses, strict=True)]
+    return descend(
+        places,
+        rung.rounds,
+        bench.pool,
+        cores,
+        share=rung.share,
+        leading=FITS.coarse / settings.last.coarse,
+        renewing=renewing,
+        stop=bench.alive,
+    )
 
 
 def left_of(
@@ -285,9 +310,11 @@ def left_of(
     behind = fitted_behind(bench, best, settings, cores)
     if behind is not None:
         (asked, best), ahead = behind, [e.behind_cut() for e in held_out]
-    [squares] = _beyond(asked, [best], ahead, settings, cores)
+    begun = _to_both(asked, best, ahead, settings)
+    [both] = _fitted_to_both(asked, [begun], settings, cores, renewing=True)
     counted = max(sum(e.counted for e in ahead), 1)
-    return (replace(told[0], fitted_too=math.sqrt(squares / counted)), *told[1:])
+    beyond = max(both.objective - best.fit.objective, 0.0)
+    return (replace(told[0], fitted_too=math.sqrt(beyond / counted)), *told[1:])
 
 
 def _of_the_machine(place: Place, hypothesis: Hypothesis) -> np.ndarray:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from hydrolek_drake.diagnosis.fitting.elsewhere import tried_elsewhere
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant, Runner, entered
 from hydrolek_drake.diagnosis.fitting.problems import hypothesis_of, problem_of
-from hydrolek_drake.diagnosis.settings import FITS, NOISE, Rung
+from hydrolek_drake.diagnosis.settings import FITS, GAINS, NOISE, Rung
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.least_squares.lockstep import descend
 
@@ -73,15 +73,16 @@ def run(
         if rung.elsewhere:
             now = tried_elsewhere(bench, now, cores)
         part = math.isfinite(min(rung.observer_s, rung.seconds))
-        now = sorted(now, key=_told_apart if part else lambda r: r.place.objective)
+        now = _ranked(now) if part else sorted(now, key=lambda r: r.place.objective)
         if now and not part:
             best = now[0].place
             over_noise = math.sqrt(best.objective / max(best.problem.counted, 1))
             bench.progress.reached(now[0].label, over_noise)
         seen(now, rung)
-        last = rung is rungs[-1]
         now = _distinct(now, rung.each)
-        now = (now if last or part else _in_reach(now))[: rung.keep]
+        if not (rung is rungs[-1] and math.isinf(rung.observer_s)):
+            now = _in_reach(now, few=math.isfinite(rung.observer_s))
+        now = now[: rung.keep]
     return now
 
 
@@ -90,13 +91,19 @@ def hypotheses_of(bench: Workbench, runners: Sequence[Runner], rung: Rung) -> li
     return [hypothesis_of(r.effects, r.place, bench.step_for(r.effects, rung.coarse)) for r in runners]
 
 
-def _told_apart(runner: Runner) -> float:
-    """Squares by which structures are ranked that an observer follows, or that the beginning of the data is shown.
+def _ranked(runners: Sequence[Runner]) -> list[Runner]:
+    """The best first of structures that an observer follows, or that the beginning of the data is shown.
 
-    What reaches the noise there, to two standard deviations of its squares, is not told apart by it: what promised most
-    goes on.
+    Squares of the same data that differ by less than one more addition must bring do not tell structures apart: what
+    promised most goes on.
     """
-    return max(runner.place.objective, _at_noise(runner))
+    best = min((r.place.objective for r in runners), default=0.0)
+
+    def told_apart(runner: Runner) -> float:
+        place = runner.place
+        return max(place.objective, best + max(GAINS.needed, GAINS.fidelity * place.problem.counted))
+
+    return sorted(runners, key=told_apart)
 
 
 def _at_noise(runner: Runner) -> float:
@@ -117,15 +124,23 @@ def _distinct(runners: Sequence[Runner], count: int) -> list[Runner]:
     for runner in runners:
         before = kept.setdefault(runner.key, [])
         squares = runner.place.objective
-        if len(before) < count and (not before or squares > (1.0 + FITS.tolerance) * before[-1]):
+        known = any(abs(squares - other) <= FITS.tolerance * other for other in before)
+        if len(before) < count and not known:
             before.append(squares)
             chosen.append(runner)
     return chosen
 
 
-def _in_reach(runners: Sequence[Runner]) -> list[Runner]:
-    """Those that may still come to where the best one is: nothing is below the noise."""
-    best = runners[0].place
-    if best.objective > NOISE.at**2 * best.problem.counted:
+def _in_reach(runners: Sequence[Runner], *, few: bool) -> list[Runner]:
+    """Those that may still come to where the best one is: nothing is below the noise.
+
+    Args:
+        runners: the best first.
+        few: whether fits have few local minima, so that who lies behind does so for good also far from the noise.
+    """
+    if not runners:
+        return []
+    best = min((r.place for r in runners), key=lambda place: place.objective)
+    if not few and best.objective > NOISE.at**2 * best.problem.counted:
         return list(runners)
     return [r for r in runners if r.place.objective <= NOISE.far**2 * best.objective]

@@ -54,10 +54,8 @@ def with_windows(
         cores: that roll out at the same time.
         reached: what other structures leave, over the noise.
     """
-    rungs = (
-        *(rung for rung in settings.continued if rung.observer_s >= DROPOUTS.remembers_s),
-        settings.again,
-    )
+    remembering = replace(settings.free[-1], observer_s=DROPOUTS.remembers_s)
+    rungs = (remembering, settings.again)
     own, now, fits = of_additions(parent.values), lost, []
     values = parent.values
     for _ in range(settings.lost_rounds):

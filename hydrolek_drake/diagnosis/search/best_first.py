@@ -82,9 +82,7 @@ def search_structures(
         expansions += 1
         say(f"{next_.kind} beside {' + '.join(c.id for c in next_.parent.effects) or 'the nominal model'}")
         done.add(next_.key)
-        better = enlarged(bench, next_, candidates, found, settings, cores)
-        if better and found.best.fit.over_noise > NOISE.at:
-            done.discard(next_.key)
+        enlarged(bench, next_, candidates, found, settings, cores)
         _weigh(bench, found, settings, cores)
         if found.rounds_without_gain(settings.patience):
             break

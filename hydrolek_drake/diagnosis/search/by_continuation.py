@@ -4,18 +4,20 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant, Runner, Start, entered
 from hydrolek_drake.diagnosis.fitting.local_search import has_other_minima, searched_near
 from hydrolek_drake.diagnosis.fitting.race import above_noise, hypotheses_of, run
 from hydrolek_drake.diagnosis.laws.additions import of_additions
-from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
+from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.openings import Opening, observed, surely_above
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import FITS, NOISE, Rung, Settings
 from hydrolek_drake.diagnosis.structures.addition import names_of
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 
 
 def continued(
@@ -55,29 +57,31 @@ def continued(
 
 
 def continued_nominal(
-    bench: Workbench, direct: Hypothesis, found: Tried, settings: Settings, cores: int
+    bench: Workbench, direct: Hypothesis, reach: float, settings: Settings, cores: int
 ) -> Hypothesis | None:
-    """The nominal model by continuation, from the rig's own numbers and from the middle of their ranges.
+    """The nominal model by continuation, from the rig's own numbers, the middle of their ranges and drawn ones.
 
     Args:
         bench: data and problems.
         direct: as free rollouts led it.
-        found: remembers that it was done.
+        reach: times the noise; what an observer does not follow to it, nor to the noise, goes no further.
         settings: of the search.
         cores: that roll out at the same time.
 
     Returns:
-        The fit if it is better by more than one addition must bring; else None.
+        The fit; None where no observer followed it so far.
     """
-    found.nominal_continued = True
-    centre = Entrant((), {free.path: free.from_unit(0.5) for free in bench.nominal})
-    heats = settings.nominal
-    led = run(bench, entered(bench, [Entrant((), {}), centre], heats[0], cores), heats, cores)
-    last = settings.ended[0]
-    ended = run(bench, [*led, *entered(bench, [centre], last, cores)], (last,), cores)
-    [fitted] = hypotheses_of(bench, ended[:1], last)
-    trace(f"    nominal {direct.fit.over_noise:.4f}, continued {fitted.fit.over_noise:.4f}")
-    return fitted if direct.fit.objective - fitted.fit.objective > gain_needed(direct.fit) else None
+    parameters, rng = bench.parameters(()), np.random.default_rng(settings.seed)
+    own = parameters.unit({})
+    places = [own, np.full_like(own, 0.5)]
+    places += [np.clip(own + SPREAD * rng.standard_normal(own.size), 0.0, 1.0) for _ in range(settings.drawn)]
+    moving = bench.movable((), parameters)
+    begun = [Entrant((), parameters.values(np.where(moving, place, own))) for place in places]
+    left = direct.fit.over_noise
+    fits = _long_race(bench, begun, left, reach, settings, cores)
+    if fits:
+        trace(f"    nominal {left:.4f}, continued {fits[0].fit.over_noise:.4f}")
+    return fits[0] if fits else None
 
 
 def out_of_local_minima(
@@ -132,13 +136,31 @@ def continued_to_the_end(
     entrants = [
         entrant for ids in chosen for entrant in _starts([h for h in ranked if h.ids == ids], left, settings)
     ]
+    return _long_race(bench, entrants, left, left, settings, cores)
+
+
+def _long_race(
+    bench: Workbench, entrants: Sequence[Entrant], left: float, reach: float, settings: Settings, cores: int
+) -> list[Hypothesis]:
+    """Fits that are continued as long as they take, but for those by which an observer shows that they lead nowhere.
+
+    Args:
+        bench: data and problems.
+        entrants: where they begin.
+        left: over the noise, by the best structure so far.
+        reach: what leaves less over the noise goes on, and what is at the noise; faster observers must leave clearly
+            less.
+        settings: of the search.
+        cores: that roll out at the same time.
+    """
     rungs = steps_for(settings.long, left < NOISE.far)
     runners = entered(bench, entrants, rungs[0], cores) if entrants else []
+    slowest = max(t for t, _ in FITS.horizons if math.isfinite(t))
     for rung in rungs:
         if runners:
             ended = run(bench, runners, (rung,), cores, traced("to the end"))
-            reach = left if rung.observer_s >= FITS.continuation_s[-1] else settings.nearer * left
-            runners = [each for each in ended if over_noise_of(each) < reach or not above_noise(each)]
+            clearly = 1.0 if rung.observer_s >= slowest else settings.nearer
+            runners = [r for r in ended if over_noise_of(r) < clearly * reach or not above_noise(r)]
             if math.isinf(rung.observer_s):
                 runners = [each for each in runners if not above_noise(each)] or runners
     return hypotheses_of(bench, runners, rungs[-1])

@@ -10,7 +10,6 @@ from hydrolek_drake.diagnosis.laws.additions import LawTerm, of_additions
 from hydrolek_drake.diagnosis.lost_commands.search import with_windows
 from hydrolek_drake.diagnosis.search.by_continuation import (
     continued,
-    continued_nominal,
     out_of_local_minima,
     over_noise_of,
     steps_for,
@@ -33,7 +32,7 @@ def enlarged(
     found: Tried,
     settings: Settings,
     cores: int,
-) -> bool:
+) -> None:
     """Fit a structure with each of the additions that may be right, and what these lead to without others.
 
     Args:
@@ -43,35 +42,9 @@ def enlarged(
         found: receives the fits.
         settings: of the search.
         cores: that roll out at the same time.
-
-    Returns:
-        Whether the structure itself was fitted so much better meanwhile that it should be enlarged again.
     """
-    parent, enough = opening.parent, opening.enough
-    runners = _led_on(bench, opening, candidates, settings, cores)
-    if runners and over_noise_of(runners[0]) > enough:
-        runners = [*_farther(bench, runners[0], settings, cores), *runners]
-    if runners and bench.cut and bench.follows_supply and parent.fit.over_noise > enough:
-        runners = sorted(
-            [*_with_supply(bench, runners, NOISE.explained, settings, cores), *runners], key=over_noise_of
-        )
-    if runners and over_noise_of(runners[0]) > enough and not runners[0].place.ended:
-        runners = [*run(bench, runners[:1], settings.ended, cores, traced("first to the end")), *runners[1:]]
-    reached = min((over_noise_of(r) for r in runners), default=math.inf)
-    if reached > enough and parent.fit.over_noise > enough:
-        runners += continued(bench, opening, reached, settings, cores)
-    ended = _ended(bench, runners, enough, settings, cores)
-    better = None
-    reached = min((over_noise_of(r) for r in ended), default=math.inf)
-    if (
-        reached > enough
-        and parent.fit.over_noise > enough
-        and not parent.effects
-        and not found.nominal_continued
-    ):
-        better = continued_nominal(bench, parent, found, settings, cores)
-        if better is not None:
-            found.keep(better)
+    parent = opening.parent
+    ended = _raced(bench, opening, candidates, settings, cores)
     fits = hypotheses_of(bench, ended, settings.ended[-1])
     for each in fits:
         found.keep(each)
@@ -82,7 +55,63 @@ def enlarged(
             found.keep(each)
     _widened(bench, found, settings, cores)
     _lessened(bench, found, candidates, settings, cores)
-    return better is not None and better.fit.over_noise <= settings.nearer * parent.fit.over_noise
+
+
+def _raced(
+    bench: Workbench, opening: Opening, candidates: Sequence[Candidate], settings: Settings, cores: int
+) -> list[Runner]:
+    """Fits at the end of the races; the second one is run where the first does not lead to the noise.
+
+    Near the noise promises hold, and free rollouts lead from where the structure was fitted. Far from it its numbers
+    are bent, and observers come first.
+    """
+    parent, enough = opening.parent, opening.enough
+    reached, runners = math.inf, list[Runner]()
+    far = parent.fit.over_noise > NOISE.far
+    for way in (_by_observers, _freely) if far else (_freely, _by_observers):
+        if reached > enough:
+            left = min(reached, parent.fit.over_noise)
+            first, rest = way(bench, opening, candidates, left, settings, cores)
+            reached = min((over_noise_of(r) for r in first), default=math.inf)
+            runners += [*first, *rest]
+    return _ended(bench, runners, enough, settings, cores)
+
+
+def _by_observers(
+    bench: Workbench,
+    opening: Opening,
+    candidates: Sequence[Candidate],
+    left: float,
+    settings: Settings,
+    cores: int,
+) -> tuple[list[Runner], list[Runner]]:
+    """A race by continuation: the best, fitted to its end, and the rest."""
+    if opening.parent.fit.over_noise <= opening.enough:
+        return [], []
+    runners = continued(bench, opening, left, settings, cores)
+    return run(bench, runners[:1], settings.ended, cores, traced("first to the end")), runners[1:]
+
+
+def _freely(
+    bench: Workbench,
+    opening: Opening,
+    candidates: Sequence[Candidate],
+    left: float,
+    settings: Settings,
+    cores: int,
+) -> tuple[list[Runner], list[Runner]]:
+    """A race of free rollouts, the best one fitted to its end where it leaves more than noise; none beside."""
+    enough = opening.enough
+    runners = _led_on(bench, opening, candidates, settings, cores)
+    if runners and over_noise_of(runners[0]) > enough:
+        runners = [*_farther(bench, runners[0], settings, cores), *runners]
+    if runners and bench.cut and bench.follows_supply and opening.parent.fit.over_noise > enough:
+        runners = sorted(
+            [*_with_supply(bench, runners, NOISE.explained, settings, cores), *runners], key=over_noise_of
+        )
+    if runners and over_noise_of(runners[0]) > enough and not runners[0].place.ended:
+        runners = [*run(bench, runners[:1], settings.ended, cores, traced("first to the end")), *runners[1:]]
+    return runners, []
 
 
 def _ended(
@@ -177,8 +206,7 @@ def _lessened(
     entrants += _named_in_place(best, candidates, settings)
     rung = replace(settings.again, keep=len(entrants))
     fitted = race(bench, entrants, (rung,), cores)
-    near = not found.nominal_continued and found.baseline.fit.over_noise < NOISE.far
-    if len(best.effects) > 1 or near:  # others were fitted so before, or are beyond doubt
+    if len(best.effects) > 1:  # the nominal model was fitted so before
         own = [Entrant(each.effects, of_additions(each.values)) for each in entrants]
         rungs = (*steps_for(settings.continued, best.fit.over_noise < NOISE.far), settings.again)
         runners = entered(bench, own, rungs[0], cores)

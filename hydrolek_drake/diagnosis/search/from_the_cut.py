@@ -116,8 +116,6 @@ def _with_supply(
 ) -> list[Hypothesis]:
     """The structures with which the search goes on, each with the supply's numbers that the best one was given.
 
-    These are the nominal model, the best one with all that it contains, and those that are near it.
-
     Args:
         bench: data and problems.
         seen: what was found behind the cut.
@@ -126,16 +124,12 @@ def _with_supply(
         cores: that roll out at the same time.
     """
     best = seen.best
-    ranked = sorted(seen.hypotheses.values(), key=lambda h: h.fit.objective)
-    within = settings.again_within**2 * best.fit.objective
-    near = [h for h in ranked if h.fit.objective < within][: settings.most_again]
-    chosen = {h.ids: h for h in [*near, *(h for h in ranked if h.ids <= best.ids)]}
     nearest = sorted(before, key=lambda h: h.fit.over_noise)[:1]
     known = [
         {path: value for path, value in h.values.items() if not acts_behind(bench.rig, path)} for h in nearest
     ]
     supply = supply_before(bench, best.effects, best.values, known, cores)[0]
-    return [replace(h, values={**h.values, **supply}) for h in chosen.values()]
+    return [replace(h, values={**h.values, **supply}) for h in seen.near_the_best(settings)]
 
 
 @dataclass(frozen=True)

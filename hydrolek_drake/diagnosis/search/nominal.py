@@ -6,6 +6,7 @@ from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal, out_of_local_minima
+from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import FITS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
@@ -15,9 +16,8 @@ from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 def fit_nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
     """The nominal model by free rollouts from the rig's own numbers; or where a search goes on, what that one found.
 
-    Nothing is below the noise, so that a fit that reaches it needs no other starts. Where one is near it, so that
-    what is missing is small beside what a wrong local minimum leaves, it is fitted by continuation too; where it is
-    far, only if no addition to it reaches the noise (`enlarging`).
+    Nothing is below the noise, so that a fit that reaches it needs no other starts. Where it does not, the model is
+    fitted by continuation too.
     """
     if found.seeds:
         _go_on(bench, found, settings, cores)
@@ -25,9 +25,13 @@ def fit_nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) 
     rungs = (*settings.free, settings.ended[0])
     best = as_weighed(bench, race(bench, [Entrant((), {})], rungs, cores)[0], settings, cores)
     trace(f"nominal {best.fit.over_noise:.4f}")
-    if NOISE.at < best.fit.over_noise < NOISE.far:
-        better = continued_nominal(bench, best, found, settings, cores)
-        best = best if better is None else as_weighed(bench, better, settings, cores)
+    if best.fit.over_noise > NOISE.at:
+        left = best.fit.over_noise
+        # far from it no further than to an observer that leaves more than noise: something is missing then
+        reach = left if left <= NOISE.far else NOISE.at
+        better = continued_nominal(bench, best, reach, settings, cores)
+        if better is not None and best.fit.objective - better.fit.objective > gain_needed(best.fit):
+            best = as_weighed(bench, better, settings, cores)
     found.keep(best)
     found.weighed_at = best.fit.over_noise
 
@@ -42,7 +46,6 @@ def _go_on(bench: Workbench, found: Tried, settings: Settings, cores: int) -> No
         found.keep(each)
     best = found.best  # what it contains may only have been fitted in another local minimum
     trace(f"nominal {found.baseline.fit.over_noise:.4f}, best {best.fit.over_noise:.4f}")
-    found.nominal_continued = True
     found.weighed_at = best.fit.over_noise
     without = [Entrant(best.without(c), best.values_without(c)) for c in best.effects]
     if without:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -169,7 +169,7 @@ def observed(
     bench: Workbench, parent: Hypothesis, own: Sequence[Sized], settings: Settings, cores: int
 ) -> tuple[list[Promise], float]:
     """What additions promise to an observer around the rig's own numbers, and the share that the best one takes."""
-    first = settings.continued[0]
+    first = replace(settings.continued[1], coarse=FITS.coarse)
     parameters = bench.parameters(parent.effects)
     unit = np.clip(parameters.unit(of_additions(parent.values)), FITS.negligible, 1.0 - FITS.negligible)
     near = descend([_place(bench, parent, first, unit)], 2, bench.pool, cores)[0]

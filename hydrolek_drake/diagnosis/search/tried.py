@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.promise import Promise
-from hydrolek_drake.diagnosis.settings import GAINS
+from hydrolek_drake.diagnosis.settings import GAINS, Settings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 
 
@@ -19,7 +19,6 @@ class Tried:
         weighed_at: what the structure left, over the noise, by which the data are weighed.
         costs: of the best structure after each round.
         seeds: structures fitted to other data, from where fits begin too.
-        nominal_continued: whether the nominal model was fitted by continuation too.
         lessened: the structure that was fitted without each of its additions last.
     """
 
@@ -29,7 +28,6 @@ class Tried:
     weighed_at: float = 0.0
     costs: list[float] = field(default_factory=list)
     seeds: list[Hypothesis] = field(default_factory=list)
-    nominal_continued: bool = False
     lessened: Hypothesis | None = None
 
     def keep(self, hypothesis: Hypothesis) -> None:
@@ -49,6 +47,18 @@ class Tried:
     def best(self) -> Hypothesis:
         """The structure that costs least."""
         return min(self.hypotheses.values(), key=cost)
+
+    def near_the_best(self, settings: Settings) -> list[Hypothesis]:
+        """Those near the best one, the best first, and all that it contains: others lie behind for good.
+
+        Args:
+            settings: of the search.
+        """
+        best = self.best
+        ranked = sorted(self.hypotheses.values(), key=lambda h: h.fit.objective)
+        within = settings.again_within**2 * best.fit.objective
+        near = [h for h in ranked if h.fit.objective < within][: settings.most_again]
+        return list({h.ids: h for h in [*near, *(h for h in ranked if h.ids <= best.ids)]}.values())
 
     @property
     def gaining(self) -> bool:

@@ -8,13 +8,17 @@ from dataclasses import dataclass
 class Fits:
     """How a structure is fitted."""
 
-    observers_s: tuple[float, ...] = (0.1, 0.5, 3.0)
-    """Time constants of observers [s], each five or six times the one before: what they forget makes few local
-    minima, what they remember tells slow things."""
-
-    continuation_s: tuple[float, ...] = (0.03, 0.1, 0.3, 1.0)
-    """The same where a structure is continued to the end, each three times the one before. The fastest remembers some
-    samples of a recording, and one swing of a joint against its oil."""
+    horizons: tuple[tuple[float, float], ...] = (
+        (0.03, 10.0),
+        (0.1, 10.0),
+        (0.3, 20.0),
+        (1.0, 20.0),
+        (math.inf, 20.0),
+    )
+    """Continuation: time constants of the observer [s], each three times the one before, and how much of the
+    recordings each is shown [s]. What an observer forgets makes few local minima, what it remembers tells slow things;
+    the fastest remembers some samples of a recording, and one swing of a joint against its oil, and sees three hundred
+    of these in 10 s."""
 
     coarse: float = 4.0
     """Steps so many times the rig's own lead fits until their end, and tell what an addition changes where they are on
@@ -91,7 +95,14 @@ class Rung:
     each: int = 2
 
 
-_FAST, _MIDDLE, _SLOW = FITS.observers_s
+def _continued(
+    rounds: tuple[int, ...], keep: tuple[int, ...], share: float, behind: float, each: int
+) -> tuple[Rung, ...]:
+    """Rungs of a continuation. The first one leads with long steps; the error of these is none of what is compared."""
+    return tuple(
+        Rung(t, 1.0 if i else FITS.coarse, seconds, steps, left, share, behind, i > 0, each)
+        for i, ((t, seconds), steps, left) in enumerate(zip(FITS.horizons, rounds, keep, strict=True))
+    )
 
 
 @dataclass(frozen=True)
@@ -119,11 +130,7 @@ class Settings:
     )
     """A race of free rollouts, from where the structure before it led."""
 
-    continued: tuple[Rung, ...] = (
-        Rung(_FAST, FITS.coarse, 20.0, 4, 12, behind=FITS.behind),
-        Rung(_MIDDLE, FITS.coarse, math.inf, 8, 8, behind=FITS.behind, elsewhere=True),
-        Rung(_SLOW, FITS.coarse, math.inf, 12, 4, behind=FITS.behind, elsewhere=True),
-    )
+    continued: tuple[Rung, ...] = _continued((6, 8, 12, 12, 12), (16, 8, 6, 4, 4), 5e-4, FITS.behind, 2)
     """A race by continuation, from the rig's own numbers: prediction errors of an observer forget, so that they have
     few local minima (Ljung, System Identification, 1999, chapter 7); free rollouts see what is slow."""
 
@@ -134,32 +141,27 @@ class Settings:
     """The end of both races."""
 
     long: tuple[Rung, ...] = (
-        Rung(FITS.continuation_s[0], FITS.coarse, 10.0, 12, 6, share=3e-4, each=3),
-        *(
-            Rung(t, FITS.coarse, seconds, 40, 4, share=3e-4, elsewhere=True)
-            for t, seconds in zip(FITS.continuation_s, (10.0, 20.0, 20.0, 20.0), strict=True)
-        ),
-        Rung(math.inf, 1.0, 20.0, 40, 4, share=3e-4, elsewhere=True),
+        *_continued((12, 40, 40, 40, 40), (6, 4, 4, 4, 4), 3e-4, 0.0, 3),
         Rung(math.inf, 1.0, math.inf, 60, 4, share=1e-4, elsewhere=True),
     )
-    """Continuation of the best structures of a race, where these leave more than noise, with as many steps as they
-    take, from several starts: what forgets within 0.03 s sees three hundred movements in 10 s, and costs little. A
-    Stribeck friction whose joint sticks and slips ended at 9.7 times the noise after the steps of a race, and at 0.90
-    with these from one of three starts (570/026); hopsan_link's h05, which chatters at 30 Hz, at 1.8 to 1.9 without an
-    observer of 0.03 s, at 1.5 over all data with each six times as slow as the one before, and at 0.98 so."""
+    """Continuation of the nominal model, and of the best structures of a race, where these leave more than noise, with
+    as many steps as they take, from several starts. A Stribeck friction whose joint sticks and slips ended at 9.7 times
+    the noise after the steps of a race, and at 0.90 with these from one of three starts (570/026); hopsan_link's h05,
+    which chatters at 30 Hz, at 1.8 to 1.9 without an observer of 0.03 s, at 1.5 over all data with each six times as
+    slow as the one before, and at 0.98 so."""
 
     to_the_end: int = 2
     """So many structures of a race are continued so."""
 
-    nominal: tuple[Rung, ...] = (
-        Rung(_FAST, FITS.coarse, math.inf, 8, 4),
-        Rung(_MIDDLE, FITS.coarse, math.inf, 8, 4),
-        Rung(_SLOW, 1.0, math.inf, 12, 4),
-    )
-    """The nominal model by continuation."""
+    drawn: int = 6
+    """So many starts of the nominal model are drawn from the prior, beside the rig's own numbers and the middle of
+    their ranges: with these they fill a table of lanes."""
+
+    seed: int = 1
+    """Of what is drawn: the same each time."""
 
     near: tuple[Rung, ...] = (
-        Rung(_MIDDLE, 1.0, math.inf, 6, 4, each=4),
+        Rung(0.5, 1.0, math.inf, 6, 4, each=4),
         Rung(math.inf, 1.0, math.inf, 20, 1, share=1e-4),
     )
     """Fits from places near one that ended."""

@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-from hydrolek_drake.diagnosis.settings.search import FITS
-
 
 @dataclass(frozen=True)
 class Locating:
@@ -82,19 +80,14 @@ class Dropouts:
     whole: float = 1.2
     """Multiple of a command that may be missing: there is no more in it to be lost but for the observer's own error."""
 
+    remembers_s: float = 3.0
+    """Time constant of the observer [s]. A joint that misses its command for a few milliseconds is off by little, and
+    for good: a faster observer forgets it before it can be told from noise."""
+
     @property
     def most_knots(self) -> int:
         """A window is tried over so many spacings of knots at most."""
         return round(self.moves_s / self.sample_s)
-
-    @property
-    def remembers_s(self) -> float:
-        """Time constant of the observer [s].
-
-        A joint that misses its command for a few milliseconds is off by little, and for good: a fast observer forgets
-        it before it can be told from noise.
-        """
-        return FITS.observers_s[-1]
 
 
 DROPOUTS = Dropouts()

@@ -4,6 +4,7 @@ Slopes are corrected so that they agree with how the residuals really changed on
 Broyden method; Fang and Saad, Numerical Linear Algebra with Applications 16 (2009) 197).
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -39,11 +40,15 @@ class Ending:
     share: float = 1e-3
     behind: float = 0.0
     ahead: float = 0.0
+    best: float = 0.0
+    steps: float = math.inf
 
     def least(self, place: Place) -> float:
         """The fall of the squares below which a step is not worth taking."""
         left = place.objective
-        return max(self.worth, self.share * left, self.behind * (left - self.ahead))
+        return max(
+            self.worth, self.share * left, self.behind * (left - self.ahead), (left - self.best) / self.steps
+        )
 
 
 @dataclass(frozen=True)

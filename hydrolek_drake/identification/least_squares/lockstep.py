@@ -7,6 +7,7 @@ Direction (`normal_equations`), acceptance and ending (`acceptance`) are apart, 
 arXiv:2402.09983).
 """
 
+import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
@@ -53,7 +54,7 @@ def descend(
         stop: asked before each round; it raises what ends the descent.
     """
     now = list(places)
-    for _ in range(rounds):
+    for number in range(rounds):
         stop()
         going = [
             i for i, place in enumerate(now) if not place.ended and (renewing or place.slopes is not None)
@@ -62,15 +63,12 @@ def descend(
             break
         for i, place in zip(going, with_slopes([now[i] for i in going], pool, cores, leading), strict=True):
             now[i] = place
-        ending = Ending(worth, share, behind, _ahead(now))
+        best = min(p.objective for p in now if p.residuals is not None)
+        ahead = min(best, *(p.problem.counted for p in now))
+        ending = Ending(worth, share, behind, ahead, best, rounds - number if behind else math.inf)
         for i, place in zip(going, _stepped([now[i] for i in going], pool, cores, ending), strict=True):
             now[i] = place
     return _with_residuals(now, pool, cores)
-
-
-def _ahead(places: Sequence[Place]) -> float:
-    """Squares that the best of some fits leaves, or noise would: nothing is below it."""
-    return min(min(p.objective, p.problem.counted) for p in places if p.residuals is not None)
 
 
 def _with_residuals(places: Sequence[Place], pool: Executor, cores: int) -> list[Place]:

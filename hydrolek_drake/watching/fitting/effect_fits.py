@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.settings import FITS, NOISE
+from hydrolek_drake.diagnosis.settings import NOISE
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.lockstep import descend, with_slopes
@@ -187,7 +187,7 @@ def by_observers(
             unit = problem.parameters.unit(own)
             unit[: known.mean.size] = own_begin
             places.append((candidate, Place(problem, moving, np.clip(unit, 1e-6, 1.0 - 1e-6))))
-    for seconds, (steps, keep) in zip(FITS.observers_s, OBSERVED, strict=True):
+    for seconds, steps, keep in OBSERVED:
         pulled = [place.at(place.problem.pulled(seconds)) for _, place in places]
         led = list(
             zip((candidate for candidate, _ in places), fitted_on(pulled, session, steps), strict=True)
