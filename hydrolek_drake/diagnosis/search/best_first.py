@@ -1,22 +1,17 @@
 """Best-first search among structures: what promises most evidence is fitted next, until nothing more is promised."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Protocol
 
-from hydrolek_drake.diagnosis import trace
-from hydrolek_drake.diagnosis.fitting.entrants import Entrant
-from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.enlarging import enlarged
-from hydrolek_drake.diagnosis.search.nominal import fit_nominal
+from hydrolek_drake.diagnosis.search.nominal import fit_nominal, weigh_anew
 from hydrolek_drake.diagnosis.search.openings import Opening, opened, surely_above
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import NOISE, Settings
 from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
-from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
 EFFECTS, LAWS = "effects", "laws"
@@ -83,7 +78,7 @@ def search_structures(
         say(f"{next_.kind} beside {' + '.join(c.id for c in next_.parent.effects) or 'the nominal model'}")
         done.add(next_.key)
         enlarged(bench, next_, candidates, found, settings, cores)
-        _weigh(bench, found, settings, cores)
+        weigh_anew(bench, found, settings, cores)
         if found.rounds_without_gain(settings.patience):
             break
 
@@ -141,34 +136,3 @@ def _explained_by(best: Hypothesis, structure: Hypothesis, settings: Settings) -
     """
     behind = structure.fit.over_noise > settings.again_within * best.fit.over_noise
     return behind and best.fit.over_noise <= NOISE.explained and structure.ids < best.ids
-
-
-def _weigh(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
-    """Weigh the data by the best structure where it tells their noise better, and fit what is near it again."""
-    best = found.best
-    if best.fit.over_noise > settings.nearer * found.weighed_at:
-        return
-    bench.training = tuple(weighted_by(bench, best, bench.training))
-    bench.progress.anew()
-    ranked = sorted(found.hypotheses.values(), key=lambda h: h.fit.objective)
-    within = settings.again_within**2 * best.fit.objective
-    near = [h for h in ranked if h.fit.objective < within][: settings.most_again]
-    again = race(
-        bench,
-        [Entrant(h.effects, h.values) for h in near],
-        (replace(settings.again, keep=len(near)),),
-        cores,
-    )
-    if all(h.effects for h in near):  # the nominal model lies far behind, and is told beside the others only
-        again += race(bench, [Entrant((), found.baseline.values)], (settings.led,), cores)
-    found.given_up.update(found.hypotheses)
-    found.hypotheses.clear()
-    for each in again:
-        found.keep(each)
-    found.weighed_at = found.best.fit.over_noise
-    trace(
-        "  weighed: "
-        + ", ".join(
-            f"{[c.id for c in h.effects]} {h.fit.over_noise:.4f}" for h in sorted(again, key=cost)[:4]
-        )
-    )

@@ -14,7 +14,7 @@ from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.openings import Opening, observed, surely_above
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import FITS, NOISE, Rung, Settings
+from hydrolek_drake.diagnosis.settings import NOISE, Rung, Settings
 from hydrolek_drake.diagnosis.structures.addition import names_of
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
@@ -23,10 +23,10 @@ from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Wo
 def continued(
     bench: Workbench, opening: Opening, left: float, settings: Settings, cores: int
 ) -> list[Runner]:
-    """A race by continuation, from the rig's own numbers and from where the structure was fitted.
+    """A race by continuation, from the rig's own numbers; near the noise from where the structure was fitted too.
 
-    Not far from the noise, where what is left may be as fast as the observer, slower ones are asked only for what a
-    faster one leaves clearly less of than free rollouts do; where these explain the data but for a little, for all.
+    Slower observers are asked only for what a faster one leaves clearly less of than free rollouts do, since these
+    leave no less; where they explain the data but for a little, for all.
 
     Args:
         bench: data and problems.
@@ -39,19 +39,23 @@ def continued(
         What goes on, the best first.
     """
     parent = opening.parent
+    far = parent.fit.over_noise > NOISE.far  # its numbers are bent there
     own, fitted = Start(parent.effects, opening.sizes), Start(parent.effects, parent.values)
     pulled = opening.pulled or observed(bench, parent, opening.own, settings, cores)[0]
     entrants = [
         begun.with_addition(p.candidate, start)
         for p in pulled[: settings.entrants]
-        for start in p.starts[: None if p.candidate.sudden else 1]
-        for begun in (own, fitted)
+        for start in p.starts[: None if p.candidate.sudden else settings.starts if far else 1]
+        for begun in ((own,) if far else (own, fitted))
     ]
-    heats = steps_for(settings.continued, parent.fit.over_noise < NOISE.far)
+    heats = steps_for(settings.continued, not far)
     runners = entered(bench, entrants, heats[0], cores)
-    for heat in heats:
+    for heat, taken in zip(heats, settings.long, strict=False):
         runners = run(bench, runners, (heat,), cores, traced("observed")) if runners else []
-        if left < NOISE.far and settings.nearer * left > NOISE.explained:
+        if runners and above_noise(runners[0]):  # the best one as long as it takes
+            on = replace(heat, rounds=taken.rounds, share=taken.share, behind=0.0)
+            runners = [*run(bench, runners[:1], (on,), cores, traced("best")), *runners[1:]]
+        if settings.nearer * left > NOISE.explained:
             runners = [r for r in runners if over_noise_of(r) < settings.nearer * left]
     return runners
 
@@ -148,19 +152,16 @@ def _long_race(
         bench: data and problems.
         entrants: where they begin.
         left: over the noise, by the best structure so far.
-        reach: what leaves less over the noise goes on, and what is at the noise; faster observers must leave clearly
-            less.
+        reach: what leaves less over the noise goes on, and what is at the noise.
         settings: of the search.
         cores: that roll out at the same time.
     """
     rungs = steps_for(settings.long, left < NOISE.far)
     runners = entered(bench, entrants, rungs[0], cores) if entrants else []
-    slowest = max(t for t, _ in FITS.horizons if math.isfinite(t))
     for rung in rungs:
         if runners:
             ended = run(bench, runners, (rung,), cores, traced("to the end"))
-            clearly = 1.0 if rung.observer_s >= slowest else settings.nearer
-            runners = [r for r in ended if over_noise_of(r) < clearly * reach or not above_noise(r)]
+            runners = [r for r in ended if over_noise_of(r) < reach or not above_noise(r)]
             if math.isinf(rung.observer_s):
                 runners = [each for each in runners if not above_noise(each)] or runners
     return hypotheses_of(bench, runners, rungs[-1])

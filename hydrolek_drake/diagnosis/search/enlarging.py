@@ -16,6 +16,7 @@ from hydrolek_drake.diagnosis.search.by_continuation import (
     traced,
 )
 from hydrolek_drake.diagnosis.search.cost import gain_needed
+from hydrolek_drake.diagnosis.search.nominal import weigh_anew
 from hydrolek_drake.diagnosis.search.openings import Opening
 from hydrolek_drake.diagnosis.search.parts import supply_before
 from hydrolek_drake.diagnosis.search.standing_in import standing_in
@@ -44,7 +45,7 @@ def enlarged(
         cores: that roll out at the same time.
     """
     parent = opening.parent
-    ended = _raced(bench, opening, candidates, settings, cores)
+    ended = _raced(bench, opening, candidates, found, settings, cores)
     fits = hypotheses_of(bench, ended, settings.ended[-1])
     for each in fits:
         found.keep(each)
@@ -58,22 +59,34 @@ def enlarged(
 
 
 def _raced(
-    bench: Workbench, opening: Opening, candidates: Sequence[Candidate], settings: Settings, cores: int
+    bench: Workbench,
+    opening: Opening,
+    candidates: Sequence[Candidate],
+    found: Tried,
+    settings: Settings,
+    cores: int,
 ) -> list[Runner]:
     """Fits at the end of the races; the second one is run where the first does not lead to the noise.
 
     Near the noise promises hold, and free rollouts lead from where the structure was fitted. Far from it its numbers
-    are bent, and observers come first.
+    are bent, and observers come first. What is much better than all before tells the noise better, and how much the
+    integration leaves where a joint chatters: it is fitted again with the data so weighed before anything else is.
     """
     parent, enough = opening.parent, opening.enough
     reached, runners = math.inf, list[Runner]()
     far = parent.fit.over_noise > NOISE.far
     for way in (_by_observers, _freely) if far else (_freely, _by_observers):
-        if reached > enough:
-            left = min(reached, parent.fit.over_noise)
-            first, rest = way(bench, opening, candidates, left, settings, cores)
-            reached = min((over_noise_of(r) for r in first), default=math.inf)
-            runners += [*first, *rest]
+        if reached <= enough:
+            break
+        left = min(reached, parent.fit.over_noise)
+        first, rest = way(bench, opening, candidates, left, settings, cores)
+        reached = min((over_noise_of(r) for r in first), default=math.inf)
+        runners += [*first, *rest]
+        if enough < reached < settings.nearer * found.weighed_at:
+            for each in hypotheses_of(bench, first, settings.ended[-1]):
+                found.keep(each)
+            weigh_anew(bench, found, settings, cores)
+            reached = found.best.fit.over_noise
     return _ended(bench, runners, enough, settings, cores)
 
 
@@ -117,12 +130,15 @@ def _freely(
 def _ended(
     bench: Workbench, runners: Sequence[Runner], enough: float, settings: Settings, cores: int
 ) -> list[Runner]:
-    """The end of the races; what is not at the noise need not be known to the last square."""
-    ended = list(runners)
-    for rung in settings.ended:
-        if ended and (rung is settings.ended[0] or over_noise_of(ended[0]) <= enough):
-            ended = run(bench, ended, (rung,), cores, traced("end"))
-    return ended
+    """The end of the races; to the last square only what is at the noise, or not clearly behind what is."""
+    first, last = settings.ended
+    ended = run(bench, runners, (first,), cores, traced("end")) if runners else []
+    if not ended or over_noise_of(ended[0]) > enough:
+        return ended
+    reach = over_noise_of(ended[0]) / settings.nearer
+    behind = [r for r in ended if over_noise_of(r) > reach]
+    near = [r for r in ended if over_noise_of(r) <= reach]
+    return [*run(bench, near, (last,), cores, traced("end")), *behind]
 
 
 def _led_on(

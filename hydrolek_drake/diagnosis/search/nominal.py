@@ -6,7 +6,7 @@ from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal, out_of_local_minima
-from hydrolek_drake.diagnosis.search.cost import gain_needed
+from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import FITS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
@@ -65,3 +65,41 @@ def as_weighed(bench: Workbench, structure: Hypothesis, settings: Settings, core
         if now.fit.over_noise > 1.0 / NOISE.at or now.fit.over_noise < NOISE.at * before.fit.over_noise:
             break
     return now
+
+
+def weigh_anew(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
+    """Weigh the data by the best structure where it tells their noise better, and fit what is near it again.
+
+    Args:
+        bench: data and problems.
+        found: receives the fits; those that are not near it are given up.
+        settings: of the search.
+        cores: that roll out at the same time.
+    """
+    best = found.best
+    if best.fit.over_noise > settings.nearer * found.weighed_at:
+        return
+    bench.training = tuple(weighted_by(bench, best, bench.training))
+    bench.progress.anew()
+    ranked = sorted(found.hypotheses.values(), key=lambda h: h.fit.objective)
+    within = settings.again_within**2 * best.fit.objective
+    near = [h for h in ranked if h.fit.objective < within][: settings.most_again]
+    again = race(
+        bench,
+        [Entrant(h.effects, h.values) for h in near],
+        (replace(settings.again, keep=len(near)),),
+        cores,
+    )
+    if all(h.effects for h in near):  # the nominal model lies far behind, and is told beside the others only
+        again += race(bench, [Entrant((), found.baseline.values)], (settings.led,), cores)
+    found.given_up.update(found.hypotheses)
+    found.hypotheses.clear()
+    for each in again:
+        found.keep(each)
+    found.weighed_at = found.best.fit.over_noise
+    trace(
+        "  weighed: "
+        + ", ".join(
+            f"{[c.id for c in h.effects]} {h.fit.over_noise:.4f}" for h in sorted(again, key=cost)[:4]
+        )
+    )
