@@ -48,25 +48,37 @@ def openings(x: float, joint: Any) -> Openings:
     if rare(joint) and p.variant == FOUR_EDGES:
         return Openings(
             opening_table.tabled(
-                _opened(x - (p.overlap_pa + shift), p.full_opening - p.overlap_pa),
+                _opened(
+                    _rounded(x - (p.overlap_pa + shift), p.edge_rounding),
+                    p.full_opening - p.overlap_pa,
+                ),
                 p.share_pa_quarter,
                 p.share_pa_half,
                 p.share_pa_three_quarters,
             ),
             opening_table.tabled(
-                _opened(-x - (p.overlap_at - shift), p.full_opening - p.overlap_at),
+                _opened(
+                    _rounded(-x - (p.overlap_at - shift), p.edge_rounding),
+                    p.full_opening - p.overlap_at,
+                ),
                 p.share_at_quarter,
                 p.share_at_half,
                 p.share_at_three_quarters,
             ),
             opening_table.tabled(
-                _opened(-x - (p.overlap_pb - shift), p.full_opening - p.overlap_pb),
+                _opened(
+                    _rounded(-x - (p.overlap_pb - shift), p.edge_rounding),
+                    p.full_opening - p.overlap_pb,
+                ),
                 p.share_pb_quarter,
                 p.share_pb_half,
                 p.share_pb_three_quarters,
             ),
             opening_table.tabled(
-                _opened(x - (p.overlap_bt + shift), p.full_opening - p.overlap_bt),
+                _opened(
+                    _rounded(x - (p.overlap_bt + shift), p.edge_rounding),
+                    p.full_opening - p.overlap_bt,
+                ),
                 p.share_bt_quarter,
                 p.share_bt_half,
                 p.share_bt_three_quarters,
@@ -75,6 +87,17 @@ def openings(x: float, joint: Any) -> Openings:
     towards_a = _opened(x - (p.overlap_a + shift), p.full_opening_a - p.overlap_a)
     towards_b = _opened(-x - (p.overlap_b - shift), p.full_opening_b - p.overlap_b)
     return Openings(towards_a, towards_b, towards_b, towards_a)
+
+
+@njit
+def _rounded(beyond: float, radius: float) -> float:
+    """Opening of an edge that is `beyond` its overlap [m].
+
+    Edges are rounded and run with a clearance, so that one opens by sqrt(x^2 + r^2) - r: with the square of its travel
+    at first and, beyond some radii, by its travel less the radius (McCloy, Martin, Control of Fluid Power, 1980). What
+    is closed stays so.
+    """
+    return math.sqrt(beyond * beyond + radius * radius) - radius if beyond > 0.0 and radius > 0.0 else beyond
 
 
 @njit

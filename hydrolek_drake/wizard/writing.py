@@ -124,6 +124,7 @@ def _valve(sheet: Sheet) -> list[str]:
             for edge, gradient in sheet.gradients.items()
         ),
         f"  {_discharge(sheet)}",
+        f"  {kept('edge_rounding')}",
     ]
 
 

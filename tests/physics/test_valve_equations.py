@@ -192,6 +192,18 @@ def test_each_of_four_edges_is_an_orifice_of_its_width_times_the_travel_beyond_i
     assert_allclose(drawn, in_a + in_b, rtol=1e-12, atol=1e-18)
 
 
+@pytest.mark.parametrize("beyond_um", [-2.0, 0.5, 3.0, 40.0, 400.0])
+def test_a_rounded_edge_opens_by_less_than_its_travel_and_by_nothing_while_closed(link_joint, beyond_um):
+    x, radius = EDGES["valve.overlap_pa"] + 1e-6 * beyond_um, 3e-6
+    sharp = openings(x, link_joint(EDGES)).pa
+    rounded = openings(x, link_joint({**EDGES, "valve.edge_rounding": radius})).pa
+    beyond = max(1e-6 * beyond_um, 0.0)
+    travel = EDGES["valve.full_opening"] - EDGES["valve.overlap_pa"]
+    assert_allclose(sharp, beyond / travel, rtol=1e-9, atol=1e-15)
+    assert_allclose(rounded, (np.hypot(beyond, radius) - radius) / travel, rtol=1e-9, atol=1e-15)
+    assert sharp - radius / travel - 1e-12 <= rounded <= sharp
+
+
 def test_four_equal_edges_are_the_valve_with_one_area(link_joint, bench_joint):
     overlap, full, area = 0.06e-3, 0.35e-3, 0.67e-6
     same = {f"valve.overlap_{edge}": overlap for edge in ("pa", "at", "pb", "bt")}

@@ -26,6 +26,7 @@ from hydrolek_drake.diagnosis.evidence.judged import (
 )
 from hydrolek_drake.diagnosis.evidence.nuisance import own_of_recordings, with_stands
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
+from hydrolek_drake.diagnosis.fitting.line_search import lowest_along_each
 from hydrolek_drake.diagnosis.fitting.problems import problem_with
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
@@ -270,7 +271,8 @@ def left_of(
 
     Where the best one explains what it was fitted to and fails here, these data may show what the others do not, such
     as a place where the joint had not been: then it is fitted to them too, since a model that explains all that was
-    recorded lacks nothing that these data could show.
+    recorded lacks nothing that these data could show. What the training data do not tell may lie far off, so that the
+    fit goes on from the lowest place along each of its numbers.
 
     Args:
         bench: data and problems.
@@ -312,9 +314,18 @@ def left_of(
         (asked, best), ahead = behind, [e.behind_cut() for e in held_out]
     begun = _to_both(asked, best, ahead, settings)
     [both] = _fitted_to_both(asked, [begun], settings, cores, renewing=True)
-    counted = max(sum(e.counted for e in ahead), 1)
-    beyond = max(both.objective - best.fit.objective, 0.0)
-    return (replace(told[0], fitted_too=math.sqrt(beyond / counted)), *told[1:])
+    now = replace(told[0], fitted_too=_beyond(both, best, ahead))
+    if now.fails_ahead_alone:
+        elsewhere = lowest_along_each(both, asked.pool, cores)
+        [both] = _fitted_to_both(asked, [elsewhere], settings, cores, renewing=True)
+        now = replace(told[0], fitted_too=_beyond(both, best, ahead))
+    return (now, *told[1:])
+
+
+def _beyond(both: Place, hypothesis: Hypothesis, held_out: Sequence[Experiment]) -> float:
+    """Times the noise that a fit to the training data and others leaves of these."""
+    squares = max(both.objective - hypothesis.fit.objective, 0.0)
+    return math.sqrt(squares / max(sum(e.counted for e in held_out), 1))
 
 
 def _of_the_machine(place: Place, hypothesis: Hypothesis) -> np.ndarray:

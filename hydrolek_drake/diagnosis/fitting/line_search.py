@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.settings import FITS
 from hydrolek_drake.identification.least_squares.normal_equations import normal_step
 from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.rolling import Request, residuals_at
@@ -69,6 +70,22 @@ def searched_along(
         ]
         best.append(min([place, *reached], key=lambda p: p.objective))
     return best
+
+
+def lowest_along_each(place: Place, pool: Executor, cores: int) -> Place:
+    """The lowest place along any of the parameters over its range, others along their tangents; the same if none is.
+
+    A number that acts from a threshold on has a slope on one side of it only, and a fit that begins on the other side
+    does not cross it.
+
+    Args:
+        place: with residuals and slopes.
+        pool: threads.
+        cores: that roll out at the same time.
+    """
+    units = (np.arange(FITS.places) + 0.5) / FITS.places
+    ways = [Along(int(index), units) for index in np.flatnonzero(place.moving)]
+    return min(searched_along([place] * len(ways), ways, pool, cores), key=lambda p: p.objective)
 
 
 def _followed(place: Place, index: int, unit: np.ndarray, residuals: np.ndarray) -> np.ndarray:

@@ -74,6 +74,13 @@ STAGE = Stage(
                 for edge, way in _WAYS.items()
             ),
             Parameter("discharge", "1", "contraction coefficient C_q in (4.7)", lowest=0.0),
+            Parameter(
+                "edge_rounding",
+                "m",
+                "radius of the spool's edges: within it an edge opens by less than its travel",
+                neutral=0.0,
+                lowest=0.0,
+            ),
             *opening_table.parameters(_WAYS),
         ),
         "flow_map": (
