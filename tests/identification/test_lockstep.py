@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.fitting.line_search import Along, searched_along
+from hydrolek_drake.diagnosis.fitting.line_search import Along, lowest_along_each, searched_along
+from hydrolek_drake.identification.least_squares.acceptance import Ending
 from hydrolek_drake.identification.least_squares.least_squares import fit_from
 from hydrolek_drake.identification.least_squares.lockstep import descend
 from hydrolek_drake.identification.least_squares.place import Place
@@ -65,6 +66,44 @@ def test_a_search_along_one_parameter_takes_the_others_with_it(problem) -> None:
         [found] = searched_along([away], [Along(0, np.append(values, bottom.unit[0]))], pool, 2)
     assert same is bottom
     assert found.objective < 0.2 * away.objective
+
+
+def test_who_would_not_catch_up_with_the_steps_that_are_left_ends(problem) -> None:
+    """The nearer the end of a race, the more a step must promise; the best one goes on."""
+    with ThreadPoolExecutor(2) as pool:
+        [best] = descend([_begun(problem, 0.05)], 25, pool, 2, worth=1e-3, share=0.0)
+        [behind] = descend([_begun(problem, 0.2)], 0, pool, 2)
+    distance = behind.objective - best.objective
+    for steps in (10, 2):
+        ending = Ending(0.0, 0.0, 0.01, best.objective, best.objective, steps)
+        assert ending.least(behind) == pytest.approx(distance / steps)
+        assert ending.least(best) == 0.0
+
+
+class Threshold(Problem):
+    """What the first number is beyond a place makes no difference."""
+
+    BEYOND = 0.2
+    """From where it is right [ranges]."""
+
+    def runs(self, unit):
+        most = self.parameters.unit()[0] + self.BEYOND
+        return super().runs(np.where(np.arange(unit.size) == 0, np.minimum(unit, most), unit))
+
+
+def test_a_number_that_acts_from_a_threshold_on_is_found_from_its_other_side(problem) -> None:
+    """Below the threshold it has no slope, and a fit that begins there stays."""
+    hidden = Threshold(problem.parameters, problem.experiments, problem.longest_step)
+    with ThreadPoolExecutor(2) as pool:
+        [led] = descend([_begun(problem, 0.05)], 25, pool, 2, worth=1e-3, share=0.0)
+        beyond = np.where(np.arange(led.unit.size) == 0, led.unit[0] + 0.3, led.unit)
+        [stuck] = descend([Place(hidden, led.moving, beyond)], 10, pool, 2)
+        lowest = lowest_along_each(stuck, pool, 2)
+        [ended] = descend([lowest], 10, pool, 2)
+        same = lowest_along_each(led, pool, 2)
+    assert stuck.objective > 2.0 * led.objective
+    assert ended.objective == pytest.approx(led.objective, rel=0.05)
+    assert same.objective == led.objective
 
 
 def test_how_one_observers_fit_ended_does_not_stop_the_next_ones(problem) -> None:

@@ -46,7 +46,8 @@ def descend(
         worth: a fit ends where a step promises or takes less than so many squares, ...
         share: ... or less than this share of what is left, ...
         behind: ... or less than this share of how far it is behind the best of them and behind the noise: who loses
-            by thousands of squares need not be known to one.
+            by thousands of squares need not be known to one. Where it is above zero the fits race, and one ends too
+            that would not come to where the best one is with all the steps that are left, each as good as the next.
         leading: Jacobians are told by rollouts with steps so many times as long, which is enough to lead a fit; 1 for
             the problem's own.
         renewing: whether slopes are computed where a place has none that hold; without, a fit ends there, and costs

@@ -3,11 +3,12 @@
 import math
 from concurrent.futures import ThreadPoolExecutor
 
+import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.race import race
-from hydrolek_drake.diagnosis.settings import Rung
+from hydrolek_drake.diagnosis.settings import GAINS, Rung
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales
@@ -34,6 +35,31 @@ def test_what_the_beginning_does_not_show_goes_on_by_its_promise(bench, recorded
     assert [c.id for c in best.effects] == ["load.payload"]
     assert best.fit.over_noise < 1.05
     assert best.values[f"{PAYLOAD}.mass_kg"] == pytest.approx(20.0, rel=0.1)
+
+
+def test_fits_of_a_structure_in_different_minima_go_on_whichever_promised_more(bench, recorded) -> None:
+    """The beginning of the data tells neither from noise: the second is nearer to it by less than it must be."""
+    training = recorded(bench, bench)
+    drift = next(
+        c
+        for c in candidates_of(bench, "joint", natural_scales(bench, "joint", training))
+        if c.id == "sensor.drift"
+    )
+    free = [p for p in free_parameters(bench) if p.path.endswith("max_area")]
+    still = Rung(math.inf, 1.0, 0.9 * float(training[0].time[-1]), 0, 8, each=8)
+
+    def ended(sizes):
+        entrants = [Entrant((drift,), {**drift.starts[0], drift.size_path: size}) for size in sizes]
+        return race(Workbench(bench, free, training, pool), entrants, (still,), 2)
+
+    with ThreadPoolExecutor(2) as pool:
+        tried = {s: ended([s])[0].fit.objective for s in drift.size.upper * np.geomspace(1e-4, 1.0, 400)}
+        least = min(tried.values())
+        worse = min((s for s, q in tried.items() if q > least + 4.0), key=lambda s: tried[s])
+        better = min(tried, key=lambda s: tried[s])
+        assert tried[worse] < least + GAINS.needed
+        both = ended([worse, better])
+    assert [h.values[drift.size_path] for h in both] == [pytest.approx(worse), pytest.approx(better)]
 
 
 def test_a_structure_in_other_ranges_or_another_order_stands_where_it_was(bench, recorded) -> None:

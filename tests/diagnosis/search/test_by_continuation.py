@@ -6,6 +6,7 @@ import pytest
 
 from hydrolek_drake.challenge.cases import read_case, record
 from hydrolek_drake.diagnosis.search.best_first import search_structures
+from hydrolek_drake.diagnosis.search.nominal import fit_nominal
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import NOISE, Settings
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
@@ -79,6 +80,51 @@ RINGS = {
     "stages": ["base"],
     "unlisted": {},
 }
+
+
+HEALTHY = {
+    "drive": "open",
+    "effects": {},
+    "kind": "healthy",
+    "machine": {
+        "area_max_a": 1.432174654729686e-06,
+        "area_max_b": 1.3786874112820052e-06,
+        "bulk": 1050779761.0746739,
+        "c_cyl": 4183.552902969929,
+        "i_max_a": 0.8867682704480258,
+        "i_max_b": 1.0030387251921031,
+        "p_s": 14126491.87873822,
+        "t_d": 0.12164826758819712,
+        "w_a": 0.00017710159162865138,
+        "w_b": 0.00018393192581782195,
+        "x_o_a": 6.890011785681775e-05,
+        "x_o_b": 6.563589900087993e-05,
+    },
+    "name": "case_026",
+    "pressures": True,
+    "rig": "hydrolek_left_j2",
+    "seed": 1740660127,
+    "shows": {},
+    "size": "",
+    "stages": [],
+    "unlisted": {},
+}
+
+
+@pytest.mark.thorough
+def test_a_healthy_joint_that_sticks_and_slips_is_led_to_the_noise_before_anything_is_added(tmp_path) -> None:
+    """Case 620/026: free rollouts from the rig's own numbers end at 21 times the noise."""
+    case = read_case(HEALTHY)
+    rig = load_rig(case.rig, {})
+    record(rig, case, tmp_path)
+    train, holdout = (read_recording(tmp_path / f"{side}.csv", rig.columns) for side in ("train", "holdout"))
+    training, _, _ = prepared(rig, [train], [holdout], None)
+    [joint] = rig.joints
+    found = Tried()
+    with ThreadPoolExecutor(2) as pool:
+        bench = Workbench(rig, free_of_joints(rig, {joint}), training, pool, 2)
+        fit_nominal(bench, found, Settings(), 2)
+    assert found.best.fit.over_noise < NOISE.at
 
 
 @pytest.mark.parametrize(
