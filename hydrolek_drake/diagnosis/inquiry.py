@@ -7,7 +7,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.judged import Conclusion, Judged, conclude, with_behind_cut
-from hydrolek_drake.diagnosis.evidence.judging import judge_as_fitted, judge_structures, left_of
+from hydrolek_drake.diagnosis.evidence.judging import judge_as_fitted, judge_structures
+from hydrolek_drake.diagnosis.evidence.reported import left_of
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.laws.found import law_of, likeliest_side, lost_of, terms_of
 from hydrolek_drake.diagnosis.laws.law import FoundLaw

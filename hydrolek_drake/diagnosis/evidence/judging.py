@@ -16,30 +16,26 @@ from dataclasses import replace
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.evidence.fitted_to_both import fitted_to_both, to_both
 from hydrolek_drake.diagnosis.evidence.judged import (
     Judged,
     blocks_of,
     difference,
-    with_behind_cut,
-    with_differences,
     with_probabilities,
 )
 from hydrolek_drake.diagnosis.evidence.nuisance import own_of_recordings, with_stands
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
-from hydrolek_drake.diagnosis.fitting.line_search import lowest_along_each
 from hydrolek_drake.diagnosis.fitting.problems import problem_with
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
 from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
-from hydrolek_drake.diagnosis.search.from_the_cut import fitted_behind
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS, GAINS, NOISE, Settings
+from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.least_squares import Fit
-from hydrolek_drake.identification.least_squares.lockstep import descend, with_slopes
+from hydrolek_drake.identification.least_squares.lockstep import with_slopes
 from hydrolek_drake.identification.least_squares.place import Place
-from hydrolek_drake.identification.rolling import Request, residuals_at
 
 
 def judge_as_fitted(
@@ -215,14 +211,14 @@ def _predicted(
     chosen = [] if decided else [i for i, is_far in enumerate(far) if is_far]
     fits = {
         i: replace(
-            _to_both(bench, judged[i].hypothesis, held_out, settings),
+            to_both(bench, judged[i].hypothesis, held_out, settings),
             residuals=np.concatenate([judged[i].hypothesis.fit.residuals, both[i][0]]),
             slopes=np.concatenate([judged[i].hypothesis.fit.jacobian, both[i][1]]),
         )
         for i in chosen
     }
     for renewing in (False, True):
-        ended = _fitted_to_both(bench, list(fits.values()), settings, cores, renewing=renewing)
+        ended = fitted_to_both(bench, list(fits.values()), settings, cores, renewing=renewing)
         fits = dict(zip(fits, ended, strict=True))
         for i, place in fits.items():
             beyond = max(place.objective - judged[i].hypothesis.fit.objective, 0.0)
@@ -232,100 +228,6 @@ def _predicted(
         near = [i for i, j in enumerate(judged) if j.log_density > least]
         fits = {i: place for i, place in fits.items() if i in near} if len(near) > 1 else {}
     return judged
-
-
-def _to_both(
-    bench: Workbench, hypothesis: Hypothesis, held_out: Sequence[Experiment], settings: Settings
-) -> Place:
-    """Where the fit of a structure to the training data and others begins."""
-    step = bench.step_for(hypothesis.effects, settings.last.coarse)
-    problem = problem_with(bench, hypothesis.effects, step, [*bench.training, *held_out])
-    return Place(problem, bench.movable(hypothesis.effects, problem.parameters), hypothesis.fit.unit)
-
-
-def _fitted_to_both(
-    bench: Workbench, places: Sequence[Place], settings: Settings, cores: int, *, renewing: bool
-) -> list[Place]:
-    """Structures fitted to the training data and others; not renewing, with the slopes that they have."""
-    rung = settings.again
-    return descend(
-        places,
-        rung.rounds,
-        bench.pool,
-        cores,
-        share=rung.share,
-        leading=FITS.coarse / settings.last.coarse,
-        renewing=renewing,
-        stop=bench.alive,
-    )
-
-
-def left_of(
-    bench: Workbench,
-    judged: Sequence[Judged],
-    held_out: Sequence[Experiment],
-    settings: Settings,
-    cores: int,
-) -> tuple[Judged, ...]:
-    """The same structures with what they leave of other data than those by which they were judged.
-
-    Where the best one explains what it was fitted to and fails here, these data may show what the others do not, such
-    as a place where the joint had not been: then it is fitted to them too, since a model that explains all that was
-    recorded lacks nothing that these data could show. What the training data do not tell may lie far off, so that the
-    fit goes on from the lowest place along each of its numbers.
-
-    Args:
-        bench: data and problems.
-        judged: structures, the most probable first.
-        held_out: data that nothing was fitted to, and by which nothing was chosen.
-        settings: of the search.
-        cores: that roll out at the same time.
-    """
-    judged = [with_stands(bench, j, held_out, settings, cores) for j in judged]
-    requests = []
-    for own in judged:
-        for experiment in held_out:
-            effects, unit = own.stands[recording_of(experiment)]
-            requests.append(
-                Request(
-                    problem_with(bench, effects, bench.step_for(effects, settings.last.coarse), [experiment]),
-                    (unit,),
-                )
-            )
-    answers = iter(residuals_at(requests, bench.pool, cores))
-    counted = sum(experiment.counted for experiment in held_out)
-    told = tuple(
-        replace(
-            j,
-            held_out=np.concatenate([next(answers)[0] for _ in held_out]),
-            held_out_counted=counted,
-            chi_squared=None,
-            shares=None,
-        )
-        for j in judged
-    )
-    told = with_differences(told, held_out)
-    told = (with_behind_cut(told[0], bench.training, held_out), *told[1:])
-    if not told[0].fails_ahead_alone or own_of_recordings(told[0].hypothesis).any():
-        return told
-    asked, best, ahead = bench, told[0].hypothesis, list(held_out)
-    behind = fitted_behind(bench, best, settings, cores)
-    if behind is not None:
-        (asked, best), ahead = behind, [e.behind_cut() for e in held_out]
-    begun = _to_both(asked, best, ahead, settings)
-    [both] = _fitted_to_both(asked, [begun], settings, cores, renewing=True)
-    now = replace(told[0], fitted_too=_beyond(both, best, ahead))
-    if now.fails_ahead_alone:
-        elsewhere = lowest_along_each(both, asked.pool, cores)
-        [both] = _fitted_to_both(asked, [elsewhere], settings, cores, renewing=True)
-        now = replace(told[0], fitted_too=_beyond(both, best, ahead))
-    return (now, *told[1:])
-
-
-def _beyond(both: Place, hypothesis: Hypothesis, held_out: Sequence[Experiment]) -> float:
-    """Times the noise that a fit to the training data and others leaves of these."""
-    squares = max(both.objective - hypothesis.fit.objective, 0.0)
-    return math.sqrt(squares / max(sum(e.counted for e in held_out), 1))
 
 
 def _of_the_machine(place: Place, hypothesis: Hypothesis) -> np.ndarray:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged, conclude
-from hydrolek_drake.diagnosis.evidence.judging import left_of
+from hydrolek_drake.diagnosis.evidence.reported import left_of
 from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.parameter_set import free_parameters
