@@ -11,8 +11,8 @@ from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import hooks
 from hydrolek_drake.physics.parameters import Parameter, Stage
 from hydrolek_drake.physics.usual import rare
-from hydrolek_drake.physics.valve import openings
 from hydrolek_drake.physics.valves import switching
+from hydrolek_drake.physics.valves.openings import openings
 
 STAGE = Stage(
     "solenoid",

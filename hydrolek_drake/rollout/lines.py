@@ -24,6 +24,7 @@ from hydrolek_drake.physics.lines.long_line import (
 )
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.physics.solenoid import GAMMA
+from hydrolek_drake.physics.valves.openings import openings, widened
 from hydrolek_drake.rollout.rates import State, rod_side
 
 
@@ -49,7 +50,7 @@ def _sources(
     p_a: float, p_b: float, s: State, x: float, time: float, outside: Probe, probe: Probe, joint: Any
 ) -> tuple[Source, Source, float]:
     p_supply = pressure_at_valves(s.supply, outside, probe, joint)
-    opened = valve.widened(valve.openings(x, joint), probe.valve)
+    opened = widened(openings(x, joint), probe.valve)
     at_a, at_b, drawn = valve.port_sources(
         opened, p_supply, p_a, p_b, time, joint, probe.back_a, probe.back_b
     )

@@ -11,15 +11,14 @@ from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import cylinder, linkage, load, valve
 from hydrolek_drake.physics.law import Seen, law_value
 from hydrolek_drake.physics.linkages import ball_screw
+from hydrolek_drake.physics.valves.openings import Openings
 from hydrolek_drake.physics.valves.variants import PUMP_CONTROLLED
 
 
 @njit(cache=True)
 def inlet_conductance(p_supply: float, p_a: float, p_b: float, joint: Any) -> float:
     """Conductance of the inlet edge of side A of a valve that is wide open [m^3/(s Pa)]."""
-    inlet, _, _, _ = valve.edge_conductances(
-        valve.Openings(1.0, 0.0, 0.0, 1.0), p_supply, p_a, p_b, 0.0, joint
-    )
+    inlet, _, _, _ = valve.edge_conductances(Openings(1.0, 0.0, 0.0, 1.0), p_supply, p_a, p_b, 0.0, joint)
     return inlet
 
 

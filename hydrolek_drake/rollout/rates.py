@@ -24,6 +24,7 @@ from hydrolek_drake.physics.lines.long_line import Fed
 from hydrolek_drake.physics.linkages import servo_screw
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.physics.usual import rare
+from hydrolek_drake.physics.valves.openings import openings, widened
 
 
 class State(NamedTuple):
@@ -184,7 +185,7 @@ def rates(
     else:
         p_supply = pressure_at_valves(s.supply, outside, probe, joint)
         if fed is None:
-            opened = valve.widened(valve.openings(x, joint), probe.valve)
+            opened = widened(openings(x, joint), probe.valve)
             flow_a, flow_b, drawn, settle_a, settle_b = valve.chamber_flows(
                 opened, p_supply, s.p_a, s.p_b, time, joint, probe.back_a, probe.back_b
             )

@@ -6,7 +6,8 @@ from pydrake.systems.framework import BasicVector, Context, LeafSystem
 
 from hydrolek_drake.physics.lines.hose import LONG_LINE
 from hydrolek_drake.physics.probes import BACK_A, BACK_B, VALVE
-from hydrolek_drake.physics.valve import chamber_flows, openings, port_sources, widened
+from hydrolek_drake.physics.valve import chamber_flows, port_sources
+from hydrolek_drake.physics.valves.openings import openings, widened
 from hydrolek_drake.systems.short_law import Outside
 
 

@@ -8,7 +8,8 @@ from hydrolek_drake.physics.cylinder import pressure_rates
 from hydrolek_drake.physics.lines.accumulator import gas_capacity
 from hydrolek_drake.physics.lines.hose import behind_hose
 from hydrolek_drake.physics.supply import rate_of_change
-from hydrolek_drake.physics.valve import chamber_flows, openings
+from hydrolek_drake.physics.valve import chamber_flows
+from hydrolek_drake.physics.valves.openings import openings
 
 
 @pytest.mark.parametrize(("resistance", "loss"), [(2e9, 0.0), (0.0, 2e13), (2e9, 2e13)])

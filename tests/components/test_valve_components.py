@@ -10,9 +10,10 @@ from hydrolek_drake.physics.amplifier import pulsed_current
 from hydrolek_drake.physics.fluid import orifice_conductance
 from hydrolek_drake.physics.linkage import stroke_and_lever
 from hydrolek_drake.physics.solenoid import advance
-from hydrolek_drake.physics.valve import chamber_flows, openings
+from hydrolek_drake.physics.valve import chamber_flows
 from hydrolek_drake.physics.valves.load_holding import held_back, opened_share
 from hydrolek_drake.physics.valves.opening_table import tabled
+from hydrolek_drake.physics.valves.openings import openings
 from hydrolek_drake.rollout import roll_out
 
 P_S, P_T = 16e6, 0.2e6

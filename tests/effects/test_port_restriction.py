@@ -5,6 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from hydrolek_drake.physics import valve
+from hydrolek_drake.physics.valves.openings import Openings
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
 
@@ -17,7 +18,7 @@ def test_ports_and_edges_are_orifices_in_series(bench):
     joint = bench.with_values({"effects.valve.port_restriction.ratio": ratio}).records()[0]
     tank = bench.value("supply.tank_pressure")
     for share in (0.1, 0.5, 1.0):
-        opened = valve.Openings(share, 0.0, 0.0, share)
+        opened = Openings(share, 0.0, 0.0, share)
         plain = valve.edge_conductances(opened, p_supply, p_a, p_b, 0.0, bench.records()[0])
         choked = valve.edge_conductances(opened, p_supply, p_a, p_b, 0.0, joint)
         for edge, drop in ((0, p_supply - p_a), (3, p_b - tank)):

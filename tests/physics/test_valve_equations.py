@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from hydrolek_drake.physics.valve import Openings, chamber_flows, flow_forces, openings
+from hydrolek_drake.physics.valve import chamber_flows, flow_forces
+from hydrolek_drake.physics.valves.openings import Openings, openings
 
 P_S, P_T = 16e6, 0.2e6
 UNEQUAL = {
@@ -169,6 +170,7 @@ EDGES = {
     "valve.area_gradient_pb": 12e-3,
     "valve.area_gradient_bt": 9e-3,
     "valve.discharge": 0.67,
+    "valve.edge_rounding": 0.0,
 }
 
 
@@ -208,7 +210,7 @@ def test_four_equal_edges_are_the_valve_with_one_area(link_joint, bench_joint):
     overlap, full, area = 0.06e-3, 0.35e-3, 0.67e-6
     same = {f"valve.overlap_{edge}": overlap for edge in ("pa", "at", "pb", "bt")}
     same |= {f"valve.area_gradient_{edge}": area / (full - overlap) for edge in ("pa", "at", "pb", "bt")}
-    same |= {"valve.full_opening": full, "valve.discharge": 0.7}
+    same |= {"valve.full_opening": full, "valve.discharge": 0.7, "valve.edge_rounding": 0.0}
     same |= {
         "fluid.laminar_transition": 0.2e6,
         "effects.valve.port_restriction.ratio": 0.8,

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.physics import amplifier, command, cylinder, fluid, linkage, load, sensor, solenoid, valve
+from hydrolek_drake.physics import amplifier, command, cylinder, fluid, linkage, load, sensor, solenoid
+from hydrolek_drake.physics.valves.openings import openings
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.systems.actuator import Actuator
 from hydrolek_drake.systems.electric_motor import ElectricMotor
@@ -137,7 +138,7 @@ def test_four_way_valve_conserves_oil():
         FourWayValve(JOINTS), "oil_flow", spool_position=x, pressure=pressure, supply_pressure=[15.3e6]
     ).reshape(3, N)
     for i, joint in enumerate(JOINTS):
-        open_a, _, open_b, _ = valve.openings(x[i], joint)
+        open_a, _, open_b, _ = openings(x[i], joint)
         drop_a, drop_b = 15.3e6 - pressure[i], 15.3e6 - pressure[N + i]
         p = joint["valve"]
         drawn = open_a * fluid.orifice_conductance(p["max_area_a"], drop_a, p["discharge"], joint) * drop_a
