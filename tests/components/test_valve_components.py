@@ -29,8 +29,10 @@ def test_an_edge_opens_along_its_table_and_without_one_on_a_straight_line():
 def test_each_edge_has_a_table_of_its_own(with_component):
     joint = with_component("notched_edges").records()[0]
     opened = openings(0.06e-3 + 0.5 * 0.29e-3, joint)  # half of the travel of P-A
-    assert_allclose(opened.pa, 0.2, rtol=1e-12)
-    beyond = (0.06e-3 + 0.5 * 0.29e-3 - 0.05e-3) / 0.30e-3
+    rounding = 0.005e-3
+    beyond = (np.hypot(0.5 * 0.29e-3, rounding) - rounding) / 0.29e-3
+    assert_allclose(opened.pa, np.interp(beyond, [0.25, 0.5], [0.05, 0.2]), rtol=1e-12)
+    beyond = (np.hypot(0.06e-3 + 0.5 * 0.29e-3 - 0.05e-3, rounding) - rounding) / 0.30e-3
     assert_allclose(opened.bt, np.interp(beyond, [0.5, 0.75], [0.3, 0.6]), rtol=1e-12)
     assert (opened.at, opened.pb) == (0.0, 0.0)
 
