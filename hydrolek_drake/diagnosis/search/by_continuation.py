@@ -8,16 +8,21 @@ import numpy as np
 
 from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant, Runner, Start, entered
+from hydrolek_drake.diagnosis.fitting.line_search import Along, searched_along
 from hydrolek_drake.diagnosis.fitting.local_search import has_other_minima, searched_near
 from hydrolek_drake.diagnosis.fitting.race import above_noise, hypotheses_of, run
 from hydrolek_drake.diagnosis.laws.additions import of_additions
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.openings import Opening, observed, surely_above
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import NOISE, Rung, Settings
+from hydrolek_drake.diagnosis.settings import FITS, NOISE, Rung, Settings
 from hydrolek_drake.diagnosis.structures.addition import names_of
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
+from hydrolek_drake.identification.least_squares.lockstep import descend
+
+DEAD_TIME = ".command.delay"
+"""What the path of a dead time ends with."""
 
 
 def continued(
@@ -49,7 +54,7 @@ def continued(
         for begun in ((own,) if far else (own, fitted))
     ]
     heats = steps_for(settings.continued, not far)
-    runners = entered(bench, entrants, heats[0], cores)
+    runners = _in_time(bench, entered(bench, entrants, heats[0], cores), cores)
     for heat, taken in zip(heats, settings.long, strict=False):
         runners = run(bench, runners, (heat,), cores, traced("observed")) if runners else []
         if runners and above_noise(runners[0]):  # the best one as long as it takes
@@ -157,7 +162,7 @@ def _long_race(
         cores: that roll out at the same time.
     """
     rungs = steps_for(settings.long, left < NOISE.far)
-    runners = entered(bench, entrants, rungs[0], cores) if entrants else []
+    runners = _in_time(bench, entered(bench, entrants, rungs[0], cores), cores) if entrants else []
     for rung in rungs:
         if runners:
             ended = run(bench, runners, (rung,), cores, traced("to the end"))
@@ -185,6 +190,27 @@ def _starts(fits: Sequence[Hypothesis], left: float, settings: Settings) -> list
     if isinstance(last, Candidate) and left > NOISE.far:
         begun += [{**values, **start} for start in last.starts for values in (own, best.values)]
     return [Entrant(best.effects, values) for values in begun]
+
+
+def _in_time(bench: Workbench, runners: Sequence[Runner], cores: int) -> list[Runner]:
+    """The same from the dead time at which each leaves least, of some over its range.
+
+    Where a dead time is off by more than an observer remembers, every move of the machine has passed before the model
+    makes it, and no slope leads there: its fit has a local minimum for each (cycle skipping, as in waveform inversion;
+    Virieux, Operto, Geophysics 74 (2009) WCC1).
+
+    Args:
+        bench: threads.
+        runners: at their starts, on the rung of the fastest observer.
+        cores: that roll out at the same time.
+    """
+    places = descend([r.place for r in runners], 0, bench.pool, cores)
+    units = (np.arange(FITS.places) + 0.5) / FITS.places
+    for path in (p for p in bench.parameters(()).paths if p.endswith(DEAD_TIME)):
+        ways = [Along(list(p.problem.parameters.paths).index(path), units) for p in places]
+        free = [way if p.moving[way.index] else None for way, p in zip(ways, places, strict=True)]
+        places = searched_along(places, free, bench.pool, cores)
+    return [replace(r, place=place) for r, place in zip(runners, places, strict=True)]
 
 
 def over_noise_of(runner: Runner) -> float:
