@@ -1,11 +1,15 @@
 """Structures by continuation: out of local minima that the steps of a race end in."""
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import pytest
 
 from hydrolek_drake.challenge.cases import read_case, record
+from hydrolek_drake.diagnosis.fitting.entrants import Entrant
+from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.search.best_first import search_structures
+from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal
 from hydrolek_drake.diagnosis.search.nominal import fit_nominal
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import NOISE, Settings
@@ -13,7 +17,7 @@ from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.splitting import prepared
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales
-from hydrolek_drake.identification.parameter_set import free_of_joints
+from hydrolek_drake.identification.parameter_set import free_of_joints, free_parameters
 from hydrolek_drake.recordings import read_recording
 from hydrolek_drake.rigs import load_rig
 
@@ -109,6 +113,27 @@ HEALTHY = {
     "stages": [],
     "unlisted": {},
 }
+
+
+def test_a_dead_time_that_is_off_by_more_than_an_observer_remembers_is_found(bench, recorded, fitted) -> None:
+    """Every move has passed before the model makes it: from the rig's own number no slope leads there."""
+    late_s = 0.15
+    free = [
+        replace(p, lower=0.005, upper=0.3, log=False) if p.path.endswith("command.delay") else p
+        for p in free_parameters(bench)
+        if p.path.endswith(("command.delay", "valve.max_area_a", "valve.max_area_b"))
+    ]
+    [dead_time] = [p.path for p in free if p.path.endswith("command.delay")]
+    training = recorded(bench.with_values({dead_time: late_s}), bench, pressure_noise_Pa=2e4)
+    settings = Settings(drawn=0)
+    with ThreadPoolExecutor(2) as pool:
+        workbench = Workbench(bench, free, training, pool)
+        [stuck] = race(workbench, [Entrant((), {})], (replace(settings.long[0], rounds=40),), 2)
+        led = continued_nominal(workbench, fitted(workbench, rounds=0), NOISE.at, settings, 2)
+    assert stuck.fit.over_noise > NOISE.far
+    assert led is not None
+    assert led.fit.over_noise < NOISE.at
+    assert led.values[dead_time] == pytest.approx(late_s, abs=1e-3)
 
 
 @pytest.mark.thorough
