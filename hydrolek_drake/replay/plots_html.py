@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from hydrolek_drake.replay.panels import NOISE_COLOUR, SPAN_COLOUR, Panel
+from hydrolek_drake.replay.plotly_page import figure_html, packed_plotly
 
 _ROW_PX = 105
 _HEADING_PX = 28
@@ -11,8 +12,7 @@ _HEADING_PX = 28
 
 def plots_html(columns: Sequence[Sequence[Panel]]) -> str:
     """Stacks of panels side by side, all over the same time, as HTML that needs no network."""
-    figure = plots_figure(columns)
-    return str(figure.to_html(full_html=False, include_plotlyjs=True, config={"displaylogo": False}))
+    return figure_html(plots_figure(columns)) + packed_plotly()
 
 
 def plots_figure(columns: Sequence[Sequence[Panel]]) -> Any:

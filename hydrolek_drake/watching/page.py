@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hydrolek_drake.replay.display import ratio
+from hydrolek_drake.replay.plotly_page import figure_html, packed_plotly
 from hydrolek_drake.watching.alarms import is_effect
 from hydrolek_drake.watching.asking import OWN_NUMBERS, Answer
 from hydrolek_drake.watching.excitation import sentence
@@ -59,15 +60,13 @@ def page(watched: Watched, limits: Sequence[Limit] = (), folder: Path | None = N
         limits: that the user set.
         folder: where the page will stand, to which links to recordings are relative.
     """
-    from plotly.offline import get_plotlyjs
-
     title = f"Watch of {watched.rig.name}"
     alarm = watched.alarm is not None
     colour, word = ("alarm", "alarm") if alarm else ("healthy", "no alarm")
     parts = [
         f"<!doctype html><html lang='en'><head><meta charset='utf-8'><title>{html.escape(title)}</title>"
         f"<meta name='viewport' content='width=device-width, initial-scale=1'><style>{_asset('watch.css')}</style>"
-        f"<script>{get_plotlyjs()}</script></head><body><h1>{html.escape(title)}</h1>",
+        f"</head><body><h1>{html.escape(title)}</h1>",
         f"<div class='verdict' style='--verdict: var(--{colour})'><b>{word}</b>"
         f"<p class='sentence'>{html.escape(headline(watched))}</p></div>",
     ]
@@ -81,7 +80,7 @@ def page(watched: Watched, limits: Sequence[Limit] = (), folder: Path | None = N
             "<h2>What models leave</h2><p class='other'>Root mean square of the residuals over the noise: what the "
             "nominal model leaves, and what is left with the best single effect. Above the threshold something grows "
             "that is in no list, or more than one thing.</p>",
-            _plot(left_figure(watched)),
+            figure_html(left_figure(watched), "what models leave over time"),
         ]
     parts += [
         "<div id='recording'><p class='other'>Click a point, or a recording of the table, to see it here.</p></div>",
@@ -93,6 +92,7 @@ def page(watched: Watched, limits: Sequence[Limit] = (), folder: Path | None = N
         _broken(watched),
         "<h2>The rule</h2>",
         _rule(watched),
+        packed_plotly(),
         f"<script>const RECORDINGS = {_data(watched, folder)};{_asset('watch.js')}</script></body></html>",
     ]
     return "\n".join(parts)
@@ -124,16 +124,8 @@ def _effect(watched: Watched, effect: str, joint: str, limits: Sequence[Limit]) 
     return [
         f"<h2>{html.escape(effect)}, {html.escape(joint)}: {html.escape(size_text(last))}</h2>",
         f"<p class='other'>{html.escape(' '.join(told))}</p>",
-        _plot(size_figure(watched, effect, joint, limits)),
+        figure_html(size_figure(watched, effect, joint, limits), f"size of {effect} over time"),
     ]
-
-
-def _plot(figure: Any) -> str:
-    return str(
-        figure.to_html(
-            full_html=False, include_plotlyjs=False, config={"displaylogo": False, "responsive": True}
-        )
-    )
 
 
 def _last(watched: Watched) -> str:

@@ -49,13 +49,15 @@ function show(id) {
   dress(document.getElementById('curves'));
   shown.scrollIntoView({behavior: 'smooth', block: 'nearest'});
 }
-everything();
-for (const query of [dark, printed, narrow]) query.addEventListener('change', everything);
-document.querySelectorAll('.js-plotly-plot').forEach(plot => plot.on('plotly_click', event => {
-  const id = event.points[0].customdata;
-  if (id) show(id);
-}));
-document.querySelectorAll('a[data-id]').forEach(a => a.addEventListener('click', e => {
-  e.preventDefault();
-  show(a.dataset.id);
-}));
+window.plotlyReady.then(() => {
+  everything();
+  for (const query of [dark, printed, narrow]) query.addEventListener('change', everything);
+  document.querySelectorAll('.js-plotly-plot').forEach(plot => plot.on('plotly_click', event => {
+    const id = event.points[0].customdata;
+    if (id) show(id);
+  }));
+  document.querySelectorAll('a[data-id]').forEach(a => a.addEventListener('click', e => {
+    e.preventDefault();
+    show(a.dataset.id);
+  }));
+});
