@@ -166,7 +166,8 @@ def _long_race(
     for rung in rungs:
         if runners:
             ended = run(bench, runners, (rung,), cores, traced("to the end"))
-            runners = [r for r in ended if over_noise_of(r) < reach or not above_noise(r)]
+            long = rung.coarse > 1.0  # what a long step leaves of its own tells nothing
+            runners = [r for r in ended if long or over_noise_of(r) < reach or not above_noise(r)]
             if math.isinf(rung.observer_s):
                 runners = [each for each in runners if not above_noise(each)] or runners
     return hypotheses_of(bench, runners, rungs[-1])

@@ -27,8 +27,8 @@ def fit_nominal(bench: Workbench, found: Tried, settings: Settings, cores: int) 
     trace(f"nominal {best.fit.over_noise:.4f}")
     if best.fit.over_noise > NOISE.at:
         left = best.fit.over_noise
-        # far from it no further than to an observer that leaves more than noise: something is missing then
-        reach = left if left <= NOISE.far else NOISE.at
+        # far from it no further than to an observer that surely leaves more than noise: something is missing then
+        reach = left if left <= NOISE.far else NOISE.above
         better = continued_nominal(bench, best, reach, settings, cores)
         if better is not None and best.fit.objective - better.fit.objective > gain_needed(best.fit):
             best = as_weighed(bench, better, settings, cores)
