@@ -60,8 +60,10 @@ def continued(
         if runners and above_noise(runners[0]):  # the best one as long as it takes
             on = replace(heat, rounds=taken.rounds, share=taken.share, behind=0.0)
             runners = [*run(bench, runners[:1], (on,), cores, traced("best")), *runners[1:]]
+        # what an observer with the rig's own step leaves far from the noise is led nowhere by slower ones
+        most = min(settings.nearer * left, NOISE.far if heat.coarse == 1.0 else math.inf)
         if settings.nearer * left > NOISE.explained:
-            runners = [r for r in runners if over_noise_of(r) < settings.nearer * left]
+            runners = [r for r in runners if over_noise_of(r) < most]
     return runners
 
 
