@@ -1,6 +1,5 @@
 """Structures fitted to the training data and to others."""
 
-import math
 from collections.abc import Sequence
 
 from hydrolek_drake.diagnosis.fitting.problems import problem_with
@@ -52,13 +51,11 @@ def fitted_to_both(
     )
 
 
-def beyond(both: Place, hypothesis: Hypothesis, held_out: Sequence[Experiment]) -> float:
-    """Times the noise that a fit to the training data and others leaves of these.
+def beyond(both: Place, hypothesis: Hypothesis) -> float:
+    """Squares that a fit to the training data and others leaves beyond those of the training data alone.
 
     Args:
         both: where the fit ended.
         hypothesis: its structure, fitted to the training data.
-        held_out: the others.
     """
-    squares = max(both.objective - hypothesis.fit.objective, 0.0)
-    return math.sqrt(squares / max(sum(e.counted for e in held_out), 1))
+    return max(both.objective - hypothesis.fit.objective, 0.0)

@@ -16,7 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.evidence.fitted_to_both import fitted_to_both, to_both
+from hydrolek_drake.diagnosis.evidence.fitted_to_both import beyond, fitted_to_both, to_both
 from hydrolek_drake.diagnosis.evidence.judged import (
     Judged,
     blocks_of,
@@ -221,8 +221,7 @@ def _predicted(
         ended = fitted_to_both(bench, list(fits.values()), settings, cores, renewing=renewing)
         fits = dict(zip(fits, ended, strict=True))
         for i, place in fits.items():
-            beyond = max(place.objective - judged[i].hypothesis.fit.objective, 0.0)
-            judged[i] = replace(judged[i], chi_squared=beyond)
+            judged[i] = replace(judged[i], chi_squared=beyond(place, judged[i].hypothesis))
         # slopes of where the fits began tell well enough who is beyond doubt
         least = max((j.log_density for j in judged), default=0.0) - EVIDENCE.out_of_reach
         near = [i for i, j in enumerate(judged) if j.log_density > least]

@@ -1,5 +1,6 @@
 """What structures leave of data by which none was chosen: the figures of the report."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -70,11 +71,12 @@ def left_of(
     behind = fitted_behind(bench, best, settings, cores)
     if behind is not None:
         (asked, best), ahead = behind, [e.behind_cut() for e in held_out]
+    counted = max(sum(e.counted for e in ahead), 1)
     begun = to_both(asked, best, ahead, settings)
     [both] = fitted_to_both(asked, [begun], settings, cores, renewing=True)
-    now = replace(told[0], fitted_too=beyond(both, best, ahead))
+    now = replace(told[0], fitted_too=math.sqrt(beyond(both, best) / counted))
     if now.fails_ahead_alone:
         elsewhere = lowest_along_each(both, asked.pool, cores)
         [both] = fitted_to_both(asked, [elsewhere], settings, cores, renewing=True)
-        now = replace(told[0], fitted_too=beyond(both, best, ahead))
+        now = replace(told[0], fitted_too=math.sqrt(beyond(both, best) / counted))
     return (now, *told[1:])

@@ -101,7 +101,7 @@ def _ranked(runners: Sequence[Runner]) -> list[Runner]:
 
     def told_apart(runner: Runner) -> float:
         place = runner.place
-        return max(place.objective, best + max(GAINS.needed, GAINS.fidelity * place.problem.counted))
+        return max(place.objective, best + GAINS.of_one_more(place.problem.counted))
 
     return sorted(runners, key=told_apart)
 

@@ -36,8 +36,5 @@ def dispersion(squares: float, counted: int, parameters: int) -> float:
 
 
 def gain_needed(fit: Fit) -> float:
-    """Fall of the squared residuals that one more effect must bring.
-
-    It is more than chance would bring, and more than what is known but roughly may leave.
-    """
-    return max(GAINS.needed, GAINS.fidelity * fit.counted, fit.unsure)
+    """Fall of the squared residuals that one more effect must bring."""
+    return GAINS.of_one_more(fit.counted, fit.unsure)

@@ -86,6 +86,15 @@ class Gains:
     """A law costs as many effects: where it enters and what it depends on are both chosen among many. So do lost
     commands, of which each window must pay for itself besides."""
 
+    def of_one_more(self, counted: int, unsure: float = 0.0) -> float:
+        """What one more addition must bring: more than chance would, and than what is known but roughly may leave.
+
+        Args:
+            counted: values of the data.
+            unsure: squared residuals that what is known but roughly may leave.
+        """
+        return max(self.needed, self.fidelity * counted, unsure)
+
 
 GAINS = Gains()
 
