@@ -101,26 +101,51 @@ def record(rig: Rig, case: Case, folder: Path) -> None:
     """Write `train.csv` and `holdout.csv` of a case, with the noise and resolution that the rig states."""
     rng = np.random.default_rng(case.seed)
     build = build_of(rig)
-    joint = rig.joints[0]
-    noise, resolution, pressure_noise = (
-        rig.value(f"sensor.{name}") for name in ("noise", "resolution", "pressure_noise")
-    )
     folder.mkdir(parents=True, exist_ok=True)
     machine = machine_of(build, case)
     for name, seconds in (("train", TRAIN_S), ("holdout", HOLDOUT_S)):
-        done = driven(build, machine, case.drive, seconds, rng, noise)
-        reading = done.reading + noise * rng.standard_normal(done.reading.size)
-        signals = {
-            f"{joint}.command": done.volts,
-            f"{joint}.angle": np.round(reading / resolution) * resolution,
-        }
-        units = {f"{joint}.command": "V", f"{joint}.angle": "rad"}
-        if case.pressures:
-            for side in ("pressure_a", "pressure_b"):
-                clean = getattr(done, side)
-                signals[f"{joint}.{side}"] = clean + pressure_noise * rng.standard_normal(clean.size)
-                units[f"{joint}.{side}"] = "Pa"
-        write_signals(folder / f"{name}.csv", np.arange(done.volts.size) * SAMPLE_S, signals, units)
+        done = driven(build, machine, case.drive, seconds, rng, build.noise)
+        write_played(folder / f"{name}.csv", build, done, rng, pressures=case.pressures)
+
+
+def write_played(
+    path: Path,
+    build: Build,
+    done: Played,
+    rng: np.random.Generator,
+    *,
+    pressures: bool = False,
+    begins: float = 0.0,
+    gap: tuple[float, float] | None = None,
+) -> None:
+    """Write what a machine did as its sensors tell it.
+
+    Args:
+        path: of the file.
+        build: whose rig states noise and resolution.
+        done: command and movement.
+        rng: of the noise.
+        pressures: whether the chamber pressures are told too.
+        begins: time of the first sample [s].
+        gap: after its begin and until its end [s] no sample was recorded; None for no gap.
+    """
+    rig, joint = build.rig, build.rig.joints[0]
+    resolution = rig.value("sensor.resolution")
+    reading = done.reading + build.noise * rng.standard_normal(done.reading.size)
+    signals = {
+        f"{joint}.command": done.volts,
+        f"{joint}.angle": np.round(reading / resolution) * resolution,
+    }
+    units = {f"{joint}.command": "V", f"{joint}.angle": "rad"}
+    for side in ("pressure_a", "pressure_b") if pressures else ():
+        clean = getattr(done, side)
+        signals[f"{joint}.{side}"] = clean + rig.value("sensor.pressure_noise") * rng.standard_normal(
+            clean.size
+        )
+        units[f"{joint}.{side}"] = "Pa"
+    time = np.arange(done.volts.size) * SAMPLE_S
+    kept = np.ones(time.size, dtype=bool) if gap is None else (time < gap[0]) | (time > gap[1])
+    write_signals(path, begins + time[kept], {key: values[kept] for key, values in signals.items()}, units)
 
 
 def labels_of(cases: list[Case]) -> str:

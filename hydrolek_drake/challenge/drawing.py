@@ -40,6 +40,14 @@ Draft = tuple[Build, str, str, list[str], list[str]]
 """Machine, kind, level, names of listed effects and of physics in no list."""
 
 
+def individual(build: Build, rng: np.random.Generator) -> dict[str, float]:
+    """Numbers of one machine among many of the same build: field of the machine -> value."""
+    return {
+        field: build.rig.value(path) * float(rng.uniform(1 - INDIVIDUAL, 1 + INDIVIDUAL))
+        for field, path in build.spread.items()
+    }
+
+
 def draw_cases(
     rigs: Sequence[Rig],
     count: int,
@@ -134,10 +142,7 @@ def _case(
     strange: list[str],
     rng: np.random.Generator,
 ) -> Case:
-    own = {
-        f: build.rig.value(path) * float(rng.uniform(1 - INDIVIDUAL, 1 + INDIVIDUAL))
-        for f, path in build.spread.items()
-    }
+    own = individual(build, rng)
     machine = build.nominal._replace(**own)
     drive = "closed" if rng.random() < 0.5 else "open"
     pressures = bool(rng.random() < 0.5)

@@ -7,6 +7,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from hydrolek_drake.identification.anchor import Anchor
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.sharing import shared_map
@@ -22,15 +23,6 @@ sticks and slips already bend; a step of 1e-4 left fits 10 % above the noise. Wh
 a whole step of the integration: steps end there, so that the error of the integration is a saw-tooth over that time,
 with the step as its period, whose slope is up to a third of the true one (bench, 0.5 ms) and more with longer steps.
 """
-
-PULL_S = 0.1
-"""Time constant with which rollouts are pulled to what was measured where free ones get stuck: longer than a valve
-takes to open and a chamber to fill, and far shorter than a move, over which errors pile up."""
-
-PULLS_S = (0.03, PULL_S)
-"""Time constants of fits that begin far off, one after the other. Within the first hardly anything piles up: what is
-left of it is nearly the error of the rates themselves, over which the squared residuals have few local minima (an
-equation error; Ljung, System Identification, 1999, chapter 7). The second one sees what is slower."""
 
 LONGER = 2.0
 """Slopes that only lead a search are told by rollouts with steps so many times as long, ..."""
@@ -95,7 +87,7 @@ class Problem:
         self._prior_weight = np.zeros(len(parameters)) if prior is None else 1.0 / prior
         self.pull_time = pull_time
         self.scales = (*wide, DIFFERENCE)
-        self._anchor: list[tuple[tuple[bytes, ...], np.ndarray]] | None = None
+        self._anchor = Anchor()
         self._longer_does = True
         self.evaluations = 0
         self.counted = sum(experiment.counted for experiment in self.experiments)
@@ -116,7 +108,7 @@ class Problem:
     def _anew(self: Own) -> Own:
         """The same without what is known of places, to be given other rollouts."""
         other = copy.copy(self)
-        other._anchor, other.evaluations = None, 0
+        other._anchor, other.evaluations = Anchor(), 0
         return other
 
     def residuals(self, unit: np.ndarray) -> np.ndarray:
@@ -148,7 +140,7 @@ class Problem:
         self.evaluations += len(units)
         wanted = [run for unit in units for run in self.runs(unit)]
         count = len(self.experiments)
-        known = [self._known(i % count, run) for i, run in enumerate(wanted)]
+        known = [self._anchor.known(i % count, run) for i, run in enumerate(wanted)]
         made = iter(roll_out_lanes([run for run, part in zip(wanted, known, strict=True) if part is None]))
         parts = [
             self.experiments[i % count].residuals(next(made).signals) if part is None else part
@@ -156,18 +148,10 @@ class Problem:
         ]
         return [self.bounded(parts[i : i + count]) for i in range(0, len(parts), count)]
 
-    def _known(self, i: int, run: Run) -> np.ndarray | None:
-        """Residuals of an experiment at the anchor, if this rollout is the same as there."""
-        if self._anchor is None or _all_of(run) != self._anchor[i][0]:
-            return None
-        return self._anchor[i][1]
-
     def _keep(self, unit: np.ndarray, base: np.ndarray) -> None:
         """Keep the residuals at a place: a column of the Jacobian changes few joints of a machine."""
         ends = np.cumsum([len(e.channels) * e.time.size for e in self.experiments])
-        self._anchor = [
-            (_all_of(run), part) for run, part in zip(self.runs(unit), np.split(base, ends[:-1]), strict=True)
-        ]
+        self._anchor = Anchor(self.runs(unit), np.split(base, ends[:-1]))
 
     @staticmethod
     def bounded(parts: Sequence[np.ndarray]) -> np.ndarray:
@@ -315,9 +299,3 @@ class Problem:
     def prior_jacobian(self) -> np.ndarray:
         """Change of the prior residuals with each parameter's place. # (n, n)."""
         return np.diag(self._prior_weight)
-
-
-def _all_of(run: Run) -> tuple[bytes, ...]:
-    """What tells one of an experiment's rollouts from another."""
-    law = b"" if run.law is None else run.law.tobytes()
-    return run.joint.tobytes(), law, run.command_times.tobytes(), run.command_values.tobytes()

@@ -7,7 +7,7 @@ python scripts/watching/live_study.py faults --out out/live     # leakages that 
 python scripts/watching/live_study.py pump                      # a leakage in one of ten joints that share a pump
 python scripts/watching/live_study.py named --out out/live      # a leakage over TCP, named by windows
 
-The bench is the challenge's (equations and an integrator of its own), so that the fitted model is not the machine.
+Machines and the link are those of `live_machines`.
 """
 
 import argparse
@@ -20,58 +20,19 @@ import time
 from pathlib import Path
 
 import numpy as np
+from live_machines import LEAKAGE, UNITS, bench, played, references, spoilt, ten_joints
 
-from hydrolek_drake.challenge.build import build_of
-from hydrolek_drake.challenge.cases import driven, with_concealed
-from hydrolek_drake.challenge.drawing import SIZING_STEP_S
 from hydrolek_drake.challenge.driving import SAMPLE_S
-from hydrolek_drake.recordings import Recording, read_recording, write_signals
+from hydrolek_drake.recordings import Recording, read_recording
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.watching.live.blocks import healthy_of
 from hydrolek_drake.watching.live.following import Follower
 from hydrolek_drake.watching.live.running import fitted_rig
 from hydrolek_drake.watching.live.samples import Samples
-from hydrolek_drake.watching.live.settings import LOST
 from hydrolek_drake.watching.watch import drifts_of, watch
 
 FALSE_ALARMS = 0.005
 PIECE_S = 600.0
-LATEST_S = 0.2
-UNITS = {"joint.command": "V", "joint.angle": "rad"}
-LEAKAGE = "cylinder.cross_port_leakage"
-
-
-def bench(leakage=0.0):
-    """The challenge's bench with numbers of its own."""
-    build = build_of(load_rig("joint_bench"))
-    rng = np.random.default_rng(7)
-    own = {f: build.rig.value(path) * float(rng.uniform(0.92, 1.08)) for f, path in build.spread.items()}
-    machine = build.nominal._replace(**own)
-    if leakage:
-        machine = with_concealed(machine, {LEAKAGE: {"conductance_m3_per_s_Pa": leakage}})
-    return build, machine
-
-
-def played(build, machine, seconds, seed):
-    """Command and rounded, noisy reading of a drive."""
-    rng = np.random.default_rng(seed)
-    noise, resolution = (build.rig.value(f"sensor.{name}") for name in ("noise", "resolution"))
-    done = driven(build, machine, "open", seconds, rng, noise, SIZING_STEP_S)
-    reading = done.reading + noise * rng.standard_normal(done.reading.size)
-    return done.volts, np.round(reading / resolution) * resolution
-
-
-def references(out):
-    """Files of the reference, made if they are missing."""
-    out.mkdir(parents=True, exist_ok=True)
-    build, machine = bench()
-    paths = [out / f"reference_{number}.csv" for number in range(3)]
-    for number, path in enumerate(paths):
-        if not path.exists():
-            volts, angle = played(build, machine, 40.0, 10 + number)
-            time_s = np.arange(volts.size) * SAMPLE_S
-            write_signals(path, time_s, {"joint.command": volts, "joint.angle": angle}, UNITS)
-    return paths
 
 
 def prepared(out):
@@ -80,22 +41,6 @@ def prepared(out):
     watch(rig, paths, [], folder=out / "watch", cores=1)
     fitted, joints = fitted_rig(rig, paths, out / "watch", drifts_of(None))
     return fitted, healthy_of(fitted, joints, [read_recording(path) for path in paths])
-
-
-def spoilt(time_s, volts, angle, rng):
-    """Messages in the order in which a bad link brings them: 5 % each lost, doubled and late; and when they come."""
-    count = time_s.size
-    keep = np.flatnonzero(rng.random(count) >= LOST)
-    again = keep[rng.random(keep.size) < LOST]
-    order = np.concatenate([keep, again])
-    arrival = time_s[order] + 0.002
-    late = rng.random(order.size) < LOST
-    arrival[late] += rng.uniform(0.0, LATEST_S, late.sum())
-    by = np.argsort(arrival, kind="stable")
-    order = order[by]
-    return Samples(
-        time_s[order], {"joint.command": volts[order], "joint.angle": angle[order]}, UNITS
-    ), arrival[by]
 
 
 def fed(follower, samples, arrival, at_a_time=50):
@@ -157,46 +102,6 @@ def faults(out):
         when = follower.detector.alarmed
         after = "never" if when is None else f"{when - onset:.1f} s"
         print(f"leakage {leakage:g} m^3/(s Pa): alarmed after {after}; {events}", flush=True)
-
-
-def random_signals(rig, joint, count, rng):
-    """Voltages of signals up to half of the largest, (4.2) and (4.3), held for a second each."""
-    least_a, most_a, least_b, most_b = (
-        rig.value(f"joints.{joint}.command.calibration_{name}") for name in "abcd"
-    )
-    signals = rng.uniform(-0.5, 0.5, count // 100 + 1)
-    ahead = least_a + signals * (most_a - least_a)
-    back = -least_b + signals * (most_b - least_b)
-    return np.repeat(np.where(signals > 0.0, ahead, back), 100)[:count]
-
-
-def ten_joints(rig, seconds, seed):
-    """Signals of ten joints of both arms that move at once, of the model itself, and the joints that are stepped."""
-    from hydrolek_drake.rollout.onwards import onwards
-
-    joints = tuple(j for j in rig.joints if j[-2:] in ("j1", "j2", "j3", "j4", "j5"))
-    rng = np.random.default_rng(seed)
-    time_s = np.arange(0.0, seconds, 0.01)
-    volts = np.stack([random_signals(rig, joint, time_s.size, rng) for joint in joints], axis=1)
-    (machine,) = onwards(rig, joints, 0.0, {})
-    places = [machine.joints.index(joint) for joint in joints]
-    neutral = np.array([rig.value(f"joints.{joint}.command.neutral") for joint in machine.joints])
-    reading = []
-    for now, row in zip(time_s, volts, strict=True):
-        reading.append(machine.signals[places][:, [0, 3, 4]])
-        full = neutral.copy()
-        full[places] = row
-        machine.advance(full, now + 0.01)
-    noise = np.array([rig.value(f"joints.{joint}.sensor.noise") for joint in joints])
-    measured = np.array(reading)
-    measured[:, :, 0] += noise * rng.standard_normal(measured.shape[:2])
-    measured[:, :, 1:] += 1e4 * rng.standard_normal(measured[:, :, 1:].shape)
-    signals = {}
-    for place, joint in enumerate(joints):
-        signals[f"{joint}.command"], signals[f"{joint}.angle"] = volts[:, place], measured[:, place, 0]
-        signals[f"{joint}.pressure_a"] = measured[:, place, 1]
-        signals[f"{joint}.pressure_b"] = measured[:, place, 2]
-    return time_s, joints, signals, len(machine.joints)
 
 
 def ten_healthy(rig, seconds):

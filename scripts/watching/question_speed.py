@@ -19,10 +19,8 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from hydrolek_drake.challenge.build import BENCH, build_of
-from hydrolek_drake.challenge.cases import driven, with_concealed
-from hydrolek_drake.challenge.drawing import INDIVIDUAL, SIZING_STEP_S
-from hydrolek_drake.challenge.driving import SAMPLE_S
-from hydrolek_drake.recordings import write_signals
+from hydrolek_drake.challenge.cases import driven, with_concealed, write_played
+from hydrolek_drake.challenge.drawing import SIZING_STEP_S, individual
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.watching.asking import asked
 from hydrolek_drake.watching.questions import read_one, usable
@@ -42,23 +40,15 @@ SEEDS = (1, 2)
 
 def recorded(build, machine, seed, seconds, path):
     """Write one recording."""
-    rng, joint = np.random.default_rng(seed), build.rig.joints[0]
+    rng = np.random.default_rng(seed)
     done = driven(build, machine, "open", seconds, rng, build.noise, SIZING_STEP_S)
-    reading = done.reading + build.noise * rng.standard_normal(done.reading.size)
-    resolution = build.rig.value("sensor.resolution")
-    signals = {f"{joint}.command": done.volts, f"{joint}.angle": np.round(reading / resolution) * resolution}
-    units = {f"{joint}.command": "V", f"{joint}.angle": "rad"}
-    write_signals(path, np.arange(done.volts.size) * SAMPLE_S, signals, units)
+    write_played(path, build, done, rng)
 
 
 def record_all(folder, seconds, references):
     """The reference recordings, and one of each effect and seed."""
     build, rng = build_of(load_rig(BENCH)), np.random.default_rng(0)
-    own = {
-        f: build.rig.value(p) * float(rng.uniform(1 - INDIVIDUAL, 1 + INDIVIDUAL))
-        for f, p in build.spread.items()
-    }
-    healthy = build.nominal._replace(**own)
+    healthy = build.nominal._replace(**individual(build, rng))
     folder.mkdir(parents=True, exist_ok=True)
     for number in range(references):
         recorded(build, healthy, 100 + number, seconds, folder / f"reference_{number}.csv")

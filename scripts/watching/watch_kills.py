@@ -18,10 +18,8 @@ from pathlib import Path
 import numpy as np
 
 from hydrolek_drake.challenge.build import build_of
-from hydrolek_drake.challenge.cases import driven, with_concealed
+from hydrolek_drake.challenge.cases import driven, with_concealed, write_played
 from hydrolek_drake.challenge.drawing import SIZING_STEP_S
-from hydrolek_drake.challenge.driving import SAMPLE_S
-from hydrolek_drake.recordings import write_signals
 from hydrolek_drake.rigs import load_rig
 
 START = "import sys; from hydrolek_drake.cli.app import main; sys.exit(main())"
@@ -39,13 +37,10 @@ def record(folder, count, seconds):
         sizes = {"conductance_m3_per_s_Pa": MORE * max(number - 19, 0)}
         machine = with_concealed(build.nominal, {LEAKAGE: sizes})
         done = driven(build, machine, "open", seconds, rng, build.noise, SIZING_STEP_S)
-        reading = done.reading + build.noise * rng.standard_normal(done.reading.size)
         name = f"reference_{number + 3}.csv"
         if number >= 0:
             name = f"runs/run_2026-{3 + number // 28:02d}-{1 + number % 28:02d}.csv"
-        signals = {"joint.command": done.volts, "joint.angle": reading}
-        units = {"joint.command": "V", "joint.angle": "rad"}
-        write_signals(folder / name, np.arange(done.volts.size) * SAMPLE_S, signals, units)
+        write_played(folder / name, build, done, rng)
 
 
 def begun(folder, out):

@@ -20,10 +20,8 @@ import numpy as np
 from playwright.sync_api import sync_playwright
 
 from hydrolek_drake.challenge.build import BENCH, build_of
-from hydrolek_drake.challenge.cases import driven, with_concealed
-from hydrolek_drake.challenge.drawing import INDIVIDUAL, SIZING_STEP_S
-from hydrolek_drake.challenge.driving import SAMPLE_S
-from hydrolek_drake.recordings import write_signals
+from hydrolek_drake.challenge.cases import driven, with_concealed, write_played
+from hydrolek_drake.challenge.drawing import SIZING_STEP_S, individual
 from hydrolek_drake.rigs import load_rig
 
 DAYS, BEGINS, SECONDS = 12, 4, 20.0
@@ -39,28 +37,16 @@ CLOCK_S = 1772668800.0
 
 def recorded(build, machine, seed, path, seconds=SECONDS, begins=0.0, gap=None):
     """Write one recording, without what lies within a gap."""
-    rng, joint = np.random.default_rng(seed), build.rig.joints[0]
+    rng = np.random.default_rng(seed)
     done = driven(build, machine, "open", seconds, rng, build.noise, SIZING_STEP_S)
-    reading = done.reading + build.noise * rng.standard_normal(done.reading.size)
-    resolution = build.rig.value("sensor.resolution")
-    time_s = np.arange(done.volts.size) * SAMPLE_S
-    kept = np.ones(time_s.size, dtype=bool) if gap is None else (time_s < gap) | (time_s > gap + GAP_S)
-    signals = {
-        f"{joint}.command": done.volts[kept],
-        f"{joint}.angle": (np.round(reading / resolution) * resolution)[kept],
-    }
-    units = {f"{joint}.command": "V", f"{joint}.angle": "rad"}
-    write_signals(path, begins + time_s[kept], signals, units)
+    missing = None if gap is None else (gap, gap + GAP_S)
+    write_played(path, build, done, rng, begins=begins, gap=missing)
 
 
 def recordings(folder):
     """Reference recordings, one a day, and streams of a healthy and of a leaking machine."""
     build, rng = build_of(load_rig(BENCH)), np.random.default_rng(7)
-    own = {
-        f: build.rig.value(p) * float(rng.uniform(1 - INDIVIDUAL, 1 + INDIVIDUAL))
-        for f, p in build.spread.items()
-    }
-    healthy = build.nominal._replace(**own)
+    healthy = build.nominal._replace(**individual(build, rng))
 
     def leaking(size):
         return with_concealed(healthy, {"cylinder.cross_port_leakage": {"conductance_m3_per_s_Pa": size}})

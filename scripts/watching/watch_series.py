@@ -20,12 +20,10 @@ from pathlib import Path
 import numpy as np
 
 from hydrolek_drake.challenge.build import ARM_JOINTS, BENCH, build_of
-from hydrolek_drake.challenge.cases import driven, with_concealed
-from hydrolek_drake.challenge.drawing import INDIVIDUAL, LARGEST_SCALING, SHOWS, SIZING_STEP_S
-from hydrolek_drake.challenge.driving import SAMPLE_S
+from hydrolek_drake.challenge.cases import driven, with_concealed, write_played
+from hydrolek_drake.challenge.drawing import LARGEST_SCALING, SHOWS, SIZING_STEP_S, individual
 from hydrolek_drake.diagnosis.intervals.curvature import NORMAL
 from hydrolek_drake.files import write_whole
-from hydrolek_drake.recordings import write_signals
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.watching.results import write_watch
 from hydrolek_drake.watching.watch import watch
@@ -143,10 +141,7 @@ def labels(machines, days, seconds, seed):
     found, count = [], days + REFERENCES
     for rig, effect in zip(rigs, effects, strict=True):
         build = build_of(load_rig(rig))
-        own = {
-            f: build.rig.value(path) * float(rng.uniform(1 - INDIVIDUAL, 1 + INDIVIDUAL))
-            for f, path in build.spread.items()
-        }
+        own = individual(build, rng)
         heaviest = HEAVIEST_KG["bench" if rig == BENCH else "arm"]
         entry = build.listed[effect] if effect else {}
         sign = float(rng.choice([-1.0, 1.0])) if entry.get("signed") else 1.0
@@ -180,19 +175,12 @@ def labels(machines, days, seconds, seed):
 
 def record(build, label, folder, days, seconds):
     """Write the reference recordings and one a day."""
-    resolution, joint = build.rig.value("sensor.resolution"), build.rig.joints[0]
     healthy = build.nominal._replace(**label["machine"])
     folder.mkdir(parents=True, exist_ok=True)
     for day in range(-REFERENCES, days):
         done, rng = played(build, healthy, label, day, seconds)
-        reading = done.reading + build.noise * rng.standard_normal(done.reading.size)
         name = f"reference_{day + REFERENCES}.csv" if day < 0 else f"run_2026-03-{day + 1:02d}.csv"
-        signals = {
-            f"{joint}.command": done.volts,
-            f"{joint}.angle": np.round(reading / resolution) * resolution,
-        }
-        units = {f"{joint}.command": "V", f"{joint}.angle": "rad"}
-        write_signals(folder / name, np.arange(done.volts.size) * SAMPLE_S, signals, units)
+        write_played(folder / name, build, done, rng)
 
 
 def watched_rig(name, folder):

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.identification.experiments.channel import Channel, faithful
+from hydrolek_drake.identification.experiments.held_command import without_windows
 from hydrolek_drake.identification.experiments.neighbours import rows_at, with_recorded
 from hydrolek_drake.identification.experiments.start import without_offset
 from hydrolek_drake.identification.experiments.thinning import Blocks, block_size
@@ -170,15 +171,7 @@ class Experiment:
             windows: begin and end of each [s]; one without length changes nothing. # (k, 2)
             neutral: command that acts meanwhile [V].
         """
-        times, command = self.command_times, self.command
-        for begin, end in windows.tolist():
-            before, after = np.searchsorted(times, (begin, end), side="left")
-            resumed = np.searchsorted(times, end, side="right") - 1
-            if resumed < 0 or not begin < end:  # it ends before the first command, or with its own begin
-                continue
-            after = max(after, resumed + 1)
-            times = np.concatenate([times[:before], [begin, end], times[after:]])
-            command = np.concatenate([command[:before], [neutral, command[resumed]], command[after:]])
+        times, command = without_windows(self.command_times, self.command, windows, neutral)
         return replace(self, command_times=times, command=command)
 
     def cut_at_supply(self) -> "Experiment":

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from hydrolek_drake.identification.least_squares.descent import Descent, Land
-from hydrolek_drake.identification.problem import PULLS_S, Problem
+from hydrolek_drake.identification.problem import Problem
 
 EDGE = 1e-6
 """Starts are pulled so far inside the cube: the trust-region method walks in the interior."""
@@ -19,6 +19,12 @@ ROUGH = 1e-3
 
 GOOD_ENOUGH = 1.02
 """Times the noise below which further starts could gain hardly anything."""
+
+PULLS_S = (0.03, 0.1)
+"""Time constants of the pulled rollouts of fits that begin far off, one after the other. Within the first hardly
+anything piles up: what is left of it is nearly the error of the rates themselves, over which the squared residuals have
+few local minima (an equation error; Ljung, System Identification, 1999, chapter 7). The second one is longer than a
+valve takes to open and a chamber to fill, and far shorter than a move, over which errors pile up."""
 
 PULLED_STEPS, PULLED_TOLERANCE = 8, ROUGH
 """Trust-region steps of a fit with pulled rollouts and its tolerance: it need only lead near."""
