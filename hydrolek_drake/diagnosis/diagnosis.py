@@ -20,7 +20,7 @@ from hydrolek_drake.diagnosis.locating.place import Location, locate, locate_law
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.progress import Progress
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import FITS, NOISE, Settings
+from hydrolek_drake.diagnosis.settings import FITS, NOISE
 from hydrolek_drake.diagnosis.structures.as_rig import enlarged_rig, room_for_law
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.splitting import prepared
@@ -151,10 +151,11 @@ def _diagnosed(
     candidates = list(
         {c.size_path: c for joint in joints for c in candidates_of(rig, joint, scales[joint])}.values()
     )
-    settings = Settings()
-    lawful = {joint: scales[joint] for joint in joints if room_for_law(rig, joint, settings.most_additions)}
+    lawful = {
+        joint: scales[joint] for joint in joints if room_for_law(rig, joint, bench.settings.most_additions)
+    }
     apart = bool(holdout) or between is not None
-    answer = Inquiry(candidates, lawful, apart, say, cores, settings).answer(bench, held_out)
+    answer = Inquiry(candidates, lawful, apart, say).answer(bench, held_out)
     known, conclusion, law, remarks = answer.known, answer.conclusion, answer.law, answer.remarks
     bench, held_out, found, judged = known.bench, known.held_out, known.found, known.judged
     best = conclusion.best.hypothesis
@@ -178,7 +179,7 @@ def _diagnosed(
         places = locate(bench, best, found.baseline, tuple(e.uncut() for e in bench.training))
         if law is not None:
             places = (locate_law(bench, best, found.baseline, law), *places)
-        proposal = propose(bench, conclusion, [j.hypothesis for j in judged], cores)
+        proposal = propose(bench, conclusion, [j.hypothesis for j in judged])
         visible = visible_sizes(bench, best, found.left)
     except KeyboardInterrupt:  # the verdict stands without what is left
         bench.resume()
@@ -200,7 +201,7 @@ def _diagnosed(
         intervals={
             **intervals,
             **(law.intervals if law is not None else {}),
-            **intervals_of_moments(bench, best, cores),
+            **intervals_of_moments(bench, best),
         },
         law=law,
         proposal=proposal,

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.from_the_cut import search_machine
 from hydrolek_drake.diagnosis.search.parts import cut
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import EVIDENCE, NOISE, Settings
+from hydrolek_drake.diagnosis.settings import EVIDENCE, NOISE
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.splitting import halves, mixed
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
@@ -100,16 +100,12 @@ class Inquiry:
         scales: natural scales of the driven joints at which there may be a law.
         apart: whether the held-out data are of another kind, not blocks among the rest.
         say: told what is being done.
-        cores: that roll out at the same time.
-        settings: of the search.
     """
 
     candidates: Sequence[Candidate]
     scales: Mapping[str, Scales]
     apart: bool
     say: Callable[[str], None]
-    cores: int
-    settings: Settings = field(default_factory=Settings)
 
     def answer(self, bench: Workbench, held_out: Sequence[Experiment]) -> Answer:
         """Search and judge; an interrupt ends it with what is known by then.
@@ -133,7 +129,7 @@ class Inquiry:
                 training, chosen, kept = mixed(training, held_out)
                 remarks = (BY_BOTH,)
             again = known.bench.with_training(training, signals_apart=far)
-            known, found = self._known(again, chosen, _begun_from(found, self.settings))
+            known, found = self._known(again, chosen, Tried(seeds=found.near_the_best(bench.settings)))
             if far and (told := _told_apart(known.bench)):
                 remarks = (*remarks, SIGNALS_APART.format(told=told))
         best = likeliest_side(known.judged).hypothesis
@@ -158,7 +154,7 @@ class Inquiry:
         ):
             self.say("estimating what enters at each stage")
             [(joint, scales)] = self.scales.items()
-            estimates = estimates_for(known.bench, known.found.baseline, joint, scales, self.cores)
+            estimates = estimates_for(known.bench, known.found.baseline, joint, scales)
         return Answer(replace(known, conclusion=conclusion), conclusion, law, remarks, estimates)
 
     def _known(self, bench: Workbench, held_out: Sequence[Experiment], found: Tried) -> tuple[Known, Tried]:
@@ -171,9 +167,7 @@ class Inquiry:
                 self.candidates,
                 found,
                 self.say,
-                self.settings,
-                self.cores,
-                _Unlisted(self.scales, self.cores) if self.scales else None,
+                _Unlisted(self.scales) if self.scales else None,
             )
         except KeyboardInterrupt:
             if not found.hypotheses:
@@ -185,7 +179,7 @@ class Inquiry:
         try:
             bench.training = tuple(weighted_by(bench, found.best, bench.training))
             weighted = tuple(weighted_by(bench, found.best, held_out))
-            judged = judge_structures(bench, found, weighted, self.settings, self.cores)
+            judged = judge_structures(bench, found, weighted)
         except KeyboardInterrupt:
             interrupted = True
             bench.resume()
@@ -197,7 +191,7 @@ class Inquiry:
         """The same with what structures leave of data by which none was chosen, which have the verdict's last word."""
         try:
             weighted = tuple(weighted_by(known.bench, known.judged[0].hypothesis, kept))
-            judged = left_of(known.bench, known.judged, weighted, self.settings, self.cores)
+            judged = left_of(known.bench, known.judged, weighted)
         except KeyboardInterrupt:
             return replace(known, interrupted=True)
         return replace(known, held_out=weighted, judged=judged, conclusion=conclude(judged))
@@ -206,7 +200,7 @@ class Inquiry:
         """The conclusion, and the law of the best structure, if it has one."""
         terms = terms_of(best.hypothesis)
         if lost_in(best.hypothesis) is not None:
-            lost = lost_of(known.bench, best, known.held_out, self.settings, self.cores)
+            lost = lost_of(known.bench, best, known.held_out)
             told = replace(known.conclusion, verdict="unlisted_physics", best=_beside(known, best), groups=())
             return told, lost
         if not terms:
@@ -219,7 +213,7 @@ class Inquiry:
             if theirs and possible and theirs[0].input.stage not in stages:
                 stages.add(theirs[0].input.stage)
                 rivals.append(theirs[0].input.stage)
-        law = law_of(known.bench, best, known.held_out, rivals, self.settings, self.cores)
+        law = law_of(known.bench, best, known.held_out, rivals)
         named = _beside(known, best)
         groups = (tuple(f"unlisted.{s}" for s in (terms[0].input.stage, *rivals)),) if rivals else ()
         return replace(known.conclusion, verdict="unlisted_physics", best=named, groups=groups), law
@@ -230,10 +224,9 @@ class _Unlisted:
     """Physics in no list; see `best_first.Unlisted`."""
 
     scales: Mapping[str, Scales]
-    cores: int
 
     def offer(self, bench: Workbench, parent: Hypothesis) -> Sequence[LawTerm | LostWindows]:
-        return terms_for(bench, parent, self.scales, self.cores)
+        return terms_for(bench, parent, self.scales)
 
 
 def _beside(known: Known, best: Judged) -> Judged:
@@ -290,8 +283,3 @@ def _told_apart(bench: Workbench) -> str:
     return (
         ", ".join(f"{key} {share:.3g} times" for key, share in shares.items() if share > 1.0) if apart else ""
     )
-
-
-def _begun_from(found: Tried, settings: Settings) -> Tried:
-    """A search that goes on from what another one found."""
-    return Tried(seeds=found.near_the_best(settings))

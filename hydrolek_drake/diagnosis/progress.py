@@ -12,9 +12,7 @@ class Progress:
     """Tells how the fits of a diagnosis stand."""
 
     def __init__(
-        self,
-        more: Callable[[str], None] = lambda text: None,
-        clock: Callable[[], float] = time.monotonic,
+        self, more: Callable[[str], None] = lambda text: None, clock: Callable[[], float] = time.monotonic
     ) -> None:
         """Nothing is fitted yet.
 

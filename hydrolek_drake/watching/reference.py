@@ -10,7 +10,7 @@ from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal
 from hydrolek_drake.diagnosis.search.nominal import as_weighed
-from hydrolek_drake.diagnosis.settings import NOISE, Settings
+from hydrolek_drake.diagnosis.settings import NOISE
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.errors import InputError
@@ -133,7 +133,7 @@ class Session:
             self._reference = ReferenceBench(self.rig, nominal, self.changing, training, pool, cores)
         if kept is None:
             say("fitting the nominal model to the reference")
-            self._fit = _fitted(self._reference, cores)
+            self._fit = _fitted(self._reference)
             self.posterior = self._posterior(self._reference, self._fit)
             fit = self._fit.fit
         else:
@@ -184,7 +184,7 @@ class Session:
         """
         others = [e for e in self._reference.training if e.name != name]
         bench = self._reference.with_training(others)
-        again = race(bench, [Entrant((), self._fit.values)], (Settings().again,), self.cores)[0]
+        again = race(bench, [Entrant((), self._fit.values)], (bench.settings.again,))[0]
         return self._posterior(bench, again).known(self.drift)
 
     def _posterior(self, bench: Workbench, best: Hypothesis) -> Posterior:
@@ -209,16 +209,15 @@ class Session:
         return problem
 
 
-def _fitted(bench: Workbench, cores: int) -> Hypothesis:
+def _fitted(bench: Workbench) -> Hypothesis:
     """The nominal model, the data weighed by it."""
-    settings = Settings()
-    first = race(bench, [Entrant((), {})], (*settings.free, *settings.ended), cores)[0]
-    best = as_weighed(bench, first, settings, cores)
+    first = race(bench, [Entrant((), {})], (*bench.settings.free, *bench.settings.ended))[0]
+    best = as_weighed(bench, first)
     if isinstance(bench, ReferenceBench) and best.fit.over_noise > NOISE.at:
         # there are more local minima then
-        led = continued_nominal(bench, best, best.fit.over_noise, settings, cores)
+        led = continued_nominal(bench, best, best.fit.over_noise)
         if led is not None:
-            best = min(best, as_weighed(bench, led, settings, cores), key=lambda each: each.fit.objective)
+            best = min(best, as_weighed(bench, led), key=lambda each: each.fit.objective)
     return best
 
 

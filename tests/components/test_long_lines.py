@@ -132,6 +132,7 @@ def test_steady_flow_loses_what_darcy_says(with_component, reynolds, factor):
     assert_allclose(lost, factor * LENGTH / BORE * 0.5 * DENSITY * speed**2, rtol=1e-9)
 
 
+@pytest.mark.thorough
 def test_a_short_wide_line_is_no_line_but_its_oil(with_component):
     rig = _lossless(with_component, length_a=0.1, length_b=0.1, bore_a=12e-3, bore_b=12e-3, wave_speed=1000.0)
     bench = load_rig("joint_bench")

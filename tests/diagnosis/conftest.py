@@ -86,7 +86,7 @@ def fitted() -> Callable[..., Hypothesis]:
         workbench: Workbench, effects=(), values=None, rounds: int = 12, coarse: float = 1.0
     ) -> Hypothesis:
         rung = Rung(math.inf, coarse, math.inf, rounds, 1)
-        return race(workbench, [Entrant(tuple(effects), values or {})], (rung,), 2)[0]
+        return race(workbench, [Entrant(tuple(effects), values or {})], (rung,))[0]
 
     return fit
 
@@ -120,8 +120,8 @@ def answer_of(bench, recorded) -> Callable[..., Answer]:
         scales = natural_scales(bench, "joint", training)
         candidates = [c for c in candidates_of(bench, "joint", scales) if only is None or c.id in only]
         with ThreadPoolExecutor(2) as pool:
-            workbench = Workbench(bench, free_parameters(bench), training, pool)
-            asked = Inquiry(candidates, {"joint": scales} if laws else {}, apart=True, say=say, cores=2)
+            workbench = Workbench(bench, free_parameters(bench), training, pool, 2)
+            asked = Inquiry(candidates, {"joint": scales} if laws else {}, apart=True, say=say)
             return asked.answer(workbench, held_out)
 
     return make

@@ -109,6 +109,7 @@ def test_no_step_of_the_plan_touches_anything_there(answer):
             assert world.free(step.trajectory.value(time)[:, 0]), step.name
 
 
+@pytest.mark.thorough
 def test_left_is_the_mirror_image_of_right(base, monkeypatch):
     """Each place for a tilted pipe is one for its mirror image, the arms exchanged.
 

@@ -3,49 +3,42 @@
 from collections.abc import Sequence
 
 from hydrolek_drake.diagnosis.fitting.problems import problem_with
-from hydrolek_drake.diagnosis.settings import FITS, Settings
+from hydrolek_drake.diagnosis.settings import FITS
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.lockstep import descend
 from hydrolek_drake.identification.least_squares.place import Place
 
 
-def to_both(
-    bench: Workbench, hypothesis: Hypothesis, held_out: Sequence[Experiment], settings: Settings
-) -> Place:
+def to_both(bench: Workbench, hypothesis: Hypothesis, held_out: Sequence[Experiment]) -> Place:
     """Where the fit of a structure to the training data and others begins.
 
     Args:
         bench: data and problems.
         hypothesis: the structure, fitted to the training data.
         held_out: the others.
-        settings: of the search.
     """
-    step = bench.step_for(hypothesis.effects, settings.last.coarse)
+    step = bench.step_for(hypothesis.effects, bench.settings.last.coarse)
     problem = problem_with(bench, hypothesis.effects, step, [*bench.training, *held_out])
     return Place(problem, bench.movable(hypothesis.effects, problem.parameters), hypothesis.fit.unit)
 
 
-def fitted_to_both(
-    bench: Workbench, places: Sequence[Place], settings: Settings, cores: int, *, renewing: bool
-) -> list[Place]:
+def fitted_to_both(bench: Workbench, places: Sequence[Place], *, renewing: bool) -> list[Place]:
     """Structures fitted to the training data and others.
 
     Args:
         bench: data and problems.
         places: where they begin.
-        settings: of the search.
-        cores: that roll out at the same time.
         renewing: whether slopes are computed anew; else those that they have lead, corrected, as far as they do.
     """
-    rung = settings.again
+    rung = bench.settings.again
     return descend(
         places,
         rung.rounds,
         bench.pool,
-        cores,
+        bench.cores,
         share=rung.share,
-        leading=FITS.coarse / settings.last.coarse,
+        leading=FITS.coarse / bench.settings.last.coarse,
         renewing=renewing,
         stop=bench.alive,
     )

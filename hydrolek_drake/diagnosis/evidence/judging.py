@@ -30,7 +30,7 @@ from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
 from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE, Settings
+from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.least_squares import Fit
@@ -130,27 +130,23 @@ def _to_pay(hypothesis: Hypothesis, other: Hypothesis) -> float:
     return GAINS.needed * len(own) if special and all(contained) and len(own) == len(special) else -math.inf
 
 
-def judge_structures(
-    bench: Workbench, found: Tried, held_out: Sequence[Experiment], settings: Settings, cores: int
-) -> list[Judged]:
+def judge_structures(bench: Workbench, found: Tried, held_out: Sequence[Experiment]) -> list[Judged]:
     """Structures that may be right, the most probable first.
 
     Args:
         bench: data and problems.
         found: structures, fitted to the training data.
         held_out: data that nothing was fitted to.
-        settings: of the search.
-        cores: that roll out at the same time.
     """
-    last = settings.last
+    last = bench.settings.last
     refined: list[Hypothesis] = []
     contenders = _contenders(found)
     for rounds, some in ((last.rounds, _in_doubt(contenders, found.best)), (0, contenders)):
         entrants = [Entrant(h.effects, h.values) for h in some if h.ids not in {r.ids for r in refined}]
         if entrants:
-            refined += race(bench, entrants, (replace(last, rounds=rounds, keep=len(entrants)),), cores)
+            refined += race(bench, entrants, (replace(last, rounds=rounds, keep=len(entrants)),))
     refined = [h for h in refined if pays(h, refined) and all(c.says_something(h.values) for c in h.effects)]
-    judged = _predicted(bench, refined, held_out, settings, cores)
+    judged = _predicted(bench, refined, held_out)
     blocks = blocks_of(held_out)
     return with_probabilities([j for j in judged if predicts(j, judged, blocks)])
 
@@ -172,26 +168,20 @@ def _in_doubt(hypotheses: Sequence[Hypothesis], best: Hypothesis) -> list[Hypoth
 
 
 def _predicted(
-    bench: Workbench,
-    hypotheses: Sequence[Hypothesis],
-    held_out: Sequence[Experiment],
-    settings: Settings,
-    cores: int,
+    bench: Workbench, hypotheses: Sequence[Hypothesis], held_out: Sequence[Experiment]
 ) -> list[Judged]:
     """Structures with the density of the held-out data."""
     counted = sum(experiment.counted for experiment in held_out)
-    begun = [
-        with_stands(bench, Judged(h, np.zeros(0), counted), held_out, settings, cores) for h in hypotheses
-    ]
+    begun = [with_stands(bench, Judged(h, np.zeros(0), counted), held_out) for h in hypotheses]
     places = []
     for own in begun:
         for experiment in held_out:
             effects, unit = own.stands[recording_of(experiment)]
             problem = problem_with(
-                bench, effects, bench.step_for(effects, settings.last.coarse), [experiment]
+                bench, effects, bench.step_for(effects, bench.settings.last.coarse), [experiment]
             )
             places.append(Place(problem, bench.movable(effects, problem.parameters), unit, exact=True))
-    told = iter(with_slopes(places, bench.pool, cores))
+    told = iter(with_slopes(places, bench.pool, bench.cores))
     judged, far, both = [], [], []
     doubtful = _in_doubt(hypotheses, min(hypotheses, key=cost))
     for own in begun:
@@ -211,14 +201,14 @@ def _predicted(
     chosen = [] if decided else [i for i, is_far in enumerate(far) if is_far]
     fits = {
         i: replace(
-            to_both(bench, judged[i].hypothesis, held_out, settings),
+            to_both(bench, judged[i].hypothesis, held_out),
             residuals=np.concatenate([judged[i].hypothesis.fit.residuals, both[i][0]]),
             slopes=np.concatenate([judged[i].hypothesis.fit.jacobian, both[i][1]]),
         )
         for i in chosen
     }
     for renewing in (False, True):
-        ended = fitted_to_both(bench, list(fits.values()), settings, cores, renewing=renewing)
+        ended = fitted_to_both(bench, list(fits.values()), renewing=renewing)
         fits = dict(zip(fits, ended, strict=True))
         for i, place in fits.items():
             judged[i] = replace(judged[i], chi_squared=beyond(place, judged[i].hypothesis))

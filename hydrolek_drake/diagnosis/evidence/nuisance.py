@@ -14,7 +14,7 @@ from hydrolek_drake.diagnosis.fitting.problems import problem_with
 from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.lost_commands.search import windows_ahead
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows, recording_of
-from hydrolek_drake.diagnosis.settings import EVIDENCE, Settings
+from hydrolek_drake.diagnosis.settings import EVIDENCE
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
@@ -22,13 +22,7 @@ from hydrolek_drake.identification.least_squares.lockstep import descend
 from hydrolek_drake.identification.least_squares.place import Place
 
 
-def with_stands(
-    bench: Workbench,
-    judged: Judged,
-    held_out: Sequence[Experiment],
-    settings: Settings,
-    cores: int,
-) -> Judged:
+def with_stands(bench: Workbench, judged: Judged, held_out: Sequence[Experiment]) -> Judged:
     """The same, with where its structure stands in each recording: as fitted, but for what is the recording's own.
 
     What is known of a recording stays: all blocks of it have the same.
@@ -37,8 +31,6 @@ def with_stands(
         bench: data and problems.
         judged: a structure.
         held_out: recordings, or blocks of them.
-        settings: of the search.
-        cores: that roll out at the same time.
     """
     h = judged.hypothesis
     stands = dict(judged.stands)
@@ -46,14 +38,14 @@ def with_stands(
         if recording_of(part) in stands:
             continue
         experiment = part.split(np.ones_like(part.used))  # a lost command moves all that comes after it
-        lost = windows_ahead(bench, h, experiment, h.step, settings, cores)
+        lost = windows_ahead(bench, h, experiment, h.step)
         effects: tuple[Addition, ...] = tuple(
             lost if lost is not None and isinstance(c, LostWindows) else c for c in h.effects
         )
         rest = {path: value for path, value in h.values.items() if ".lost." not in path}
         unit = bench.parameters(effects).unit(rest)
         if phases_of(h).any():
-            unit = _in_phase(bench, effects, unit, experiment, h.step, cores)
+            unit = _in_phase(bench, effects, unit, experiment, h.step)
         stands[recording_of(part)] = effects, unit
     return replace(judged, stands=stands)
 
@@ -72,12 +64,7 @@ def own_of_recordings(hypothesis: Hypothesis) -> np.ndarray:
 
 
 def _in_phase(
-    bench: Workbench,
-    effects: tuple[Addition, ...],
-    unit: np.ndarray,
-    experiment: Experiment,
-    step: float,
-    cores: int,
+    bench: Workbench, effects: tuple[Addition, ...], unit: np.ndarray, experiment: Experiment, step: float
 ) -> np.ndarray:
     """Where a structure with a periodic law stands in a recording, its phase fitted to it. # (n,)."""
     problem = problem_with(bench, effects, step, [experiment])
@@ -91,6 +78,6 @@ def _in_phase(
         turned = unit.copy()
         turned[sine], turned[cosine] = 0.5 + amplitude * np.cos(angle), 0.5 + amplitude * np.sin(angle)
         begun.append(Place(problem, moving, turned))
-    first = sorted(descend(begun, 0, bench.pool, cores), key=lambda place: place.objective)[:2]
-    ended = descend(first, 6, bench.pool, cores, stop=bench.alive)
+    first = sorted(descend(begun, 0, bench.pool, bench.cores), key=lambda place: place.objective)[:2]
+    ended = descend(first, 6, bench.pool, bench.cores, stop=bench.alive)
     return min(ended, key=lambda place: place.objective).unit

@@ -62,16 +62,13 @@ def commands_of(amplitude: float) -> dict[str, np.ndarray]:
     return {words: amplitude * shape for words, shape in shapes.items()}
 
 
-def propose(
-    bench: Workbench, conclusion: Conclusion, hypotheses: Sequence[Hypothesis], cores: int
-) -> Proposal | None:
+def propose(bench: Workbench, conclusion: Conclusion, hypotheses: Sequence[Hypothesis]) -> Proposal | None:
     """The experiment that tells the two most probable hypotheses apart best; None if there is only one.
 
     Args:
         bench: data and fits.
         conclusion: with its groups.
         hypotheses: fitted, the most probable first.
-        cores: that roll out at the same time.
     """
     if (
         len(hypotheses) < 2
@@ -95,7 +92,7 @@ def propose(
         if unrecorded:
             options.append((f"{words} (up to {amplitude:.3g} V), with both chamber pressures recorded",
                             _with_pressures(bench, experiment)))  # fmt: skip
-    seen = _separations(bench, first, second, [experiment for _, experiment in options], cores)
+    seen = _separations(bench, first, second, [experiment for _, experiment in options])
     ranked = sorted(zip(seen, options, strict=True), key=lambda pair: -pair[0])
     separation, (words, experiment) = ranked[0]
     names = " from ".join(_names(h) for h in (first, second))
@@ -139,7 +136,7 @@ def _with_pressures(bench: Workbench, experiment: Experiment) -> Experiment:
 
 
 def _separations(
-    bench: Workbench, truth: Hypothesis, rival: Hypothesis, experiments: Sequence[Experiment], cores: int
+    bench: Workbench, truth: Hypothesis, rival: Hypothesis, experiments: Sequence[Experiment]
 ) -> list[float]:
     """Root of the squared residuals that the rival leaves of each after its best (linear) change of parameters."""
     played = residuals_at(
@@ -150,7 +147,7 @@ def _separations(
             )
         ],
         bench.pool,
-        cores,
+        bench.cores,
     )
     places = []
     for experiment in experiments:
@@ -158,7 +155,7 @@ def _separations(
         unit = problem.parameters.unit(rival.values)
         places.append(Place(problem, bench.movable(rival.effects, problem.parameters), unit, exact=True))
     found = []
-    for place, (shown,) in zip(with_slopes(places, bench.pool, cores), played, strict=True):
+    for place, (shown,) in zip(with_slopes(places, bench.pool, bench.cores), played, strict=True):
         assert place.residuals is not None and place.slopes is not None
         fit = hypothesis_of(rival.effects, place, bench.step_for(rival.effects)).fit
         across = Across(replace(fit, slopes=place.slopes))

@@ -13,19 +13,12 @@ from hydrolek_drake.diagnosis.fitting.line_search import lowest_along_each
 from hydrolek_drake.diagnosis.fitting.problems import problem_with
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
 from hydrolek_drake.diagnosis.search.from_the_cut import fitted_behind
-from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
 
-def left_of(
-    bench: Workbench,
-    judged: Sequence[Judged],
-    held_out: Sequence[Experiment],
-    settings: Settings,
-    cores: int,
-) -> tuple[Judged, ...]:
+def left_of(bench: Workbench, judged: Sequence[Judged], held_out: Sequence[Experiment]) -> tuple[Judged, ...]:
     """The same structures with what they leave of other data than those by which they were judged.
 
     Where the best one explains what it was fitted to and fails here, these data may show what the others do not, such
@@ -37,21 +30,21 @@ def left_of(
         bench: data and problems.
         judged: structures, the most probable first.
         held_out: data that nothing was fitted to, and by which nothing was chosen.
-        settings: of the search.
-        cores: that roll out at the same time.
     """
-    judged = [with_stands(bench, j, held_out, settings, cores) for j in judged]
+    judged = [with_stands(bench, j, held_out) for j in judged]
     requests = []
     for own in judged:
         for experiment in held_out:
             effects, unit = own.stands[recording_of(experiment)]
             requests.append(
                 Request(
-                    problem_with(bench, effects, bench.step_for(effects, settings.last.coarse), [experiment]),
+                    problem_with(
+                        bench, effects, bench.step_for(effects, bench.settings.last.coarse), [experiment]
+                    ),
                     (unit,),
                 )
             )
-    answers = iter(residuals_at(requests, bench.pool, cores))
+    answers = iter(residuals_at(requests, bench.pool, bench.cores))
     counted = sum(experiment.counted for experiment in held_out)
     told = tuple(
         replace(
@@ -68,15 +61,15 @@ def left_of(
     if not told[0].fails_ahead_alone or own_of_recordings(told[0].hypothesis).any():
         return told
     asked, best, ahead = bench, told[0].hypothesis, list(held_out)
-    behind = fitted_behind(bench, best, settings, cores)
+    behind = fitted_behind(bench, best)
     if behind is not None:
         (asked, best), ahead = behind, [e.behind_cut() for e in held_out]
     counted = max(sum(e.counted for e in ahead), 1)
-    begun = to_both(asked, best, ahead, settings)
-    [both] = fitted_to_both(asked, [begun], settings, cores, renewing=True)
+    begun = to_both(asked, best, ahead)
+    [both] = fitted_to_both(asked, [begun], renewing=True)
     now = replace(told[0], fitted_too=math.sqrt(beyond(both, best) / counted))
     if now.fails_ahead_alone:
-        elsewhere = lowest_along_each(both, asked.pool, cores)
-        [both] = fitted_to_both(asked, [elsewhere], settings, cores, renewing=True)
+        elsewhere = lowest_along_each(both, asked.pool, asked.cores)
+        [both] = fitted_to_both(asked, [elsewhere], renewing=True)
         now = replace(told[0], fitted_too=math.sqrt(beyond(both, best) / counted))
     return (now, *told[1:])

@@ -12,7 +12,7 @@ from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.least_squares.lockstep import descend
 
 
-def tried_elsewhere(bench: Workbench, runners: Sequence[Runner], cores: int) -> list[Runner]:
+def tried_elsewhere(bench: Workbench, runners: Sequence[Runner]) -> list[Runner]:
     """The same with what has no slope tried elsewhere, and fitted on where that helped."""
     now = list(runners)
     most = max((len(r.effects) for r in runners), default=0)
@@ -20,10 +20,10 @@ def tried_elsewhere(bench: Workbench, runners: Sequence[Runner], cores: int) -> 
         own = [_ways(r, number) for r in now]
         for turn in range(max(map(len, own), default=0)):
             ways = [each[turn] if turn < len(each) else None for each in own]
-            places = searched_along([r.place for r in now], ways, bench.pool, cores)
+            places = searched_along([r.place for r in now], ways, bench.pool, bench.cores)
             moved = [place is not r.place for place, r in zip(places, now, strict=True)]
             places = [p if m else replace(p, ended=True) for p, m in zip(places, moved, strict=True)]
-            places = descend(places, 3, bench.pool, cores, stop=bench.alive)
+            places = descend(places, 3, bench.pool, bench.cores, stop=bench.alive)
             now = [replace(r, place=place) for r, place in zip(now, places, strict=True)]
     return now
 

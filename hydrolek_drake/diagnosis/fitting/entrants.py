@@ -74,18 +74,17 @@ class Runner:
         return " + ".join(c.label for c in self.effects) or "nominal model"
 
 
-def entered(bench: Workbench, entrants: Sequence[Entrant], rung: Rung, cores: int) -> list[Runner]:
+def entered(bench: Workbench, entrants: Sequence[Entrant], rung: Rung) -> list[Runner]:
     """Structures at their starts, led by the slopes of the structures that they enlarge.
 
     Args:
         bench: data and problems.
         entrants: structures and starts.
         rung: the first one.
-        cores: that roll out at the same time.
     """
     runners = [_begun(bench, entrant) for entrant in entrants]
     problems = {r.searched: problem_of(bench, r.effects, rung) for r in runners}
-    led = _led(bench, entrants, [r.place.at(problems[r.searched]) for r in runners], rung, cores)
+    led = _led(bench, entrants, [r.place.at(problems[r.searched]) for r in runners], rung)
     return [replace(r, place=place) for r, place in zip(runners, led, strict=True)]
 
 
@@ -97,9 +96,7 @@ def _begun(bench: Workbench, entrant: Entrant) -> Runner:
     )
 
 
-def _led(
-    bench: Workbench, entrants: Sequence[Entrant], begun: Sequence[Place], rung: Rung, cores: int
-) -> list[Place]:
+def _led(bench: Workbench, entrants: Sequence[Entrant], begun: Sequence[Place], rung: Rung) -> list[Place]:
     """The same places with the slopes where they start, which are nearly their own."""
     starts = list(dict.fromkeys(e.start for e in entrants if e.start is not None))
     places = []
@@ -107,7 +104,7 @@ def _led(
         problem = problem_of(bench, start.effects, rung)
         moving = bench.movable(start.effects, problem.parameters)
         places.append(Place(problem, moving, _inside(problem.parameters.unit(start.values), moving)))
-    known_at = dict(zip(starts, with_slopes(places, bench.pool, cores), strict=True))
+    known_at = dict(zip(starts, with_slopes(places, bench.pool, bench.cores), strict=True))
     led = []
     for entrant, place in zip(entrants, begun, strict=True):
         if entrant.start is None:

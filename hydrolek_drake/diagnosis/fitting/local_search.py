@@ -14,7 +14,7 @@ from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.search.cost import gain_needed
-from hydrolek_drake.diagnosis.settings import NOISE, Settings
+from hydrolek_drake.diagnosis.settings import NOISE
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
 
@@ -28,19 +28,17 @@ def has_other_minima(best: Hypothesis, ended: Sequence[Hypothesis]) -> bool:
     return sum(h.ids == best.ids for h in ended) > 1
 
 
-def searched_near(bench: Workbench, structure: Hypothesis, settings: Settings, cores: int) -> Hypothesis:
+def searched_near(bench: Workbench, structure: Hypothesis) -> Hypothesis:
     """The best fit of a structure that is found near one, as long as each round finds a better one.
 
     Args:
         bench: data and problems.
         structure: a fit.
-        settings: of the search.
-        cores: that roll out at the same time.
     """
     best = structure
-    for turn in range(settings.near_rounds):
-        near = _places_near(bench, best, settings, np.random.default_rng(turn))
-        now = race(bench, [Entrant(best.effects, values) for values in near], settings.near, cores)[0]
+    for turn in range(bench.settings.near_rounds):
+        near = _places_near(bench, best, np.random.default_rng(turn))
+        now = race(bench, [Entrant(best.effects, values) for values in near], bench.settings.near)[0]
         trace(f"    near {best.label}: {best.fit.over_noise:.4f} to {now.fit.over_noise:.4f}")
         gain = best.fit.objective - now.fit.objective
         best = now if gain > 0.0 else best
@@ -49,16 +47,14 @@ def searched_near(bench: Workbench, structure: Hypothesis, settings: Settings, c
     return best
 
 
-def _places_near(
-    bench: Workbench, structure: Hypothesis, settings: Settings, rng: np.random.Generator
-) -> list[dict[str, float]]:
+def _places_near(bench: Workbench, structure: Hypothesis, rng: np.random.Generator) -> list[dict[str, float]]:
     """Values of the parameters at some distances in all directions, and where the structure is."""
     parameters = bench.parameters(structure.effects)
     unit = parameters.unit(structure.values)
     moving = bench.movable(structure.effects, parameters)
     found = [structure.values]
-    for spread in settings.near_spreads:
-        for _ in range(settings.near_each):
+    for spread in bench.settings.near_spreads:
+        for _ in range(bench.settings.near_each):
             away = np.where(moving, spread * rng.standard_normal(unit.size), 0.0)
             found.append(parameters.values(np.clip(unit + away, 0.0, 1.0)))
     return found

@@ -19,7 +19,6 @@ def race(
     bench: Workbench,
     entrants: Sequence[Entrant],
     rungs: Sequence[Rung],
-    cores: int,
     seen: Callable[[Sequence[Runner], Rung], None] = lambda runners, rung: None,
 ) -> list[Hypothesis]:
     """Fit structures, the better ones to the end.
@@ -28,13 +27,12 @@ def race(
         bench: data and problems.
         entrants: structures and starts.
         rungs: of the race.
-        cores: that roll out at the same time.
         seen: told how the fits stand after each rung.
 
     Returns:
         Those that ended on the last rung, the best first.
     """
-    runners = run(bench, entered(bench, entrants, rungs[0], cores), rungs, cores, seen)
+    runners = run(bench, entered(bench, entrants, rungs[0]), rungs, seen)
     return hypotheses_of(bench, runners, rungs[-1])
 
 
@@ -42,7 +40,6 @@ def run(
     bench: Workbench,
     runners: Sequence[Runner],
     rungs: Sequence[Rung],
-    cores: int,
     seen: Callable[[Sequence[Runner], Rung], None] = lambda runners, rung: None,
 ) -> list[Runner]:
     """Structures on their way through rungs, the best first.
@@ -51,7 +48,6 @@ def run(
         bench: data and problems.
         runners: structures and where they stand.
         rungs: of the race.
-        cores: that roll out at the same time.
         seen: told how the fits stand after each rung.
     """
     now = list(runners)
@@ -62,7 +58,7 @@ def run(
             [r.place.at(problems[r.searched]) for r in now],
             rung.rounds,
             bench.pool,
-            cores,
+            bench.cores,
             share=rung.share,
             behind=rung.behind,
             leading=max(FITS.coarse / rung.coarse, 1.0),
@@ -71,7 +67,7 @@ def run(
         bench.evaluations += sum(p.evaluations for p in problems.values())
         now = [replace(r, place=place) for r, place in zip(now, places, strict=True)]
         if rung.elsewhere:
-            now = tried_elsewhere(bench, now, cores)
+            now = tried_elsewhere(bench, now)
         part = math.isfinite(min(rung.observer_s, rung.seconds))
         now = _ranked(now) if part else sorted(now, key=lambda r: r.place.objective)
         if now and not part:

@@ -174,7 +174,7 @@ def with_last_numbers(
     return replace(best, hypothesis=there, held_out=ahead), intervals, tuple(told)
 
 
-def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis, cores: int) -> dict[str, Interval]:
+def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis) -> dict[str, Interval]:
     """Full path -> moment with its 95 % interval: all moments that the residuals do not tell from the best one.
 
     A moment has no slope, so its interval is that of the likelihood ratio, all else changed along its tangents (Seber,
@@ -183,7 +183,6 @@ def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis, cores: int) -
     Args:
         bench: data and problems.
         hypothesis: a fitted model.
-        cores: that roll out at the same time.
     """
     found = {}
     for free in moments_of(hypothesis.effects):
@@ -193,7 +192,7 @@ def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis, cores: int) -
             value + apart * np.linspace(-2.0, 2.0, 4 * EVIDENCE.closer + 1), free.lower, free.upper
         )
         moments = np.unique([*tried, *near, value])
-        errors = _errors(bench, hypothesis, free, moments, cores)
+        errors = _errors(bench, hypothesis, free, moments)
         unlike = chi2.ppf(EVIDENCE.confidence, 1) * max(1.0, hypothesis.fit.over_noise) ** 2
         alike = np.flatnonzero(errors <= errors.min() + unlike)
         low, high = max(alike[0] - 1, 0), min(alike[-1] + 1, len(moments) - 1)
@@ -201,13 +200,11 @@ def intervals_of_moments(bench: Workbench, hypothesis: Hypothesis, cores: int) -
     return found
 
 
-def _errors(
-    bench: Workbench, hypothesis: Hypothesis, free: Free, moments: np.ndarray, cores: int
-) -> np.ndarray:
+def _errors(bench: Workbench, hypothesis: Hypothesis, free: Free, moments: np.ndarray) -> np.ndarray:
     """Squared residuals that each moment leaves after the best change of all else. # (moments,)."""
     problem = bench.problem(hypothesis.effects, bench.step_for(hypothesis.effects))
     across, off = Across(hypothesis.fit), hypothesis.fit.off_prior
     units = [problem.parameters.unit({**hypothesis.values, free.path: moment}) for moment in moments]
-    [found] = residuals_at([Request(problem, tuple(units))], bench.pool, cores)
+    [found] = residuals_at([Request(problem, tuple(units))], bench.pool, bench.cores)
     left = [across(np.concatenate([residuals, off])) for residuals in found]
     return np.nan_to_num(np.array([float(each @ each) for each in left]), nan=np.inf)

@@ -15,7 +15,7 @@ from hydrolek_drake.diagnosis.laws.law import FRICTIONS, FoundLaw, Law
 from hydrolek_drake.diagnosis.laws.terms import Term
 from hydrolek_drake.diagnosis.lost_commands.search import lost_in
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows, Windows, arrivals, recording_of
-from hydrolek_drake.diagnosis.settings import DROPOUTS, LOCATING, NOISE, Settings
+from hydrolek_drake.diagnosis.settings import DROPOUTS, LOCATING, NOISE
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.least_squares import Fit
@@ -29,12 +29,7 @@ def terms_of(hypothesis: Hypothesis) -> list[LawTerm]:
 
 
 def law_of(
-    bench: Workbench,
-    judged: Judged,
-    held_out: Sequence[Experiment],
-    rivals: Sequence[str],
-    settings: Settings,
-    cores: int,
+    bench: Workbench, judged: Judged, held_out: Sequence[Experiment], rivals: Sequence[str]
 ) -> FoundLaw:
     """What a structure's terms are together.
 
@@ -43,8 +38,6 @@ def law_of(
         judged: a structure with terms.
         held_out: data that it was held against.
         rivals: other stages at which a law does as well.
-        settings: of the search.
-        cores: that roll out at the same time.
     """
     h = judged.hypothesis
     terms = terms_of(h)
@@ -66,7 +59,7 @@ def law_of(
     rest = [i for i in range(len(paths)) if i not in order]
     parameters = bench.parameters(h.effects)
     ahead = []
-    stands = with_stands(bench, judged, held_out, settings, cores).stands
+    stands = with_stands(bench, judged, held_out).stands
     for effects, unit in (stands[recording_of(experiment)] for experiment in held_out):
         values = bench.parameters(effects).values(unit)
         ahead.append(np.array([values[paths[i]] for i in order]))
@@ -212,23 +205,19 @@ class LostCommands(FoundLaw):
         return arrived.simulate(records, step).signals
 
 
-def lost_of(
-    bench: Workbench, judged: Judged, held_out: Sequence[Experiment], settings: Settings, cores: int
-) -> LostCommands:
+def lost_of(bench: Workbench, judged: Judged, held_out: Sequence[Experiment]) -> LostCommands:
     """What is told of the commands that a structure has lost.
 
     Args:
         bench: data and problems.
         judged: a structure with lost commands.
         held_out: data that it was held against.
-        settings: of the search.
-        cores: that roll out at the same time.
     """
     h = judged.hypothesis
     lost = lost_in(h)
     assert lost is not None
     every = lost.windows(h.values)
-    for effects, unit in with_stands(bench, judged, held_out, settings, cores).stands.values():
+    for effects, unit in with_stands(bench, judged, held_out).stands.values():
         ahead = next(c for c in effects if isinstance(c, LostWindows))
         every |= ahead.windows(bench.parameters(effects).values(unit))
     parameters = bench.parameters(h.effects)

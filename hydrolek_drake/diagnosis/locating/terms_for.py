@@ -46,7 +46,7 @@ class Slightly:
 
 
 def terms_for(
-    bench: Workbench, parent: Hypothesis, scales: Mapping[str, Scales], cores: int
+    bench: Workbench, parent: Hypothesis, scales: Mapping[str, Scales]
 ) -> tuple[LawTerm | LostWindows, ...]:
     """What in no list may explain what a structure leaves: terms that promise most, and commands that got lost.
 
@@ -56,7 +56,6 @@ def terms_for(
         bench: data and problems.
         parent: the structure.
         scales: natural scales of the joints.
-        cores: that roll out at the same time.
     """
     joint = _followed_worst(bench, parent, list(scales))
     if len(scales) > 1:  # what the others do to it is an input, as an observer of each has measured it
@@ -66,8 +65,8 @@ def terms_for(
     across = {one: by_probe.get(other) for one, other in (SIDES, SIDES[::-1])}
     has = {c.input.probe for c in parent.effects if isinstance(c, LawTerm)}
     inputs = tuple(each for each in inputs if not has or each.probe in has)
-    values = near(bench, parent, LOCATING.observer_s, cores)
-    seen = unknown_inputs(bench, parent, values, [Slightly(i) for i in inputs], LOCATING.observer_s, cores)
+    values = near(bench, parent, LOCATING.observer_s)
+    seen = unknown_inputs(bench, parent, values, [Slightly(i) for i in inputs], LOCATING.observer_s)
     parameters = bench.parameters(parent.effects)
     record = parameters.records(parameters.unit(values))[bench.training[0].index]
     span = _span(bench, seen.signals, record, joint)
@@ -83,7 +82,7 @@ def terms_for(
     if parent.effects or len(scales) > 1:
         return tuple(terms)
     command = next(each for each in _inputs(bench, joint, scales[joint]) if each.probe == "command")
-    lost = lost_seen(bench, parent, command, float(record["command"]["neutral"]), {}, span, cores)
+    lost = lost_seen(bench, parent, command, float(record["command"]["neutral"]), {}, span)
     return (*terms, lost) if lost is not None else tuple(terms)
 
 
@@ -98,9 +97,7 @@ def _followed_worst(bench: Workbench, parent: Hypothesis, joints: Sequence[str])
     return max(joints, key=lambda joint: squares[joint] / counted[joint])
 
 
-def estimates_for(
-    bench: Workbench, nominal: Hypothesis, joint: str, scales: Scales, cores: int
-) -> tuple[Estimate, ...]:
+def estimates_for(bench: Workbench, nominal: Hypothesis, joint: str, scales: Scales) -> tuple[Estimate, ...]:
     """The most likely course of every unknown input around the nominal model, the likeliest first.
 
     Args:
@@ -108,11 +105,10 @@ def estimates_for(
         nominal: the nominal model, fitted.
         joint: at which inputs are asked for.
         scales: its natural scales.
-        cores: that roll out at the same time.
     """
     inputs = [Slightly(i) for i in _inputs(bench, joint, scales) if i.probe not in STEADY]
-    values = near(bench, nominal, LOCATING.observer_s, cores)
-    seen = unknown_inputs(bench, nominal, values, inputs, LOCATING.observer_s, cores)
+    values = near(bench, nominal, LOCATING.observer_s)
+    seen = unknown_inputs(bench, nominal, values, inputs, LOCATING.observer_s)
     return tuple(sorted((u.estimated() for u in seen.unknowns), key=lambda e: -e.evidence))
 
 

@@ -126,7 +126,7 @@ class Seen:
     signals: tuple[Signals, ...]
 
 
-def near(bench: Workbench, structure: Hypothesis, observer_s: float, cores: int) -> dict[str, float]:
+def near(bench: Workbench, structure: Hypothesis, observer_s: float) -> dict[str, float]:
     """Full path -> value of a structure's parameters where an observer's innovations are small.
 
     A structure that lacks something has bent its numbers, and the rig's own may be far off: the fit begins at both.
@@ -135,7 +135,6 @@ def near(bench: Workbench, structure: Hypothesis, observer_s: float, cores: int)
         bench: data and problems.
         structure: whose additions begin where they were fitted.
         observer_s: time constant of the observer [s].
-        cores: that roll out at the same time.
     """
     problem = bench.problem(
         structure.effects, bench.step_for(structure.effects, LOCATING.coarse), bench.training, observer_s
@@ -148,17 +147,12 @@ def near(bench: Workbench, structure: Hypothesis, observer_s: float, cores: int)
     begun = [
         Place(problem, moving, np.clip(start, FITS.negligible, 1.0 - FITS.negligible)) for start in starts
     ]
-    ended = descend(begun, LOCATING.fitted, bench.pool, cores)
+    ended = descend(begun, LOCATING.fitted, bench.pool, bench.cores)
     return problem.parameters.values(min(ended, key=lambda place: place.objective).unit)
 
 
 def unknown_inputs(
-    bench: Workbench,
-    parent: Hypothesis,
-    values: dict[str, float],
-    trials: Sequence[Trial],
-    observer_s: float,
-    cores: int,
+    bench: Workbench, parent: Hypothesis, values: dict[str, float], trials: Sequence[Trial], observer_s: float
 ) -> Seen:
     """What the innovations around a structure tell of each input.
 
@@ -168,14 +162,13 @@ def unknown_inputs(
         values: full path -> where its parameters stand.
         trials: inputs of the joint, as they are moved.
         observer_s: time constant of the observer [s]; infinite for free rollouts, of which each knot takes one.
-        cores: that roll out at the same time.
     """
     step = bench.step_for(parent.effects, LOCATING.coarse)
     pulled = None if math.isinf(observer_s) else observer_s
     problem = bench.problem(parent.effects, step, bench.training, pulled)
     arrived = arrivals(parent.effects, values, bench.training)
     place = Place(problem, bench.movable(parent.effects, problem.parameters), problem.parameters.unit(values))
-    place = with_slopes([place], bench.pool, cores, 1.0)[0]
+    place = with_slopes([place], bench.pool, bench.cores, 1.0)[0]
     assert place.residuals is not None and place.slopes is not None
     fit = hypothesis_of(parent.effects, place, step).fit
     object.__setattr__(fit, "slopes", place.slopes)

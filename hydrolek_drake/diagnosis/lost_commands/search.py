@@ -18,7 +18,7 @@ from hydrolek_drake.diagnosis.lost_commands.windows import (
     joined,
     recording_of,
 )
-from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS, NOISE, Settings
+from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
@@ -33,12 +33,7 @@ def lost_in(hypothesis: Hypothesis) -> LostWindows | None:
 
 
 def with_windows(
-    bench: Workbench,
-    parent: Hypothesis,
-    lost: LostWindows,
-    settings: Settings,
-    cores: int,
-    reached: float = math.inf,
+    bench: Workbench, parent: Hypothesis, lost: LostWindows, reached: float = math.inf
 ) -> list[Hypothesis]:
     """A structure with lost commands, more of them beside those that were fitted as long as some are seen.
 
@@ -50,27 +45,25 @@ def with_windows(
         bench: data and problems.
         parent: the structure without them.
         lost: windows that were seen beside it.
-        settings: of the search.
-        cores: that roll out at the same time.
         reached: what other structures leave, over the noise.
     """
-    remembering = replace(settings.free[-1], observer_s=DROPOUTS.remembers_s)
-    rungs = (remembering, settings.again)
+    remembering = replace(bench.settings.free[-1], observer_s=DROPOUTS.remembers_s)
+    rungs = (remembering, bench.settings.again)
     own, now, fits = of_additions(parent.values), lost, []
     values = parent.values
-    for _ in range(settings.lost_rounds):
+    for _ in range(bench.settings.lost_rounds):
         effects: tuple[Addition, ...] = (*parent.effects, now)
         begun = [Entrant(effects, own), Entrant(effects, values)]
-        fitted = race(bench, begun, rungs, cores)[0]
+        fitted = race(bench, begun, rungs)[0]
         if fitted.fit.over_noise > reached:
             break
-        fitted, needed = _needed(bench, fitted, now, settings, cores)
+        fitted, needed = _needed(bench, fitted, now)
         fits.append(fitted)
         trace(f"    windows {list(map(len, needed.seen.values()))}: {fitted.fit.over_noise:.4f}")
         more = None
         if fitted.fit.over_noise > NOISE.at:
             known = needed.windows(needed.begun())
-            more = _seen_beside(bench, fitted, needed, known, bench.training, cores)
+            more = _seen_beside(bench, fitted, needed, known, bench.training)
         now, values = more or needed, _without_windows(fitted)
         if more is None:
             break
@@ -82,16 +75,14 @@ def _without_windows(structure: Hypothesis) -> dict[str, float]:
     return {path: value for path, value in structure.values.items() if ".lost." not in path}
 
 
-def _needed(
-    bench: Workbench, best: Hypothesis, lost: LostWindows, settings: Settings, cores: int
-) -> tuple[Hypothesis, LostWindows]:
+def _needed(bench: Workbench, best: Hypothesis, lost: LostWindows) -> tuple[Hypothesis, LostWindows]:
     """A structure without windows that explain no more than chance does, and its windows as fitted.
 
     First those go that the rest as it stands can do without, then, the least needed first, those that it can do
     without once it is fitted again (backward elimination).
     """
     now = replace(lost, seen=lost.windows(best.values))
-    rises, at = _rises(bench, best, now, cores), 0
+    rises, at = _rises(bench, best, now), 0
     for recording, windows in lost.windows(best.values).items():
         needed = rises[at : at + len(windows)] > _by_chance(best)
         at += len(windows)
@@ -104,7 +95,7 @@ def _needed(
             Place(p, bench.movable(e, p.parameters), p.parameters.unit(values))
             for p, e in zip(problems, trials, strict=True)
         ]
-        ended = descend(begun, settings.again.rounds, bench.pool, cores, stop=bench.alive)
+        ended = descend(begun, bench.settings.again.rounds, bench.pool, bench.cores, stop=bench.alive)
         place, effects = min(zip(ended, trials, strict=True), key=lambda each: each[0].objective)
         if place.objective > most:
             break
@@ -129,13 +120,13 @@ def _by_chance(structure: Hypothesis) -> float:
     return GAINS.certain**2 * max(structure.fit.chi_squared / max(structure.fit.counted, 1), 1.0)
 
 
-def _rises(bench: Workbench, best: Hypothesis, now: LostWindows, cores: int) -> np.ndarray:
+def _rises(bench: Workbench, best: Hypothesis, now: LostWindows) -> np.ndarray:
     """By how much the squares rise without each window, with all else as it stands. # (k,)."""
     requests = []
     for which in _each(now):
         problem = problem_with(bench, _exchanged(best, now.without(*which)), best.step, bench.training)
         requests.append(Request(problem, (problem.parameters.unit(_without_windows(best)),)))
-    answers = residuals_at(requests, bench.pool, cores)
+    answers = residuals_at(requests, bench.pool, bench.cores)
     return np.array([float(r @ r) for (r,) in answers]) - best.fit.chi_squared
 
 
@@ -145,7 +136,6 @@ def _seen_beside(
     lost: LostWindows,
     known: dict[str, np.ndarray],
     experiments: tuple[Experiment, ...],
-    cores: int,
     *,
     as_fitted: bool = False,
 ) -> LostWindows | None:
@@ -155,16 +145,11 @@ def _seen_beside(
     there = replace(structure, effects=effects, values={**structure.values, **now.begun()})
     own = bench.with_training(experiments)
     values = there.values if as_fitted else None
-    return lost_seen(own, there, lost.input, lost.neutral, known, lost.span, cores, values)
+    return lost_seen(own, there, lost.input, lost.neutral, known, lost.span, values)
 
 
 def windows_ahead(
-    bench: Workbench,
-    structure: Hypothesis,
-    experiment: Experiment,
-    step: float,
-    settings: Settings,
-    cores: int,
+    bench: Workbench, structure: Hypothesis, experiment: Experiment, step: float
 ) -> LostWindows | None:
     """Windows in a recording to which nothing else of a structure is fitted; None where it has no lost commands.
 
@@ -175,8 +160,6 @@ def windows_ahead(
         structure: fitted to other recordings, or other blocks of this one, which then tell its windows.
         experiment: the recording.
         step: of the integration [s].
-        settings: of the search.
-        cores: that roll out at the same time.
     """
     lost = lost_in(structure)
     if lost is None:
@@ -186,16 +169,16 @@ def windows_ahead(
         return replace(lost, seen={which: lost.windows(structure.values)[which]})
     rest = _without_windows(structure)
     now = replace(lost, seen={which: NONE})
-    for _ in range(settings.lost_rounds):
-        more = _seen_beside(bench, structure, now, dict(now.seen), (experiment,), cores, as_fitted=True)
+    for _ in range(bench.settings.lost_rounds):
+        more = _seen_beside(bench, structure, now, dict(now.seen), (experiment,), as_fitted=True)
         if more is None:
             break
         effects: tuple[Addition, ...] = tuple(more if c is lost else c for c in structure.effects)
         problem = problem_with(bench, effects, step, [experiment])
         moving = np.array([".lost." in path for path in problem.parameters.paths])
         begun = Place(problem, moving, problem.parameters.unit(rest))
-        [led] = descend([begun], 12, bench.pool, cores)
-        [runner] = tried_elsewhere(bench, [Runner(effects, led)], cores)
+        [led] = descend([begun], 12, bench.pool, bench.cores)
+        [runner] = tried_elsewhere(bench, [Runner(effects, led)])
         place = runner.place
         windows = more.windows(problem.parameters.values(place.unit))
         now = replace(more, seen={which: joined(windows[which])})

@@ -49,7 +49,6 @@ def lost_seen(
     neutral: float,
     known: Mapping[str, Windows],
     span: Span,
-    cores: int,
     values: dict[str, float] | None = None,
 ) -> LostWindows | None:
     """Windows that explain most of a slow observer's innovations, beside those that are known.
@@ -64,15 +63,14 @@ def lost_seen(
         neutral: command that acts while one is lost [V].
         known: recording -> windows that the structure has.
         span: what laws of the joint are told in.
-        cores: that roll out at the same time.
         values: full path -> where the structure's parameters stand; None for where innovations are small.
 
     Returns:
         All windows; None where there are none beyond the known ones, or more of a recording would be lost than can be.
     """
-    around = values or near(bench, structure, DROPOUTS.remembers_s, cores)
+    around = values or near(bench, structure, DROPOUTS.remembers_s)
     trials = [Lost(command, neutral)]
-    [unknown] = unknown_inputs(bench, structure, around, trials, DROPOUTS.remembers_s, cores).unknowns
+    [unknown] = unknown_inputs(bench, structure, around, trials, DROPOUTS.remembers_s).unknowns
     experiments = bench.training
     firsts = [0, *(np.flatnonzero(np.diff(unknown.times) < 0.0) + 1), unknown.times.size]
     counted = sum(e.counted for e in experiments)

@@ -31,8 +31,6 @@ def search_structures(
     candidates: Sequence[Candidate],
     found: Tried,
     say: Callable[[str], None],
-    settings: Settings,
-    cores: int,
     unlisted: Unlisted | None = None,
 ) -> None:
     """Fill what is found.
@@ -42,21 +40,19 @@ def search_structures(
         candidates: every effect that may be missing.
         found: receives what was tried.
         say: told what is being done.
-        settings: of the search.
-        cores: that roll out at the same time.
         unlisted: physics in no list; None for none.
     """
     say("fitting the nominal model")
-    fit_nominal(bench, found, settings, cores)
+    fit_nominal(bench, found)
     done: set[tuple[frozenset[str], str]] = set()
     seen: dict[tuple[frozenset[str], str], Opening] = {}
     expansions = 0
-    while expansions < settings.most_expansions:
+    while expansions < bench.settings.most_expansions:
         openings: list[Opening] = []
-        wanted = _open(bench, found, done, settings, laws=unlisted is not None)
+        wanted = _open(bench, found, done, laws=unlisted is not None)
         for parent, kind in sorted(wanted, key=lambda each: each[1] == LAWS):
             key = (parent.ids, kind)
-            lead = [o for o in openings if o.worth_while and o.leads(found.best, settings.nearer)]
+            lead = [o for o in openings if o.worth_while and o.leads(found.best, bench.settings.nearer)]
             if kind == LAWS and lead and found.gaining:
                 continue  # laws are asked for where effects lead no farther
             if key not in seen or seen[key].parent is not parent:
@@ -64,11 +60,11 @@ def search_structures(
                 if kind == LAWS and unlisted is not None:
                     own = unlisted.offer(bench, parent)
                 alone = len(wanted) == 1
-                seen[key] = opened(bench, parent, kind, own, found, settings, cores, alone=alone)
+                seen[key] = opened(bench, parent, kind, own, found, alone=alone)
             openings.append(seen[key])
         if not openings:
             break
-        hopeless = [each.key for each in openings if not _to_be_followed(each, found, settings)]
+        hopeless = [each.key for each in openings if not _to_be_followed(each, found, bench.settings)]
         done.update(hopeless)
         openings = [each for each in openings if each.key not in done]
         if not openings:
@@ -77,9 +73,9 @@ def search_structures(
         expansions += 1
         say(f"{next_.kind} beside {' + '.join(c.id for c in next_.parent.effects) or 'the nominal model'}")
         done.add(next_.key)
-        enlarged(bench, next_, candidates, found, settings, cores)
-        weigh_anew(bench, found, settings, cores)
-        if found.rounds_without_gain(settings.patience):
+        enlarged(bench, next_, candidates, found)
+        weigh_anew(bench, found)
+        if found.rounds_without_gain(bench.settings.patience):
             break
 
 
@@ -97,7 +93,7 @@ def _to_be_followed(opening: Opening, found: Tried, settings: Settings) -> bool:
 
 
 def _open(
-    bench: Workbench, found: Tried, done: set[tuple[frozenset[str], str]], settings: Settings, *, laws: bool
+    bench: Workbench, found: Tried, done: set[tuple[frozenset[str], str]], *, laws: bool
 ) -> list[tuple[Hypothesis, str]]:
     """Structures that may be enlarged, and by what.
 
@@ -118,13 +114,13 @@ def _open(
         for h in sorted(found.hypotheses.values(), key=cost):
             count = len(h.effects)
             sizes[count] = sizes.get(count, 0) + 1
-            beyond = count >= settings.most_additions or sizes[count] > settings.beam
+            beyond = count >= bench.settings.most_additions or sizes[count] > bench.settings.beam
             if beyond or (h.effects and cost(h) >= cost(found.baseline)):
                 continue
             listed = all(isinstance(c, Candidate) for c in h.effects)
             if listed and (h.ids, EFFECTS) not in done:
                 items.append((h, EFFECTS))
-            elif laws and best.fit.over_noise > NOISE.ahead and not _explained_by(best, h, settings):
+            elif laws and best.fit.over_noise > NOISE.ahead and not _explained_by(best, h, bench.settings):
                 items.append((h, LAWS))
     return [(h, kind) for h, kind in items if (h.ids, kind) not in done]
 

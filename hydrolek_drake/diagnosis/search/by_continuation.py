@@ -25,9 +25,7 @@ DEAD_TIME = ".command.delay"
 """What the path of a dead time ends with."""
 
 
-def continued(
-    bench: Workbench, opening: Opening, left: float, settings: Settings, cores: int
-) -> list[Runner]:
+def continued(bench: Workbench, opening: Opening, left: float) -> list[Runner]:
     """A race by continuation, from the rig's own numbers; near the noise from where the structure was fitted too.
 
     Slower observers are asked only for what a faster one leaves clearly less of than free rollouts do, since these
@@ -37,8 +35,6 @@ def continued(
         bench: data and problems.
         opening: the structure and its additions.
         left: by the best free rollout, over the noise.
-        settings: of the search.
-        cores: that roll out at the same time.
 
     Returns:
         What goes on, the best first.
@@ -46,58 +42,54 @@ def continued(
     parent = opening.parent
     far = parent.fit.over_noise > NOISE.far  # its numbers are bent there
     own, fitted = Start(parent.effects, opening.sizes), Start(parent.effects, parent.values)
-    pulled = opening.pulled or observed(bench, parent, opening.own, settings, cores)[0]
+    pulled = opening.pulled or observed(bench, parent, opening.own)[0]
     entrants = [
         begun.with_addition(p.candidate, start)
-        for p in pulled[: settings.entrants]
-        for start in p.starts[: None if p.candidate.sudden else settings.starts if far else 1]
+        for p in pulled[: bench.settings.entrants]
+        for start in p.starts[: None if p.candidate.sudden else bench.settings.starts if far else 1]
         for begun in ((own,) if far else (own, fitted))
     ]
-    heats = steps_for(settings.continued, not far)
-    runners = _in_time(bench, entered(bench, entrants, heats[0], cores), cores)
-    for heat, taken in zip(heats, settings.long, strict=False):
-        runners = run(bench, runners, (heat,), cores, traced("observed")) if runners else []
+    heats = steps_for(bench.settings.continued, not far)
+    runners = _in_time(bench, entered(bench, entrants, heats[0]))
+    for heat, taken in zip(heats, bench.settings.long, strict=False):
+        runners = run(bench, runners, (heat,), traced("observed")) if runners else []
         if runners and above_noise(runners[0]):  # the best one as long as it takes
             on = replace(heat, rounds=taken.rounds, share=taken.share, behind=0.0)
-            runners = [*run(bench, runners[:1], (on,), cores, traced("best")), *runners[1:]]
+            runners = [*run(bench, runners[:1], (on,), traced("best")), *runners[1:]]
         # what an observer with the rig's own step leaves far from the noise is led nowhere by slower ones
-        most = min(settings.nearer * left, NOISE.far if heat.coarse == 1.0 else math.inf)
-        if settings.nearer * left > NOISE.explained:
+        most = min(bench.settings.nearer * left, NOISE.far if heat.coarse == 1.0 else math.inf)
+        if bench.settings.nearer * left > NOISE.explained:
             runners = [r for r in runners if over_noise_of(r) < most]
     return runners
 
 
-def continued_nominal(
-    bench: Workbench, direct: Hypothesis, reach: float, settings: Settings, cores: int
-) -> Hypothesis | None:
+def continued_nominal(bench: Workbench, direct: Hypothesis, reach: float) -> Hypothesis | None:
     """The nominal model by continuation, from the rig's own numbers, the middle of their ranges and drawn ones.
 
     Args:
         bench: data and problems.
         direct: as free rollouts led it.
         reach: times the noise; what an observer does not follow to it, nor to the noise, goes no further.
-        settings: of the search.
-        cores: that roll out at the same time.
 
     Returns:
         The fit; None where no observer followed it so far.
     """
-    parameters, rng = bench.parameters(()), np.random.default_rng(settings.seed)
+    parameters, rng = bench.parameters(()), np.random.default_rng(bench.settings.seed)
     own = parameters.unit({})
     places = [own, np.full_like(own, 0.5)]
-    places += [np.clip(own + SPREAD * rng.standard_normal(own.size), 0.0, 1.0) for _ in range(settings.drawn)]
+    places += [
+        np.clip(own + SPREAD * rng.standard_normal(own.size), 0.0, 1.0) for _ in range(bench.settings.drawn)
+    ]
     moving = bench.movable((), parameters)
     begun = [Entrant((), parameters.values(np.where(moving, place, own))) for place in places]
     left = direct.fit.over_noise
-    fits = _long_race(bench, begun, left, reach, settings, cores)
+    fits = _long_race(bench, begun, left, reach)
     if fits:
         trace(f"    nominal {left:.4f}, continued {fits[0].fit.over_noise:.4f}")
     return fits[0] if fits else None
 
 
-def out_of_local_minima(
-    bench: Workbench, fits: Sequence[Hypothesis], found: Tried, settings: Settings, cores: int
-) -> None:
+def out_of_local_minima(bench: Workbench, fits: Sequence[Hypothesis], found: Tried) -> None:
     """Where the best structure leaves more than noise, it and the next best one are led out of a local minimum.
 
     By continuation; and where what has no slope, such as a play, has other minima, by fits from places near the best.
@@ -106,20 +98,16 @@ def out_of_local_minima(
         bench: data and problems.
         fits: where fits of several structures ended, those in different minima of one apart.
         found: receives what is better.
-        settings: of the search.
-        cores: that roll out at the same time.
     """
-    for each in continued_to_the_end(bench, fits, found.best, settings, cores):
+    for each in continued_to_the_end(bench, fits, found.best):
         found.keep(each)
     best = found.best
     sudden = any(c.sudden for c in best.effects)
     if best.fit.over_noise > NOISE.at and sudden and has_other_minima(best, fits):
-        found.keep(searched_near(bench, best, settings, cores))
+        found.keep(searched_near(bench, best))
 
 
-def continued_to_the_end(
-    bench: Workbench, fits: Sequence[Hypothesis], best: Hypothesis, settings: Settings, cores: int
-) -> list[Hypothesis]:
+def continued_to_the_end(bench: Workbench, fits: Sequence[Hypothesis], best: Hypothesis) -> list[Hypothesis]:
     """The best structures of a race, each observer's fit gone on with until no step promises anything.
 
     A race lets its fits take some steps of an observer only, since there are many of them. Where a joint sticks and
@@ -133,8 +121,6 @@ def continued_to_the_end(
         bench: data and problems.
         fits: where the race ended.
         best: the best structure so far.
-        settings: of the search.
-        cores: that roll out at the same time.
 
     Returns:
         Fits that are nearer to the noise than the best one; none where this is at it.
@@ -143,16 +129,16 @@ def continued_to_the_end(
     if left <= surely_above(bench, best):
         return []
     ranked = sorted(fits, key=cost)
-    chosen = list(dict.fromkeys(each.ids for each in ranked))[: settings.to_the_end]
+    chosen = list(dict.fromkeys(each.ids for each in ranked))[: bench.settings.to_the_end]
     entrants = [
-        entrant for ids in chosen for entrant in _starts([h for h in ranked if h.ids == ids], left, settings)
+        entrant
+        for ids in chosen
+        for entrant in _starts([h for h in ranked if h.ids == ids], left, bench.settings)
     ]
-    return _long_race(bench, entrants, left, left, settings, cores)
+    return _long_race(bench, entrants, left, left)
 
 
-def _long_race(
-    bench: Workbench, entrants: Sequence[Entrant], left: float, reach: float, settings: Settings, cores: int
-) -> list[Hypothesis]:
+def _long_race(bench: Workbench, entrants: Sequence[Entrant], left: float, reach: float) -> list[Hypothesis]:
     """Fits that are continued as long as they take, but for those by which an observer shows that they lead nowhere.
 
     Args:
@@ -160,14 +146,12 @@ def _long_race(
         entrants: where they begin.
         left: over the noise, by the best structure so far.
         reach: what leaves less over the noise goes on, and what is at the noise.
-        settings: of the search.
-        cores: that roll out at the same time.
     """
-    rungs = steps_for(settings.long, left < NOISE.far)
-    runners = _in_time(bench, entered(bench, entrants, rungs[0], cores), cores) if entrants else []
+    rungs = steps_for(bench.settings.long, left < NOISE.far)
+    runners = _in_time(bench, entered(bench, entrants, rungs[0])) if entrants else []
     for rung in rungs:
         if runners:
-            ended = run(bench, runners, (rung,), cores, traced("to the end"))
+            ended = run(bench, runners, (rung,), traced("to the end"))
             long = rung.coarse > 1.0  # what a long step leaves of its own tells nothing
             runners = [r for r in ended if long or over_noise_of(r) < reach or not above_noise(r)]
             if math.isinf(rung.observer_s):
@@ -195,7 +179,7 @@ def _starts(fits: Sequence[Hypothesis], left: float, settings: Settings) -> list
     return [Entrant(best.effects, values) for values in begun]
 
 
-def _in_time(bench: Workbench, runners: Sequence[Runner], cores: int) -> list[Runner]:
+def _in_time(bench: Workbench, runners: Sequence[Runner]) -> list[Runner]:
     """The same from the dead time at which each leaves least, of some over its range.
 
     Where a dead time is off by more than an observer remembers, every move of the machine has passed before the model
@@ -205,14 +189,13 @@ def _in_time(bench: Workbench, runners: Sequence[Runner], cores: int) -> list[Ru
     Args:
         bench: threads.
         runners: at their starts, on the rung of the fastest observer.
-        cores: that roll out at the same time.
     """
-    places = descend([r.place for r in runners], 0, bench.pool, cores)
+    places = descend([r.place for r in runners], 0, bench.pool, bench.cores)
     units = (np.arange(FITS.places) + 0.5) / FITS.places
     for path in (p for p in bench.parameters(()).paths if p.endswith(DEAD_TIME)):
         ways = [Along(list(p.problem.parameters.paths).index(path), units) for p in places]
         free = [way if p.moving[way.index] else None for way, p in zip(ways, places, strict=True)]
-        places = searched_along(places, free, bench.pool, cores)
+        places = searched_along(places, free, bench.pool, bench.cores)
     return [replace(r, place=place) for r, place in zip(runners, places, strict=True)]
 
 

@@ -26,14 +26,7 @@ from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
 
-def enlarged(
-    bench: Workbench,
-    opening: Opening,
-    candidates: Sequence[Candidate],
-    found: Tried,
-    settings: Settings,
-    cores: int,
-) -> None:
+def enlarged(bench: Workbench, opening: Opening, candidates: Sequence[Candidate], found: Tried) -> None:
     """Fit a structure with each of the additions that may be right, and what these lead to without others.
 
     Args:
@@ -41,31 +34,22 @@ def enlarged(
         opening: the structure and its additions.
         candidates: all effects.
         found: receives the fits.
-        settings: of the search.
-        cores: that roll out at the same time.
     """
     parent = opening.parent
-    ended = _raced(bench, opening, candidates, found, settings, cores)
-    fits = hypotheses_of(bench, ended, settings.ended[-1])
+    ended = _raced(bench, opening, candidates, found)
+    fits = hypotheses_of(bench, ended, bench.settings.ended[-1])
     for each in fits:
         found.keep(each)
-    out_of_local_minima(bench, fits, found, settings, cores)
+    out_of_local_minima(bench, fits, found)
     reached = found.best.fit.over_noise
-    if opening.lost is not None and reached > NOISE.at and opening.lost.share >= settings.lost:
-        for each in with_windows(bench, parent, opening.lost, settings, cores, reached):
+    if opening.lost is not None and reached > NOISE.at and opening.lost.share >= bench.settings.lost:
+        for each in with_windows(bench, parent, opening.lost, reached):
             found.keep(each)
-    _widened(bench, found, settings, cores)
-    _lessened(bench, found, candidates, settings, cores)
+    _widened(bench, found)
+    _lessened(bench, found, candidates)
 
 
-def _raced(
-    bench: Workbench,
-    opening: Opening,
-    candidates: Sequence[Candidate],
-    found: Tried,
-    settings: Settings,
-    cores: int,
-) -> list[Runner]:
+def _raced(bench: Workbench, opening: Opening, candidates: Sequence[Candidate], found: Tried) -> list[Runner]:
     """Fits at the end of the races; the second one is run where the first does not lead to the noise.
 
     Near the noise promises hold, and free rollouts lead from where the structure was fitted. Far from it its numbers
@@ -75,129 +59,109 @@ def _raced(
     parent, enough = opening.parent, opening.enough
     reached, runners = math.inf, list[Runner]()
     far = parent.fit.over_noise > NOISE.far
-    for way in (_by_observers, _freely) if far else (_freely, _by_observers):
+    for by_observers in (True, False) if far else (False, True):
         if reached <= enough:
             break
         left = min(reached, parent.fit.over_noise)
-        first, rest = way(bench, opening, candidates, left, settings, cores)
+        first, rest = (
+            _by_observers(bench, opening, left) if by_observers else _freely(bench, opening, candidates)
+        )
         reached = min((over_noise_of(r) for r in first), default=math.inf)
         runners += [*first, *rest]
-        if enough < reached < settings.nearer * found.weighed_at:
-            for each in hypotheses_of(bench, first, settings.ended[-1]):
+        if enough < reached < bench.settings.nearer * found.weighed_at:
+            for each in hypotheses_of(bench, first, bench.settings.ended[-1]):
                 found.keep(each)
-            weigh_anew(bench, found, settings, cores)
+            weigh_anew(bench, found)
             reached = found.best.fit.over_noise
-    return _ended(bench, runners, enough, settings, cores)
+    return _ended(bench, runners, enough)
 
 
-def _by_observers(
-    bench: Workbench,
-    opening: Opening,
-    candidates: Sequence[Candidate],
-    left: float,
-    settings: Settings,
-    cores: int,
-) -> tuple[list[Runner], list[Runner]]:
+def _by_observers(bench: Workbench, opening: Opening, left: float) -> tuple[list[Runner], list[Runner]]:
     """A race by continuation: the best, fitted to its end, and the rest."""
     if opening.parent.fit.over_noise <= opening.enough:
         return [], []
-    runners = continued(bench, opening, left, settings, cores)
-    return run(bench, runners[:1], settings.ended, cores, traced("first to the end")), runners[1:]
+    runners = continued(bench, opening, left)
+    return run(bench, runners[:1], bench.settings.ended, traced("first to the end")), runners[1:]
 
 
 def _freely(
-    bench: Workbench,
-    opening: Opening,
-    candidates: Sequence[Candidate],
-    left: float,
-    settings: Settings,
-    cores: int,
+    bench: Workbench, opening: Opening, candidates: Sequence[Candidate]
 ) -> tuple[list[Runner], list[Runner]]:
     """A race of free rollouts, the best one fitted to its end where it leaves more than noise; none beside."""
     enough = opening.enough
-    runners = _led_on(bench, opening, candidates, settings, cores)
+    runners = _led_on(bench, opening, candidates)
     if runners and over_noise_of(runners[0]) > enough:
-        runners = [*_farther(bench, runners[0], settings, cores), *runners]
+        runners = [*_farther(bench, runners[0]), *runners]
     if runners and bench.cut and bench.follows_supply and opening.parent.fit.over_noise > enough:
-        runners = sorted(
-            [*_with_supply(bench, runners, NOISE.explained, settings, cores), *runners], key=over_noise_of
-        )
+        runners = sorted([*_with_supply(bench, runners, NOISE.explained), *runners], key=over_noise_of)
     if runners and over_noise_of(runners[0]) > enough and not runners[0].place.ended:
-        runners = [*run(bench, runners[:1], settings.ended, cores, traced("first to the end")), *runners[1:]]
+        runners = [*run(bench, runners[:1], bench.settings.ended, traced("first to the end")), *runners[1:]]
     return runners, []
 
 
-def _ended(
-    bench: Workbench, runners: Sequence[Runner], enough: float, settings: Settings, cores: int
-) -> list[Runner]:
+def _ended(bench: Workbench, runners: Sequence[Runner], enough: float) -> list[Runner]:
     """The end of the races; to the last square only what is at the noise, or not clearly behind what is."""
-    first, last = settings.ended
-    ended = run(bench, runners, (first,), cores, traced("end")) if runners else []
+    first, last = bench.settings.ended
+    ended = run(bench, runners, (first,), traced("end")) if runners else []
     if not ended or over_noise_of(ended[0]) > enough:
         return ended
-    reach = over_noise_of(ended[0]) / settings.nearer
+    reach = over_noise_of(ended[0]) / bench.settings.nearer
     behind = [r for r in ended if over_noise_of(r) > reach]
     near = [r for r in ended if over_noise_of(r) <= reach]
-    return [*run(bench, near, (last,), cores, traced("end")), *behind]
+    return [*run(bench, near, (last,), traced("end")), *behind]
 
 
-def _led_on(
-    bench: Workbench, opening: Opening, candidates: Sequence[Candidate], settings: Settings, cores: int
-) -> list[Runner]:
+def _led_on(bench: Workbench, opening: Opening, candidates: Sequence[Candidate]) -> list[Runner]:
     """A race of free rollouts from where the structure was fitted, the best first."""
     parent = opening.parent
     begun, needed = Start(parent.effects, parent.values), gain_needed(parent.fit)
     near = parent.fit.over_noise <= opening.enough  # promises hold there
     entrants = [
         begun.with_addition(p.candidate, start)
-        for number, p in enumerate(opening.free[: settings.entrants])
+        for number, p in enumerate(opening.free[: bench.settings.entrants])
         if not near or p.gain > GAINS.promising * needed
-        for start in p.starts[: None if number < settings.doubled else 1]
+        for start in p.starts[: None if number < bench.settings.doubled else 1]
     ]
     entrants += [
         Entrant(effects, {**parent.values, **{k: v for k, v in start.items() if k not in parent.values}})
         for _, wider, effects in widenings(parent.effects, candidates)
-        for start in wider.starts[: settings.scanned]
+        for start in wider.starts[: bench.settings.scanned]
     ]
     if not entrants:
         return []
-    heats = steps_for(settings.free, parent.fit.over_noise < NOISE.far)
-    return run(bench, entered(bench, entrants, heats[0], cores), heats, cores, traced("free"))
+    heats = steps_for(bench.settings.free, parent.fit.over_noise < NOISE.far)
+    return run(bench, entered(bench, entrants, heats[0]), heats, traced("free"))
 
 
-def _farther(bench: Workbench, runner: Runner, settings: Settings, cores: int) -> list[Runner]:
+def _farther(bench: Workbench, runner: Runner) -> list[Runner]:
     """The best structure of a race in wider ranges, where a number of what it adds lies at an end of one."""
     values = runner.place.problem.parameters.values(runner.place.unit)
     wide = tuple(c.widened(values) for c in runner.effects)
     if all(a.free == b.free for a, b in zip(wide, runner.effects, strict=True)):
         return []
-    rungs = settings.free[-1:]
-    return run(bench, entered(bench, [Entrant(wide, values)], rungs[0], cores), rungs, cores, traced("wider"))
+    rungs = bench.settings.free[-1:]
+    return run(bench, entered(bench, [Entrant(wide, values)], rungs[0]), rungs, traced("wider"))
 
 
-def _with_supply(
-    bench: Workbench, runners: Sequence[Runner], enough: float, settings: Settings, cores: int
-) -> list[Runner]:
+def _with_supply(bench: Workbench, runners: Sequence[Runner], enough: float) -> list[Runner]:
     """Structures whose supply is found anew, one after the other until one leaves no more than is enough."""
     first: dict[frozenset[str], Runner] = {}
     for runner in runners:
         if over_noise_of(runner) <= NOISE.far * over_noise_of(runners[0]):
             first.setdefault(runner.key, runner)
     ended: list[Runner] = []
-    for runner in list(first.values())[: settings.supplied]:
+    for runner in list(first.values())[: bench.settings.supplied]:
         values = runner.place.problem.parameters.values(runner.place.unit)
-        places = supply_before(bench, runner.effects, values, [], cores)
+        places = supply_before(bench, runner.effects, values, [])
         anew = [Entrant(runner.effects, {**values, **supply}) for supply in places]
-        rung = replace(settings.again, keep=1)
-        ended += run(bench, entered(bench, anew, rung, cores), (rung,), cores, traced("supply"))
+        rung = replace(bench.settings.again, keep=1)
+        ended += run(bench, entered(bench, anew, rung), (rung,), traced("supply"))
         if over_noise_of(ended[-1]) <= enough:
             break
     return ended
 
 
-def _lessened(
-    bench: Workbench, found: Tried, candidates: Sequence[Candidate], settings: Settings, cores: int
-) -> None:
+def _lessened(bench: Workbench, found: Tried, candidates: Sequence[Candidate]) -> None:
     """Backward elimination: the best structure without each addition, and with what may do as well in its place.
 
     What may do as well is a number of its stage (`standing_in`); a special case; for the forces of a law the same on
@@ -212,22 +176,22 @@ def _lessened(
     found.lessened = best
     entrants = [Entrant(best.without(c), best.values_without(c)) for c in best.effects]
     alone = zip(best.effects, tuple(entrants), strict=True)
-    entrants += [each for c, without in alone for each in standing_in(bench, without, c, cores)]
+    entrants += [each for c, without in alone for each in standing_in(bench, without, c)]
     entrants += [
         Entrant(effects, {**best.values_without(c), **start})
         for c, special, effects in narrowings(best.effects, candidates)
-        for start in special.starts[: settings.starts]
+        for start in special.starts[: bench.settings.starts]
     ]
     entrants += _across(best)
-    entrants += _named_in_place(best, candidates, settings)
-    rung = replace(settings.again, keep=len(entrants))
-    fitted = race(bench, entrants, (rung,), cores)
+    entrants += _named_in_place(best, candidates, bench.settings)
+    rung = replace(bench.settings.again, keep=len(entrants))
+    fitted = race(bench, entrants, (rung,))
     if len(best.effects) > 1:  # the nominal model was fitted so before
         own = [Entrant(each.effects, of_additions(each.values)) for each in entrants]
-        rungs = (*steps_for(settings.continued, best.fit.over_noise < NOISE.far), settings.again)
-        runners = entered(bench, own, rungs[0], cores)
+        rungs = (*steps_for(bench.settings.continued, best.fit.over_noise < NOISE.far), bench.settings.again)
+        runners = entered(bench, own, rungs[0])
         for step in rungs:
-            runners = run(bench, runners, (step,), cores, traced("without"))
+            runners = run(bench, runners, (step,), traced("without"))
             if best.fit.over_noise <= NOISE.above:
                 runners = [r for r in runners if not (r.place.ended and above_noise(r))]
         fitted += hypotheses_of(bench, runners, rungs[-1])
@@ -266,10 +230,10 @@ def _across(structure: Hypothesis) -> list[Entrant]:
     return [Entrant((*rest, *(term for term, _ in moved)), values)]
 
 
-def _widened(bench: Workbench, found: Tried, settings: Settings, cores: int) -> None:
+def _widened(bench: Workbench, found: Tried) -> None:
     """The best structure with wider ranges, where a number of what it adds lies at an end of one."""
     best = found.best
     wide = tuple(c.widened(best.values) for c in best.effects)
     if any(a.free != b.free for a, b in zip(wide, best.effects, strict=True)):
-        for each in race(bench, [Entrant(wide, best.values)], (settings.again,), cores):
+        for each in race(bench, [Entrant(wide, best.values)], (bench.settings.again,)):
             found.keep(each)

@@ -15,7 +15,6 @@ from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.best_first import Unlisted, search_structures
 from hydrolek_drake.diagnosis.search.parts import acts_behind, behind_supply, supply_before
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench, key_of
@@ -26,8 +25,6 @@ def search_machine(
     candidates: Sequence[Candidate],
     found: Tried,
     say: Callable[[str], None],
-    settings: Settings,
-    cores: int,
     unlisted: Unlisted | None = None,
 ) -> None:
     """Fill what is found; as `search_structures`, behind the cut first where there is one.
@@ -37,8 +34,6 @@ def search_machine(
         candidates: every effect that may be missing.
         found: receives what was tried.
         say: told what is being done.
-        settings: of the search.
-        cores: that roll out at the same time.
         unlisted: physics in no list; None for none.
 
     Raises:
@@ -46,7 +41,7 @@ def search_machine(
     """
     part = behind_supply(bench)
     if part is None:
-        search_structures(bench, candidates, found, say, settings, cores, unlisted)
+        search_structures(bench, candidates, found, say, unlisted)
         return
     seen = Tried(seeds=_behind_of(bench, found.seeds))
     behind = [c for c in candidates if acts_behind(bench.rig, c.size_path)]
@@ -57,25 +52,25 @@ def search_machine(
     before = [c for c in candidates if not acts_behind(bench.rig, c.size_path)]
     lawful = None if unlisted is None else _BeforeTheCut(unlisted)
     try:
-        search_structures(part, behind, seen, told, settings, cores, unlisted)
+        search_structures(part, behind, seen, told, unlisted)
         say("finding the supply's numbers")
-        found.seeds = _with_supply(bench, seen, found.seeds, settings, cores)
-        search_structures(bench, before, found, say, settings, cores, lawful)
+        found.seeds = _with_supply(bench, seen, found.seeds)
+        search_structures(bench, before, found, say, lawful)
     except KeyboardInterrupt:
         if not found.hypotheses:
             bench.resume()
-            _keep_as_they_are(bench, seen, found, settings, cores)
+            _keep_as_they_are(bench, seen, found)
         raise
     finally:
         bench.evaluations += part.evaluations
         found.left = [*found.left, *seen.left]
 
 
-def _keep_as_they_are(bench: Workbench, seen: Tried, found: Tried, settings: Settings, cores: int) -> None:
+def _keep_as_they_are(bench: Workbench, seen: Tried, found: Tried) -> None:
     """What was found behind the cut by then, with the rig's own supply, which acts on nothing there."""
     ended = [Entrant(h.effects, h.values) for h in seen.hypotheses.values()]
     if ended:
-        for each in race(bench, ended, (replace(settings.again, rounds=0, keep=len(ended)),), cores):
+        for each in race(bench, ended, (replace(bench.settings.again, rounds=0, keep=len(ended)),)):
             found.keep(each)
 
 
@@ -88,16 +83,12 @@ def _behind_of(bench: Workbench, seeds: Sequence[Hypothesis]) -> list[Hypothesis
     return list(kept.values())
 
 
-def fitted_behind(
-    bench: Workbench, structure: Hypothesis, settings: Settings, cores: int
-) -> tuple[Workbench, Hypothesis] | None:
+def fitted_behind(bench: Workbench, structure: Hypothesis) -> tuple[Workbench, Hypothesis] | None:
     """What lies behind the recorded pressure of a pump, fitted for itself from where all of the machine was.
 
     Args:
         bench: data and problems of all of the machine.
         structure: fitted to all of the machine.
-        settings: of the search.
-        cores: that roll out at the same time.
 
     Returns:
         Data and problems, and the structure; None where there is no cut.
@@ -106,30 +97,26 @@ def fitted_behind(
     if part is None:
         return None
     [behind] = _behind_of(bench, [structure])
-    [fitted] = race(part, [Entrant(behind.effects, behind.values)], (settings.again,), cores)
+    [fitted] = race(part, [Entrant(behind.effects, behind.values)], (bench.settings.again,))
     bench.evaluations += part.evaluations
     return part, fitted
 
 
-def _with_supply(
-    bench: Workbench, seen: Tried, before: Sequence[Hypothesis], settings: Settings, cores: int
-) -> list[Hypothesis]:
+def _with_supply(bench: Workbench, seen: Tried, before: Sequence[Hypothesis]) -> list[Hypothesis]:
     """The structures with which the search goes on, each with the supply's numbers that the best one was given.
 
     Args:
         bench: data and problems.
         seen: what was found behind the cut.
         before: structures fitted to other data of all of the machine.
-        settings: of the search.
-        cores: that roll out at the same time.
     """
     best = seen.best
     nearest = sorted(before, key=lambda h: h.fit.over_noise)[:1]
     known = [
         {path: value for path, value in h.values.items() if not acts_behind(bench.rig, path)} for h in nearest
     ]
-    supply = supply_before(bench, best.effects, best.values, known, cores)[0]
-    return [replace(h, values={**h.values, **supply}) for h in seen.near_the_best(settings)]
+    supply = supply_before(bench, best.effects, best.values, known)[0]
+    return [replace(h, values={**h.values, **supply}) for h in seen.near_the_best(bench.settings)]
 
 
 @dataclass(frozen=True)

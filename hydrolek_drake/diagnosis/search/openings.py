@@ -14,7 +14,7 @@ from hydrolek_drake.diagnosis.search.cost import dispersion, gain_needed
 from hydrolek_drake.diagnosis.search.parts import enough_for
 from hydrolek_drake.diagnosis.search.promise import Promise, promises_at
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS, GAINS, NOISE, Rung, Settings
+from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS, GAINS, NOISE, Rung
 from hydrolek_drake.diagnosis.structures.addition import Sized, names_of
 from hydrolek_drake.diagnosis.structures.candidates import redundant
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
@@ -81,8 +81,6 @@ def opened(
     kind: str,
     additions: Sequence[Sized | LostWindows],
     found: Tried,
-    settings: Settings,
-    cores: int,
     *,
     alone: bool = False,
 ) -> Opening:
@@ -94,8 +92,6 @@ def opened(
         kind: "effects" or "laws".
         additions: effects, or terms of laws.
         found: receives what effects promise.
-        settings: of the search.
-        cores: that roll out at the same time.
         alone: whether it is enlarged whatever others promise.
     """
     lost = next((c for c in additions if isinstance(c, LostWindows)), None)
@@ -105,10 +101,8 @@ def opened(
     if not own:
         return Opening(parent, kind, (), (), (), sizes, math.inf)
     exact = Rung(math.inf, 1.0, math.inf, 0, 1)
-    place = descend([_place(bench, parent, exact, parent.fit.unit)], 0, bench.pool, cores)[0]
-    free = promises_at(
-        bench, place, parent.effects, own, bench.step_for(parent.effects, FITS.coarse), settings, cores
-    )
+    place = descend([_place(bench, parent, exact, parent.fit.unit)], 0, bench.pool, bench.cores)[0]
+    free = promises_at(bench, place, parent.effects, own, bench.step_for(parent.effects, FITS.coarse))
     if kind == "effects":
         found.left = free
     pulled: list[Promise] = []
@@ -116,7 +110,7 @@ def opened(
     asked = parent.fit.over_noise > NOISE.at and not alone
     enough = surely_above(bench, parent)
     if asked and _worth_while(parent, own[0], free[0].gain, enough):
-        pulled, share = observed(bench, parent, own, settings, cores)
+        pulled, share = observed(bench, parent, own)
         shares.append(share)
         if lost is not None:
             shares.append(lost.share)
@@ -165,17 +159,13 @@ def _share(gain: float, objective: float, counted: int) -> float:
     return min(gain / excess, 1.0) if excess > 2.0 * NOISE.known * counted else 0.0
 
 
-def observed(
-    bench: Workbench, parent: Hypothesis, own: Sequence[Sized], settings: Settings, cores: int
-) -> tuple[list[Promise], float]:
+def observed(bench: Workbench, parent: Hypothesis, own: Sequence[Sized]) -> tuple[list[Promise], float]:
     """What additions promise to an observer around the rig's own numbers, and the share that the best one takes."""
-    first = replace(settings.continued[1], coarse=FITS.coarse)
+    first = replace(bench.settings.continued[1], coarse=FITS.coarse)
     parameters = bench.parameters(parent.effects)
     unit = np.clip(parameters.unit(of_additions(parent.values)), FITS.negligible, 1.0 - FITS.negligible)
-    near = descend([_place(bench, parent, first, unit)], 2, bench.pool, cores)[0]
-    pulled = promises_at(
-        bench, near, parent.effects, own, bench.step_for(parent.effects, first.coarse), settings, cores
-    )
+    near = descend([_place(bench, parent, first, unit)], 2, bench.pool, bench.cores)[0]
+    pulled = promises_at(bench, near, parent.effects, own, bench.step_for(parent.effects, first.coarse))
     return pulled, _share(pulled[0].gain, near.objective, near.problem.counted)
 
 

@@ -56,7 +56,6 @@ def supply_before(
     effects: tuple[Addition, ...],
     values: Mapping[str, float],
     known: Sequence[Mapping[str, float]],
-    cores: int,
 ) -> list[dict[str, float]]:
     """Numbers of the supply before a structure whose others are known, the best first: full path -> value.
 
@@ -65,7 +64,6 @@ def supply_before(
         effects: of the structure; what it adds to the supply is found too.
         values: full path -> value of the others.
         known: numbers of the supply as fitted before.
-        cores: that roll out at the same time.
     """
     parameters = bench.parameters(effects)
     prior = np.full(len(parameters), np.inf)
@@ -79,7 +77,7 @@ def supply_before(
         parameters,
         tuple(bench.training),
         bench.pool,
-        cores,
+        bench.cores,
         bench.step_for(effects),
         prior,
         bench.alive,

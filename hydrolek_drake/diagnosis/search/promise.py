@@ -41,13 +41,7 @@ class Promise:
 
 
 def promises_at(
-    bench: Workbench,
-    place: Place,
-    effects: tuple[Addition, ...],
-    candidates: Sequence[Sized],
-    step: float,
-    settings: Settings,
-    cores: int,
+    bench: Workbench, place: Place, effects: tuple[Addition, ...], candidates: Sequence[Sized], step: float
 ) -> list[Promise]:
     """What each of some additions promises at a place, the most promising first.
 
@@ -57,14 +51,12 @@ def promises_at(
         effects: of that structure.
         candidates: what may be added.
         step: of the rollouts [s].
-        settings: of the search.
-        cores: that roll out at the same time.
     """
     here_problem = place.problem
     fit = hypothesis_of(effects, place, step).fit
     across = Across(fit)
     values = here_problem.parameters.values(place.unit)
-    tried = [(c, start) for c in candidates for start in _tried(c, settings)]
+    tried = [(c, start) for c in candidates for start in _tried(c, bench.settings)]
     problems: dict[str, Problem] = {
         c.size_path: problem_with(
             bench, (*effects, c), step, here_problem.experiments, here_problem.pull_time or math.inf
@@ -84,14 +76,14 @@ def promises_at(
             *(Request(problems[c.size_path], tuple(units[c.size_path])) for c in candidates),
         ],
         bench.pool,
-        cores,
+        bench.cores,
     )
     here = answers[0][0]
     left = across(np.concatenate([fit.residuals, fit.off_prior]))
     unchanged = np.zeros_like(fit.off_prior)
     promises = []
     for candidate, found in zip(candidates, answers[1:], strict=True):
-        starts = _tried(candidate, settings)
+        starts = _tried(candidate, bench.settings)
         rated = []
         for start, moved in zip(starts, found, strict=True):
             change = across(np.concatenate([moved - here, unchanged]))
@@ -99,7 +91,7 @@ def promises_at(
             power = float(change @ change)
             multiple = np.sqrt(gain / power) if power > 0.0 else 0.0
             rated.append((gain, float(np.sum((left + change) ** 2)), float(multiple), start, change))
-        promises.append(_promise(candidate, rated, settings))
+        promises.append(_promise(candidate, rated, bench.settings))
     return sorted(promises, key=lambda p: -p.gain)
 
 

@@ -15,14 +15,13 @@ from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
 
-def standing_in(bench: Workbench, without: Entrant, effect: Addition, cores: int) -> list[Entrant]:
+def standing_in(bench: Workbench, without: Entrant, effect: Addition) -> list[Entrant]:
     """A start of a structure without one of its additions; none where no number of its stage leaves less.
 
     Args:
         bench: data and problems.
         without: the structure without it, where its fit begins.
         effect: that was taken away.
-        cores: that roll out at the same time.
     """
     values = without.values
     stage = (f"joints.{effect.joint}.{effect.stage}.", f"{effect.stage}.")
@@ -36,7 +35,7 @@ def standing_in(bench: Workbench, without: Entrant, effect: Addition, cores: int
         bench, without.effects, bench.step_for(without.effects, FITS.coarse), bench.training
     )
     units = tuple(problem.parameters.unit(each) for each in tried)
-    [found] = residuals_at([Request(problem, units)], bench.pool, cores)
+    [found] = residuals_at([Request(problem, units)], bench.pool, bench.cores)
     bench.evaluations += problem.evaluations
     squares = [float(residuals @ residuals) for residuals in found]
     best = int(np.argmin(squares))

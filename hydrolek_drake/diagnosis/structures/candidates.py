@@ -236,9 +236,7 @@ def narrowings(effects: Sequence[Addition], candidates: Sequence[Candidate]) -> 
 
 
 def _exchanges(
-    effects: Sequence[Addition],
-    candidates: Sequence[Candidate],
-    may: Callable[[Addition, Candidate], bool],
+    effects: Sequence[Addition], candidates: Sequence[Candidate], may: Callable[[Addition, Candidate], bool]
 ) -> list[Exchange]:
     return [
         (effect, other, (*(rest for rest in effects if rest is not effect), other))

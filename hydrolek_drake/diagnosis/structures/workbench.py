@@ -13,7 +13,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.laws.additions import LawTerm, WithTerms
 from hydrolek_drake.diagnosis.lost_commands.windows import LostProblem, LostWindows, WithWindows
 from hydrolek_drake.diagnosis.progress import Progress
-from hydrolek_drake.diagnosis.settings import FITS
+from hydrolek_drake.diagnosis.settings import FITS, Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.identification.experiments.experiment import Experiment
@@ -29,7 +29,8 @@ SPREAD = 1.0 / math.sqrt(12.0)
 """Standard deviation, in ranges, of a parameter of which only its range is known.
 
 Used as a weak prior about the rig's own values: what a recording does not tell stays where the rig has it,
-instead of wandering off to make up for physics that is missing.
+instead of wandering off to make up for physics that is missing. It is the closer the faster an observer forgets
+(`prior_spread`).
 """
 
 
@@ -84,6 +85,24 @@ def key_of(effects: Iterable[Addition]) -> frozenset[str]:
     return frozenset(candidate.size_path for candidate in effects)
 
 
+def prior_spread(observer_s: float | None) -> float:
+    """Standard deviation of the prior of the rig's own numbers [ranges], in a fit by an observer.
+
+    A fit that begins far off is led by errors of the model, which are alike from sample to sample, so that a weak prior
+    holds nothing: what the first seconds tell of poorly wandered to the ends of its ranges, from where no slope leads
+    back once more is seen. It is let go as the observer's time constant T grows, the slowest one's being T_s,
+
+        s = s_0 T / T_s
+
+    and is s_0 for free rollouts (iteratively regularised Gauss-Newton: Bakushinskii, Computational Mathematics and
+    Mathematical Physics 32, 1992).
+
+    Args:
+        observer_s: its time constant [s]; None for free rollouts.
+    """
+    return SPREAD if observer_s is None else SPREAD * min(1.0, observer_s / FITS.slowest_s)
+
+
 def moments_of(effects: Iterable[Addition]) -> list[Free]:
     """Parameters of some effects that say when something happens."""
     return [free for candidate in effects for free in candidate.moments]
@@ -101,6 +120,7 @@ class Workbench:
         cores: int = 1,
         progress: Progress | None = None,
         *,
+        settings: Settings | None = None,
         signals_apart: bool = False,
     ) -> None:
         """Prepare.
@@ -112,6 +132,7 @@ class Workbench:
             pool: threads for fits side by side, and for the columns of a fit's Jacobian where some are idle.
             cores: that roll out at the same time.
             progress: told how the fits stand; None for nobody.
+            settings: of the search; None for the usual ones.
             signals_apart: whether each signal has a discrepancy of its own (`weighing`).
         """
         self.rig = rig
@@ -120,6 +141,7 @@ class Workbench:
         self.pool = pool
         self.cores = cores
         self.progress = progress or Progress()
+        self.settings = settings or Settings()
         self.signals_apart = signals_apart
         self._stopped = threading.Event()
         self.evaluations = 0
@@ -139,7 +161,14 @@ class Workbench:
         apart = self.signals_apart if signals_apart is None else signals_apart
         self.progress.anew()
         return Workbench(
-            self.rig, self.nominal, training, self.pool, self.cores, self.progress, signals_apart=apart
+            self.rig,
+            self.nominal,
+            training,
+            self.pool,
+            self.cores,
+            self.progress,
+            settings=self.settings,
+            signals_apart=apart,
         )
 
     def interrupted(self) -> bool:
@@ -218,7 +247,7 @@ class Workbench:
         """Residuals of this model, on the training data unless others are given."""
         parameters = self.parameters(effects)
         prior = np.full(len(parameters), np.inf)
-        prior[: len(self.numbers(effects))] = SPREAD
+        prior[: len(self.numbers(effects))] = prior_spread(pull_time)
         if kind is Problem and isinstance(parameters, WithWindows):
             kind = LostProblem
         known = {"known": self._moving} if issubclass(kind, ProblemTogether) else {}

@@ -7,7 +7,6 @@ import pytest
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged, conclude
 from hydrolek_drake.diagnosis.evidence.reported import left_of
-from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.parameter_set import free_parameters
 
@@ -36,7 +35,7 @@ def test_a_nominal_model_that_explains_all_data_lacks_nothing_though_it_failed_a
         workbench = Workbench(bench, free_parameters(bench), training, pool)
         nominal = fitted(workbench, rounds=20)
         judged = [Judged(nominal, np.zeros(0), 0, probability=1.0)]
-        told = left_of(workbench, judged, held_out, Settings(), 2)
+        told = left_of(workbench, judged, held_out)
     assert told[0].hypothesis.fit.over_noise < 1.06
     assert told[0].over_noise > 1.12
     assert conclude(told).verdict == verdict

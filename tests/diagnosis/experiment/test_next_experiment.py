@@ -48,7 +48,7 @@ def test_a_proposal_separates_models_where_the_start_is_uncertain(alike) -> None
     bench, fits = alike
     assert bench.training[0].start_response is not None
     judged = Judged(fits[0], np.zeros(1), 1)
-    told = propose(bench, Conclusion("ambiguous", judged, {}, (RIVALS,)), fits, 2)
+    told = propose(bench, Conclusion("ambiguous", judged, {}, (RIVALS,)), fits)
     assert told is not None
     assert told.separation > 0.0
     assert told.time.shape == told.command.shape
@@ -60,6 +60,6 @@ def test_a_proposal_separates_models_where_the_start_is_uncertain(alike) -> None
 def test_nothing_is_proposed_where_nothing_is_alike(alike) -> None:
     bench, fits = alike
     judged = Judged(fits[0], np.zeros(1), 1)
-    assert propose(bench, Conclusion("missing_physics", judged, {}, ()), fits, 2) is None
-    assert propose(bench, Conclusion("ambiguous", judged, {}, (RIVALS,)), fits[:1], 2) is None
-    assert propose(bench, Conclusion("unlisted_physics", judged, {}, (RIVALS,)), fits, 2) is None
+    assert propose(bench, Conclusion("missing_physics", judged, {}, ()), fits) is None
+    assert propose(bench, Conclusion("ambiguous", judged, {}, (RIVALS,)), fits[:1]) is None
+    assert propose(bench, Conclusion("unlisted_physics", judged, {}, (RIVALS,)), fits) is None

@@ -8,7 +8,7 @@ import pytest
 from hydrolek_drake.diagnosis.intervals.visible import visible_sizes
 from hydrolek_drake.diagnosis.search.openings import opened
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import GAINS, Settings
+from hydrolek_drake.diagnosis.settings import GAINS
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales
@@ -37,7 +37,7 @@ def healthy(bench, recorded, fitted):
         nominal = fitted(work)
         candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
         simplified = [replace(c, beneath=SIMPLIFIED if c.id == "sensor.drift" else 0.0) for c in candidates]
-        promises = opened(work, nominal, "effects", simplified, Tried(), Settings(), 2).free
+        promises = opened(work, nominal, "effects", simplified, Tried()).free
         return nominal, {v.candidate.id: v.size for v in visible_sizes(work, nominal, promises)}
 
 

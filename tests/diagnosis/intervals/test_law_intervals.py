@@ -15,7 +15,6 @@ from hydrolek_drake.diagnosis.laws.inputs import inputs_of
 from hydrolek_drake.diagnosis.laws.law import amplitude_intervals, frequency_interval
 from hydrolek_drake.diagnosis.laws.terms import Term, span_of
 from hydrolek_drake.diagnosis.report.words import known_to
-from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -46,7 +45,7 @@ def found(bench, recorded, fitted):
         # the planted machine is the rig, so that nothing has to be searched
         there = fitted(workbench, (term,), values, rounds=8)
         left = workbench.residuals(there, training, workbench.fine)
-        return law_of(workbench, Judged(there, left, there.fit.counted), training, (), Settings(), 2)
+        return law_of(workbench, Judged(there, left, there.fit.counted), training, ())
 
     with ThreadPoolExecutor(2) as pool:
         yield find

@@ -32,8 +32,8 @@ def test_the_interval_of_a_moment_holds_it(bench, recorded, fitted) -> None:
     with ThreadPoolExecutor(2) as pool:
         workbench = Workbench(bench, free_parameters(bench), training, pool)
         found = fitted(workbench, (payload,), planted)
-        [(path, known)] = intervals_of_moments(workbench, found, 2).items()
-        assert intervals_of_moments(workbench, fitted(workbench, rounds=0), 2) == {}
+        [(path, known)] = intervals_of_moments(workbench, found).items()
+        assert intervals_of_moments(workbench, fitted(workbench, rounds=0)) == {}
     assert path == f"{PAYLOAD}.time_s"
     assert known.low <= PICKED_UP["time_s"] <= known.high
     assert 0.0 < known.high - known.low < 0.5

@@ -35,7 +35,7 @@ def seen_of(bench, recorded, fitted):
             inputs = inputs_of(scales, bench.value("supply.pressure"), 10.0, "rad")
             probes = ("command", "supply", "cylinder", "load", "sensor")
             wanted = [Slightly(i) for i in inputs if i.probe in probes]
-            seen = unknown_inputs(workbench, nominal, nominal.values, wanted, OBSERVER_S, 2)
+            seen = unknown_inputs(workbench, nominal, nominal.values, wanted, OBSERVER_S)
         record = bench.records()[0]
         return seen, record, span_of(seen.signals, record, 12.0, "rad")
 

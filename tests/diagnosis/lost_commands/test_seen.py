@@ -10,7 +10,6 @@ from hydrolek_drake.diagnosis.laws.terms import span_of
 from hydrolek_drake.diagnosis.lost_commands.search import with_windows
 from hydrolek_drake.diagnosis.lost_commands.seen import lost_seen
 from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
-from hydrolek_drake.diagnosis.settings import Settings
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
@@ -26,7 +25,7 @@ def _lost_in(bench, workbench, nominal):
     [command] = [i for i in inputs if i.probe == "command"]
     signals = workbench.training[0].simulate(bench.records()).signals
     span = span_of([signals], bench.records()[0], 12.0, "rad")
-    return lost_seen(workbench, nominal, command, 0.0, {}, span, 2)
+    return lost_seen(workbench, nominal, command, 0.0, {}, span)
 
 
 @pytest.fixture
@@ -65,4 +64,4 @@ def test_a_machine_that_is_shaken_has_lost_no_commands(bench, recorded, fitted) 
         workbench = Workbench(bench, free_parameters(bench), training, pool)
         nominal = fitted(workbench)
         lost = _lost_in(bench, workbench, nominal)
-        assert lost is None or with_windows(workbench, nominal, lost, Settings(), 2) == []
+        assert lost is None or with_windows(workbench, nominal, lost) == []

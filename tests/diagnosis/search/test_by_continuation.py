@@ -127,9 +127,9 @@ def test_a_dead_time_that_is_off_by_more_than_an_observer_remembers_is_found(ben
     training = recorded(bench.with_values({dead_time: late_s}), bench, pressure_noise_Pa=2e4)
     settings = Settings(drawn=0)
     with ThreadPoolExecutor(2) as pool:
-        workbench = Workbench(bench, free, training, pool)
-        [stuck] = race(workbench, [Entrant((), {})], (replace(settings.long[0], rounds=40),), 2)
-        led = continued_nominal(workbench, fitted(workbench, rounds=0), NOISE.at, settings, 2)
+        workbench = Workbench(bench, free, training, pool, settings=settings)
+        [stuck] = race(workbench, [Entrant((), {})], (replace(settings.long[0], rounds=40),))
+        led = continued_nominal(workbench, fitted(workbench, rounds=0), NOISE.at)
     assert stuck.fit.over_noise > NOISE.far
     assert led is not None
     assert led.fit.over_noise < NOISE.at
@@ -148,7 +148,7 @@ def test_a_healthy_joint_that_sticks_and_slips_is_led_to_the_noise_before_anythi
     found = Tried()
     with ThreadPoolExecutor(2) as pool:
         bench = Workbench(rig, free_of_joints(rig, {joint}), training, pool, 2)
-        fit_nominal(bench, found, Settings(), 2)
+        fit_nominal(bench, found)
     assert found.best.fit.over_noise < NOISE.at
 
 
@@ -174,7 +174,7 @@ def test_a_fit_is_led_out_of_local_minima_to_the_noise(label, effect: str, tmp_p
     found = Tried()
     with ThreadPoolExecutor(2) as pool:
         bench = Workbench(rig, free_of_joints(rig, {joint}), training, pool, 2)
-        search_structures(bench, candidates, found, lambda text: None, Settings(), 2)
+        search_structures(bench, candidates, found, lambda text: None)
     assert found.best.effects == tuple(candidates)
     assert found.best.fit.over_noise < NOISE.explained
     for name, value in case.effects[effect].items():

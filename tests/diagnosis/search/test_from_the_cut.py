@@ -76,7 +76,7 @@ def asked(rig: Rig, planted: dict[str, str], say: Callable[[str], None] = lambda
     candidates = [c for c in candidates_of(rig, "joint", scales) if c.id in FEW]
     with ThreadPoolExecutor(2) as pool:
         bench = Workbench(rig, free_parameters(rig), [training], pool)
-        inquiry = Inquiry(candidates, {}, apart=True, say=say, cores=2)
+        inquiry = Inquiry(candidates, {}, apart=True, say=say)
         return inquiry.answer(bench, [held_out])
 
 

@@ -8,7 +8,7 @@ import pytest
 from hydrolek_drake.diagnosis.fitting.projection import gain_of
 from hydrolek_drake.diagnosis.search.openings import opened
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import GAINS, Settings
+from hydrolek_drake.diagnosis.settings import GAINS
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales
@@ -25,7 +25,7 @@ def promises_of(bench, fitted):
         with ThreadPoolExecutor(2) as pool:
             work = Workbench(bench, free_parameters(bench, NOMINAL), experiments, pool)
             candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
-            return opened(work, fitted(work), "effects", candidates, Tried(), Settings(), 2).free
+            return opened(work, fitted(work), "effects", candidates, Tried()).free
 
     return make
 

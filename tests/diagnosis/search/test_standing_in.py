@@ -24,7 +24,7 @@ def begun(bench, recorded):
         longer = next(c for c in candidates if c.id == "command.delay")
         with ThreadPoolExecutor(2) as pool:
             work = Workbench(bench, (Free(OWN, 0.01, 0.5, log=True),), experiments, pool)
-            return standing_in(work, Entrant((), {OWN: own}), longer, 2)
+            return standing_in(work, Entrant((), {OWN: own}), longer)
 
     return make
 
