@@ -23,6 +23,9 @@ WITH = 0.4
 SURELY, CLEARLY_BETTER = 0.85, 0.1
 """Correlation of the speeds from which a lag is believed, and by which it is better than none."""
 
+MOST_S = 1.0
+"""Clocks may be apart by so much, either way [s]."""
+
 FALLEN = 0.85
 """A supply below this share of its relief valve's setting gives all that it can."""
 
@@ -52,7 +55,7 @@ def against_the_model(
     model = outcome.signals
     seen, own = speed_of(times, position), speed_of(times, model.reading)
     together = correlation(seen, own)
-    shifted = _late(rig, joint, times, seen, own)
+    shifted = _late(rig, joint, times, seen, np.where(_about_changes(times, volts)[: own.size], own, np.nan))
     if together < AGAINST and not shifted:
         polarity = rig.value(f"joints.{joint}.command.polarity")
         return [
@@ -93,10 +96,23 @@ def _within(rig: Rig, joint: str, position: float) -> bool:
     return lower <= position <= upper
 
 
+def _about_changes(times: np.ndarray, volts: np.ndarray) -> np.ndarray:
+    """Samples before and after which the command changes: when a joint begins to move says when its command came.
+
+    When it comes to a stop under a constant command says how fast it is. # (n,) truth values
+    """
+    changed = times[1:][np.diff(volts) != 0.0]
+    if not changed.size:
+        return np.ones(times.size, dtype=bool)
+    after = np.searchsorted(changed, times)
+    last, next_ = changed[np.maximum(after - 1, 0)], changed[np.minimum(after, changed.size - 1)]
+    return np.minimum(np.abs(times - last), np.abs(times - next_)) <= MOST_S
+
+
 def _late(rig: Rig, joint: str, times: np.ndarray, seen: np.ndarray, own: np.ndarray) -> list[Complaint]:
     """Whether the joint answers earlier than any machine could."""
     spacing = float(np.median(np.diff(times)))
-    most = min(round(1.0 / spacing), seen.size // 3)
+    most = min(round(MOST_S / spacing), seen.size // 3)
     lags = list(range(-most, most + 1))
     corr = [correlation(seen[most + k : seen.size - most + k], own[most : own.size - most]) for k in lags]
     lag = lags[int(np.argmax(corr))] * spacing

@@ -21,12 +21,12 @@ SECONDS, EVERY, LEVEL = 3.0, 0.01, 0.6
 """The machine is driven so long with levels, each for a few tenths of a second, up to this share of its limit."""
 
 
-def driven_about(limit: float) -> tuple[np.ndarray, np.ndarray]:
+def driven_about(limit: float, neutral: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
     """Times [s] and a command [V] with which a machine moves at all speeds and reverses."""
     times = np.arange(0.0, SECONDS, EVERY)
     generator = np.random.default_rng(0)
     levels = generator.uniform(-LEVEL * limit, LEVEL * limit, size=times.size // 25 + 1)
-    return times, np.repeat(levels, 25)[: times.size]
+    return times, neutral + np.repeat(levels, 25)[: times.size]
 
 
 def differs(
@@ -73,7 +73,9 @@ def differs(
 def step_that_agrees(rig: Rig, joint: str) -> float | None:
     """The longest of `TRIED` with which a machine that is driven about moves as in finer steps [s]; None for none."""
     own = rig.value("integration.longest_step")
-    times, volts = driven_about(rig.value(f"joints.{joint}.command.limit"))
+    times, volts = driven_about(
+        *(rig.value(f"joints.{joint}.command.{name}") for name in ("limit", "neutral"))
+    )
     for share in TRIED:
         found = differs(rig, joint, times, volts, share * own)
         if found is not None and found <= 1.0:

@@ -3,7 +3,7 @@
 import math
 
 from hydrolek_drake.units import si_factor
-from hydrolek_drake.wizard.entries import entry, kept
+from hydrolek_drake.wizard.entries import SHEET, entry, kept
 from hydrolek_drake.wizard.questions import fixed
 from hydrolek_drake.wizard.sheet import Sheet
 
@@ -25,6 +25,22 @@ def end_stops(sheet: Sheet) -> list[str]:
             (damping / spread**2, damping * spread),
         ),
         *(kept(name) for name in ("stop_exponent", "stop_dissipation")),
+    ]
+
+
+def link_stops(sheet: Sheet) -> list[str]:
+    """Stops of the link's own, into which the largest moment presses it as far as the largest force does the piston."""
+    depth, spread = fixed("stop_depth"), fixed("stop_depth_factor")
+    stiffness = sheet.force * sheet.lever**2 / (depth["value"] * si_factor(depth["unit"], "m"))
+    damping = math.sqrt(stiffness * sheet["mass"] * sheet["length"] ** 2 / 3.0)
+    factor, told = spread["value"], spread["source"]
+    told_hard = f"{depth['source']}; {told}"
+    told_damped = f"assumed: half of critical with the mass; {told}"
+    return [
+        entry("lower_stop", math.degrees(sheet.lower), "deg", SHEET),
+        entry("upper_stop", math.degrees(sheet.upper), "deg", SHEET),
+        entry("stop_stiffness", stiffness, "N m/rad", told_hard, (stiffness / factor, stiffness * factor)),
+        entry("stop_damping", damping, "N m s/rad", told_damped, (damping / factor**2, damping * factor)),
     ]
 
 

@@ -38,7 +38,7 @@ def written_rig(name: str, given: Mapping[str, str]) -> tuple[str, Rig]:
     for step in tried:
         text = text_of(name, sheet, step)
         rig = rig_from_tree(parse_yaml(text, name), Path(f"{name}.yaml"))
-        times, volts = driven_about(rig.value("command.limit"))
+        times, volts = driven_about(rig.value("command.limit"), rig.value("command.neutral"))
         off = differs(rig, rig.joints[0], times, volts, step)
         if off is not None and off <= MARGIN:
             break

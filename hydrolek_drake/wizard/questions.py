@@ -14,11 +14,14 @@ from hydrolek_drake.yaml_files import package_yaml
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?!/)"  # the 1 of 1/s belongs to the unit
 _SPLIT = re.compile(rf"\s*(?P<numbers>{_NUMBER}(?:[,;\s]+{_NUMBER})*)\s*(?P<unit>1/.*|[^\d\s,;.+-].*)?")
-SIGNED = ("base_mount", "link_mount", "centre", "mid_stroke_at", "overlap", "pushed_by", "current_at_rest")
+SIGNED = (
+    "base_mount", "link_mount", "centre", "mid_stroke_at", "link_travel", "overlap", "pushed_by", "current_at_rest",
+    "neutral_command",
+)  # fmt: skip
 MAY_BE_ZERO = (
     "rod", "delay", "tank_pressure", "pump_leakage", "relief_hysteresis", "port_shares", "rated_flow", "angle_noise",
     "position_noise", "pressure_noise", "bearing_damping", "guide_damping", "seal_damping",
-    "position_time", "top_speed", "current_noise",
+    "position_time", "speed_time", "top_speed", "current_noise",
 )  # fmt: skip
 """Questions whose answers may be below zero, and zero."""
 

@@ -111,12 +111,12 @@ def _speed_loop(sheet: Sheet) -> list[str]:
     spread = what["factor"] if given else what["assumed_factor"]
     source = f"{SHEET if given else what['known']}, of the mass that the motor moves with its rotor"
     gain = sheet["speed_bandwidth"] * sheet.moved / sheet.per_amp
+    loop = [entry("speed_gain", gain, "A s/m", source, (gain / spread, gain * spread))]
+    if "speed_time" in sheet.answers:
+        return [*loop, asked(sheet, "speed_time")]
     slower = fixed("speed_time_over_bandwidth")
     time = 1e3 * slower["value"] / sheet["speed_bandwidth"]
-    return [
-        entry("speed_gain", gain, "A s/m", source, (gain / spread, gain * spread)),
-        entry("speed_time", time, "ms", slower["source"], (time / spread, time * spread)),
-    ]
+    return [*loop, entry("speed_time", time, "ms", slower["source"], (time / spread, time * spread))]
 
 
 def _friction(sheet: Sheet) -> list[str]:

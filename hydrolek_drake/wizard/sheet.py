@@ -6,7 +6,7 @@ from typing import Any
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.units import si_factor
-from hydrolek_drake.wizard.questions import SCREW, SI, Question, Share, missing, questions
+from hydrolek_drake.wizard.questions import SCREW, SI, Question, Share, fixed, missing, questions
 
 EDGES = ("pa", "pb", "at", "bt")
 """In the order in which a data sheet's four numbers stand."""
@@ -43,6 +43,7 @@ class Sheet:
         self.force = self.area_a * self["supply_pressure"]
         self.lever = self._geometry() if self.turns else 1.0
         self.gradients = self._gradients()
+        self._check_compensated()
         self.speed = self._speed()
 
     def _read_screw(self) -> None:
@@ -58,7 +59,9 @@ class Sheet:
         self.per_amp = turn * self["efficiency"] * self["torque_constant"]
         self.force = self.per_amp * self["peak_current"]
         self.moved = self["mass"] + self["rotor_inertia"] * turn * turn
-        self.speed = self["top_speed"] or self["travel"] * self["position_gain"]
+        self.speed = self["top_speed"] or self["travel"] * min(
+            self["position_gain"], 1.0 / fixed("crossing_time")["value"]
+        )
 
     def __getitem__(self, key: str) -> Any:
         """An answer, or what is assumed in its place."""
@@ -105,6 +108,10 @@ class Sheet:
         a, b, half = self.parent, self.child, 0.5 * self["stroke"]
         length = math.sqrt(a * a + b * b - 2.0 * a * b * math.cos(included))
         self.zero_length = length - half
+        self.own_stops = "link_travel" in self.answers
+        if self.own_stops:
+            self._told_travel()
+            return a * b * math.sin(included) / length
         ends = []
         for end in (length - half, length + half):
             cosine = (a * a + b * b - end * end) / (2.0 * a * b)
@@ -112,17 +119,52 @@ class Sheet:
                 raise InputError(
                     f"rig new: with mounts {a:g} m and {b:g} m from the axis and {length:g} m between them at half of "
                     f"the stroke, a cylinder cannot reach {end:g} m; check --base-mount, --link-mount, --stroke, "
-                    "--mid-stroke-at"
+                    "--mid-stroke-at; if the link's own stops end its motion before, say where (--link-travel)"
                 )
             ends.append(self.direction * (math.acos(cosine) - self.offset))
         self.lower, self.upper = min(ends), max(ends)
         return a * b * math.sin(included) / length
 
+    def _told_travel(self) -> None:
+        """The link's ends where its own stops are, within what mounts allow."""
+        self.lower, self.upper = sorted(self["link_travel"])
+        inside = all(0.0 < self.direction * end + self.offset < math.pi for end in (self.lower, self.upper))
+        if not inside or not self.lower < self["mid_stroke_at"] < self.upper:
+            low, high = sorted(math.degrees(self.direction * (end - self.offset)) for end in (0.0, math.pi))
+            raise InputError(
+                f"rig new: --link-travel {math.degrees(self.lower):g}, {math.degrees(self.upper):g} deg: must hold "
+                f"--mid-stroke-at and lie within {low:.4g} and {high:.4g} deg, where the cylinder has no lever left"
+            )
+
+    @property
+    def rated_flows(self) -> tuple[float, ...]:
+        """Flow at full command through each edge [m^3/s]. # (4,)."""
+        flows: tuple[float, ...] = self["rated_flow"]
+        return flows * 4 if len(flows) == 1 else flows
+
+    def _check_compensated(self) -> None:
+        """A compensated valve is told by its flow, alike towards both sides."""
+        if self["compensated"] != "yes":
+            return
+        if "rated_flow" not in self.answers:
+            raise InputError(
+                "rig new: --compensated yes: a compensated valve is told by --rated-flow and --rated-drop"
+            )
+        pa, pb, at, bt = self.rated_flows
+        if pa != pb or at != bt or not pa or not at:
+            raise InputError(
+                "rig new: --compensated yes: --rated-flow must be one number, or alike towards A and B "
+                "(P-A as P-B, A-T as B-T)"
+            )
+        if self["holding"] != "none":
+            raise InputError(
+                "rig new: --holding is written for a valve with four edges: leave it or --compensated out"
+            )
+
     def _gradients(self) -> dict[str, float]:
         """Area gradient of each edge [m]."""
         if "rated_flow" in self.answers:
-            flows = self["rated_flow"]
-            flows = flows * 4 if len(flows) == 1 else flows
+            flows = self.rated_flows
             speed = self["flow_coefficient"] * math.sqrt(2.0 * self["rated_drop"] / self["oil_density"])
             travel = self["spool_travel"] - self["overlap"]
             return {edge: flow / (speed * travel) for edge, flow in zip(EDGES, flows, strict=True)}

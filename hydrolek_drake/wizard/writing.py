@@ -4,10 +4,11 @@ import math
 
 from hydrolek_drake.units import si_factor
 from hydrolek_drake.wizard.components import accumulator, holding, hose, slew_rate
-from hydrolek_drake.wizard.contacts import end_stops, play
+from hydrolek_drake.wizard.contacts import end_stops, link_stops, play
 from hydrolek_drake.wizard.entries import SHEET, asked, beginning, entry, kept
 from hydrolek_drake.wizard.questions import fixed, questions
-from hydrolek_drake.wizard.sheet import EDGES, Sheet
+from hydrolek_drake.wizard.sheet import Sheet
+from hydrolek_drake.wizard.valve import valve
 
 
 def rig_text(name: str, sheet: Sheet, step: float) -> str:
@@ -43,7 +44,8 @@ def rig_text(name: str, sheet: Sheet, step: float) -> str:
         "    command:",
         f"      {asked(sheet, 'delay')}",
         f"      {asked(sheet, 'full_command', 'limit')}",
-        '      # polarity: {value: -1, unit: "1", source: "..."}  # if a positive command retracts',
+        f"      {asked(sheet, 'neutral_command', 'neutral')}",
+        f"      {_polarity(sheet)}",
         "    amplifier: {variant: none}  # the valve has its own",
         "    solenoid:",
         "      variant: servo_valve",
@@ -52,7 +54,7 @@ def rig_text(name: str, sheet: Sheet, step: float) -> str:
         f"      {asked(sheet, 'bandwidth')}",
         f"      {asked(sheet, 'spool_damping', 'damping_ratio')}",
         *(f"      {line}" for line in slew_rate(sheet)),
-        *(f"    {line}" for line in _valve(sheet)),
+        *(f"    {line}" for line in valve(sheet)),
         *(f"    {line}" for line in (*holding(sheet), *hose(sheet))),
         *(f"    {line}" for line in _cylinder(sheet)),
         *(f"    {line}" for line in (_link(sheet) if sheet.turns else _slide(sheet))),
@@ -60,6 +62,12 @@ def rig_text(name: str, sheet: Sheet, step: float) -> str:
         "",
     ]
     return "\n".join(lines)
+
+
+def _polarity(sheet: Sheet) -> str:
+    """Which commands extend the rod."""
+    source = SHEET if "extends_at" in sheet.answers else "assumed: -1 if a command above neutral retracts"
+    return entry("polarity", 1.0 if sheet["extends_at"] == "above" else -1.0, "1", source)
 
 
 def _pump(sheet: Sheet) -> list[str]:
@@ -108,35 +116,6 @@ def _rise(sheet: Sheet) -> str:
     )
 
 
-def _valve(sheet: Sheet) -> list[str]:
-    flow = "rated_flow" in sheet.answers
-    source = (
-        f"{SHEET}: {'flow at the rated drop' if flow else 'spool diameter and share of its circumference'}"
-    )
-    return [
-        "valve:",
-        "  variant: four_edges",
-        f"  {asked(sheet, 'spool_travel', 'full_opening')}",
-        f"  {asked(sheet, 'overlap', 'overlap_pa')}",
-        *(f"  overlap_{edge}: {{same_as: overlap_pa}}" for edge in EDGES[1:]),
-        *(
-            f"  {entry(f'area_gradient_{edge}', 1e3 * gradient, 'mm', source)}"
-            for edge, gradient in sheet.gradients.items()
-        ),
-        f"  {_discharge(sheet)}",
-        f"  {kept('edge_rounding')}",
-    ]
-
-
-def _discharge(sheet: Sheet) -> str:
-    """Flow coefficient, which stands for what is not known of a rated flow too."""
-    if "rated_flow" not in sheet.answers:
-        return asked(sheet, "flow_coefficient", "discharge")
-    value, spread = sheet["flow_coefficient"], fixed("rated_flow_factor")
-    source = f"{SHEET}: with the edges' areas it gives the rated flow; {spread['source']}"
-    return entry("discharge", value, "1", source, (value / spread["value"], value * spread["value"]))
-
-
 def _mass_place(name: str, value: float) -> str:
     """A distance of the mass where nobody has said how it is spread."""
     spread = fixed("mass_place_factor")
@@ -165,7 +144,10 @@ def _at_start(sheet: Sheet) -> str:
     """Pressure of side B at the start, which a fit finds."""
     supply, tank = sheet["supply_pressure"], sheet["tank_pressure"]
     bar = si_factor("bar", "Pa")
-    limits = (max(tank, 0.02 * supply) / bar, supply / bar)
+    limits = (
+        0.5 * min(tank, 0.02 * supply) / bar,
+        supply / bar,
+    )  # a falling load may draw it below the tank's
     return entry("initial_pressure_b", 0.5 * supply / bar, "bar", "assumed: half of the supply", limits)
 
 
@@ -203,7 +185,7 @@ def _link(sheet: Sheet) -> list[str]:
     weighs = entry("gravity", 0.0, "m/s^2", SHEET) if sheet["upright"] == "yes" else kept("gravity")
     even, place = "assumed: spread evenly over the length", f"{SHEET}: place"
     told = "centre" in sheet.answers
-    stops = _beyond(lower, upper, "deg", "rad")
+    stops = link_stops(sheet) if sheet.own_stops else _beyond(lower, upper, "deg", "rad")
     return [
         "linkage:",
         "  variant: triangle",

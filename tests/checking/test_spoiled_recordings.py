@@ -100,6 +100,21 @@ def test_a_constant_command_is_named(rig, sound):
     assert any("constant at 1.5 V" in said for said in found)
 
 
+def test_a_joint_that_reaches_its_stop_sooner_than_the_model_has_no_clock_that_is_apart(rig) -> None:
+    """Under a constant command the end of a move says how fast a joint is, not when its command came."""
+    times = np.arange(0.0, 10.0, 0.01)
+    volts = np.select([times < 0.5, times < 5.0], [0.0, 5.0], -5.0)
+    faster = rig.with_values({"valve.discharge": 1.6 * rig.value("valve.discharge")})
+    moved = roll_out(faster.records(), times, volts, times, longest_step=5e-4).signals
+    noise = NOISE * np.random.default_rng(4).standard_normal(times.size)
+    told = Recording(
+        "steps", times, {"joint.command": volts, "joint.angle": moved.reading + noise}, Path("steps.csv")
+    )
+    assert not any("clocks" in said for said in _wrong(rig, told))
+    early = _with(told, joint__angle=np.roll(told.signals["joint.angle"], -30))
+    assert any("before its command" in said for said in _wrong(rig, early))
+
+
 def test_a_sensor_s_clock_that_is_ahead_is_named(rig, sound):
     early = {key: np.roll(values, -30) for key, values in sound.signals.items() if key != "joint.command"}
     found = _wrong(rig, replace(sound, signals={**sound.signals, **early}))
