@@ -45,6 +45,12 @@ AT_THE_CUT = (
     "in its place, where every error of a line that rings stays, all signals together leave {uncut:.3g} times"
 )
 
+AT_BEST = (
+    "what is left, {left:.3g} times the noise of the held-out data, is no more than the rig says that its equations "
+    "leave at best (integration.model_error, {share:.3g} % of each signal's range: {least:.3g} times the noise); what is "
+    "missing below that is not looked for"
+)
+
 SIGNALS_APART = (
     "no model comes near the noise of any signal, so that signals count by how far models are off from them: 'times "
     "the noise' is that of the one which they follow best ({told})"
@@ -142,6 +148,10 @@ class Inquiry:
         elif first.left_behind_cut is not None and not known.interrupted:
             uncut = _uncut_over_noise(known)
             remarks = (*remarks, AT_THE_CUT.format(behind=first.left_behind_cut, uncut=uncut))
+        left = first.over_noise if first.left_behind_cut is None else first.left_behind_cut
+        if known.conclusion.verdict != "unlisted_physics" and left > NOISE.explained_ahead:
+            share = 100.0 * known.bench.rig.value("integration.model_error")
+            remarks = (*remarks, AT_BEST.format(left=left, share=share, least=first.least_ahead))
         conclusion, law = self._told(known, next(j for j in known.judged if j.hypothesis is best))
         if known.interrupted:
             remarks = (*remarks, INTERRUPTED)

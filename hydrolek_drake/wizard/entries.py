@@ -63,11 +63,12 @@ def asked(sheet: Sheet, key: str, name: str = "") -> str:
     return entry(name or key, value, unit, source, limits)
 
 
-def beginning(name: str, step: float, spool_steps: str) -> list[str]:
+def beginning(name: str, sheet: Sheet, step: float, spool_steps: str) -> list[str]:
     """How every rig file that is written begins.
 
     Args:
         name: of the machine.
+        sheet: what its data sheet says.
         step: longest step of the integration [s].
         spool_steps: why one step of the spool is enough.
     """
@@ -81,7 +82,7 @@ def beginning(name: str, step: float, spool_steps: str) -> list[str]:
         "integration:",
         f"  {entry('longest_step', 1e3 * step, 'ms', 'the longest that agrees with finer ones on this machine')}",
         f'  spool_steps: {{value: 1, unit: "1", source: "{spool_steps}"}}',
-        f"  {kept('model_error')}",
+        f"  {asked(sheet, 'model_error')}",
         f"  {kept('time_error')}",
         "",
         "recording:",

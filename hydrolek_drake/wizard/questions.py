@@ -21,7 +21,7 @@ SIGNED = (
 MAY_BE_ZERO = (
     "rod", "delay", "tank_pressure", "pump_leakage", "relief_hysteresis", "port_shares", "rated_flow", "angle_noise",
     "position_noise", "pressure_noise", "bearing_damping", "guide_damping", "seal_damping",
-    "position_time", "speed_time", "top_speed", "current_noise",
+    "model_error", "position_time", "speed_time", "top_speed", "current_noise",
 )  # fmt: skip
 """Questions whose answers may be below zero, and zero."""
 
@@ -32,7 +32,7 @@ SI = {
     "mm": "m", "m": "m", "cm^3": "m^3", "l": "m^3", "deg": "rad", "kg": "kg", "N m s/rad": "N m s/rad",
     "N s/m": "N s/m", "ms": "s", "V": "V", "Hz": "rad/s", "1": "1", "l/min": "m^3/s", "bar": "Pa", "kPa": "Pa",
     "GPa": "Pa", "cm^3/rev": "m^3/rad", "rpm": "rad/s", "kg/m^3": "kg/m^3", "mm/V": "m/V", "mm/s": "m/s",
-    "1/s": "1/s", "A": "A", "N": "N", "N m/A": "N m/A", "N m": "N m", "kg cm^2": "kg m^2",
+    "1/s": "1/s", "A": "A", "N": "N", "N m/A": "N m/A", "%": "1", "N m": "N m", "kg cm^2": "kg m^2",
 }  # fmt: skip
 """Unit of a question -> SI unit of its answer."""
 

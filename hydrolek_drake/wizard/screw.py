@@ -21,7 +21,7 @@ def screw_text(name: str, sheet: Sheet, step: float) -> str:
     nothing = f'source: "{_NO_OIL}"'
     travel = 1e3 * sheet["travel"]
     lines = [
-        *beginning(name, step, "there is no spool"),
+        *beginning(name, sheet, step, "there is no spool"),
         f"  # columns: {{their name: {sheet['joint']}.current_A}}  # names of your file's columns, if they differ; the",
         f"  # set point is {sheet['joint']}.command_V, of which each volt is set_point_gain",
         "",

@@ -21,7 +21,7 @@ def rig_text(name: str, sheet: Sheet, step: float) -> str:
     """
     pump = _pump(sheet) if sheet.pump else [kept("flow_time_constant")]
     lines = [
-        *beginning(name, step, "the spool's step is stable at any stiffness"),
+        *beginning(name, sheet, step, "the spool's step is stable at any stiffness"),
         "  # columns: {their name: joint.angle_deg}  # names of your file's columns, if they differ",
         "",
         "supply:",

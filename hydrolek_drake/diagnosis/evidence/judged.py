@@ -38,6 +38,8 @@ class Judged:
         left_behind_cut: times the noise that it leaves of these data behind the recorded pressure of a pump
             (`over_noise_behind`); None where there is none, or nobody asked.
         trained_behind_cut: the same of the training data.
+        least_ahead: times the noise that the rig's equations leave of these data at best, by its `model_error`.
+        least_trained: the same of the training data.
         stands: recording (`windows.recording_of`) -> additions and place in the unit cube there (`nuisance`).
     """
 
@@ -53,6 +55,8 @@ class Judged:
     fitted_too: float | None = None
     left_behind_cut: float | None = None
     trained_behind_cut: float | None = None
+    least_ahead: float = 1.0
+    least_trained: float = 1.0
     stands: Mapping[str, tuple[tuple[Addition, ...], np.ndarray]] = field(default_factory=dict)
 
     @property
@@ -68,7 +72,7 @@ class Judged:
         that explains what lies behind the recorded pressure may be off in the line now and then, but not be far from
         the noise on the whole.
         """
-        most = NOISE.explained_ahead if self.hypothesis.effects else NOISE.explained
+        most = self.least_ahead * (NOISE.explained_ahead if self.hypothesis.effects else NOISE.explained)
         if self.fitted_too is not None and self.fitted_too <= most:
             return True
         if self.left_behind_cut is None:
@@ -78,17 +82,17 @@ class Judged:
     @property
     def explains_training(self) -> bool:
         """Whether it leaves so little of the training data that nothing is missing that these show, as for held-out."""
-        left = self.hypothesis.fit.over_noise
+        left, most = self.hypothesis.fit.over_noise, self.least_trained * NOISE.explained
         if self.trained_behind_cut is None:
-            return left <= NOISE.explained
-        return self.trained_behind_cut <= NOISE.explained and left <= NOISE.far
+            return left <= most
+        return self.trained_behind_cut <= most and left <= NOISE.far
 
     @property
     def fails_ahead_alone(self) -> bool:
         """Whether it explains what it was fitted to, and not the held-out data."""
         behind = self.trained_behind_cut
         left = self.hypothesis.fit.over_noise if behind is None else behind
-        return left <= NOISE.ahead and not self.explains_ahead
+        return left <= self.least_trained * NOISE.ahead and not self.explains_ahead
 
     @property
     def log_density(self) -> float:
@@ -172,10 +176,29 @@ def difference(better: Judged, other: Judged, blocks: np.ndarray) -> tuple[float
 def with_behind_cut(judged: Judged, training: Sequence[Experiment], held_out: Sequence[Experiment]) -> Judged:
     """The same with what it leaves behind the recorded pressure of a pump, where the chain is cut there."""
     return replace(
-        judged,
+        with_least(judged, training, held_out),
         left_behind_cut=over_noise_behind(judged.held_out, held_out),
         trained_behind_cut=over_noise_behind(judged.hypothesis.fit.residuals, training),
     )
+
+
+def with_least(judged: Judged, training: Sequence[Experiment], held_out: Sequence[Experiment]) -> Judged:
+    """The same with what equations leave at best."""
+    return replace(judged, least_ahead=least_over_noise(held_out), least_trained=least_over_noise(training))
+
+
+def least_over_noise(experiments: Sequence[Experiment]) -> float:
+    """Times the noise that equations leave at best, as the rig's `model_error` says; behind a cut where there is one.
+
+    That of joints which move together is not known: theirs is also what others do to each.
+
+    Args:
+        experiments: whose.
+    """
+    if any(e.others is not None for e in experiments):
+        return 1.0  # what other joints do is no error of the equations
+    behind = [e.behind_cut() for e in experiments]
+    return math.sqrt(1.0 + sum(e.unsure for e in behind) / max(sum(e.counted for e in behind), 1))
 
 
 def over_noise_behind(residuals: np.ndarray, experiments: Sequence[Experiment]) -> float | None:

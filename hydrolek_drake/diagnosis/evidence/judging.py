@@ -21,6 +21,7 @@ from hydrolek_drake.diagnosis.evidence.judged import (
     Judged,
     blocks_of,
     difference,
+    with_least,
     with_probabilities,
 )
 from hydrolek_drake.diagnosis.evidence.nuisance import own_of_recordings, with_stands
@@ -63,7 +64,12 @@ def _looked_at(
     """What hypotheses leave of the held-out data as they are fitted."""
     counted = sum(experiment.counted for experiment in held_out)
     return bench.side_by_side(
-        lambda h: Judged(h, bench.residuals(h, held_out, bench.step_for(h.effects)), counted), hypotheses
+        lambda h: with_least(
+            Judged(h, bench.residuals(h, held_out, bench.step_for(h.effects)), counted),
+            bench.training,
+            held_out,
+        ),
+        hypotheses,
     )
 
 
@@ -148,7 +154,8 @@ def judge_structures(bench: Workbench, found: Tried, held_out: Sequence[Experime
     refined = [h for h in refined if pays(h, refined) and all(c.says_something(h.values) for c in h.effects)]
     judged = _predicted(bench, refined, held_out)
     blocks = blocks_of(held_out)
-    return with_probabilities([j for j in judged if predicts(j, judged, blocks)])
+    kept = [with_least(j, bench.training, held_out) for j in judged if predicts(j, judged, blocks)]
+    return with_probabilities(kept)
 
 
 def _contenders(found: Tried) -> list[Hypothesis]:

@@ -47,7 +47,14 @@ def behind_supply(bench: Workbench) -> Workbench | None:
     own = [free for free in bench.nominal if acts_behind(bench.rig, free.path)]
     parts = [e.behind_cut() for e in bench.training]
     return Workbench(
-        bench.rig, own, parts, bench.pool, bench.cores, bench.progress, signals_apart=bench.signals_apart
+        bench.rig,
+        own,
+        parts,
+        bench.pool,
+        bench.cores,
+        bench.progress,
+        settings=bench.settings,
+        signals_apart=bench.signals_apart,
     )
 
 

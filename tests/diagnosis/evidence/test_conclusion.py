@@ -9,7 +9,9 @@ from hydrolek_drake.diagnosis.evidence.judged import (
     Judged,
     conclude,
     dispersion_of,
+    least_over_noise,
     probability_of,
+    with_least,
     with_probabilities,
 )
 from hydrolek_drake.diagnosis.evidence.judging import pays, predicts
@@ -86,6 +88,27 @@ def test_a_nominal_model_that_does_not_predict_is_not_called_complete() -> None:
 def test_a_line_that_rings_excuses_nothing_behind_its_recorded_pressure(whole, behind, verdict) -> None:
     judged = replace(_judged((), 0.99, ahead=whole), left_behind_cut=behind)
     assert conclude(with_probabilities([judged])).verdict == verdict
+
+
+def test_a_machine_is_held_to_what_its_equations_leave_at_best(effect, bench, recorded) -> None:
+    """A rig that grants its equations three times the noise: ten times its squares are no missing physics."""
+    experiments = recorded(bench, bench)
+    granted = [
+        replace(e, channels=tuple(replace(c, least_error=3.0 * c.noise) for c in e.channels))
+        for e in experiments
+    ]
+    assert least_over_noise(experiments) == 1.0
+    assert least_over_noise(granted) == pytest.approx(np.sqrt(10.0), rel=1e-3)
+    leak = effect["cylinder.cross_port_leakage"]
+    left = [_judged((), 9.0), _judged((leak,), 3.3)]
+    assert conclude(with_probabilities(left)).verdict == "unlisted_physics"
+    held = with_probabilities([with_least(j, granted, granted) for j in left])
+    assert conclude(held).verdict == "missing_physics"
+    assert conclude(with_probabilities([with_least(_judged((), 3.3), granted, granted)])).verdict == "none"
+    assert (
+        conclude(with_probabilities([with_least(_judged((), 4.9), granted, granted)])).verdict
+        == "unlisted_physics"
+    )
 
 
 def test_what_does_not_predict_better_is_not_named(effect) -> None:
