@@ -47,8 +47,8 @@ AT_THE_CUT = (
 
 AT_BEST = (
     "what is left, {left:.3g} times the noise of the held-out data, is no more than the rig says that its equations "
-    "leave at best (integration.model_error, {share:.3g} % of each signal's range: {least:.3g} times the noise); what is "
-    "missing below that is not looked for"
+    "leave at best (integration.model_error, {share:.3g} % of each signal's range: {least:.3g} times the noise); what "
+    "is missing below that is not looked for"
 )
 
 SIGNALS_APART = (

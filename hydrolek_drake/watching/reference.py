@@ -9,7 +9,7 @@ import numpy as np
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal
-from hydrolek_drake.diagnosis.search.nominal import as_weighed
+from hydrolek_drake.diagnosis.search.weighed_anew import as_weighed
 from hydrolek_drake.diagnosis.settings import NOISE
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench

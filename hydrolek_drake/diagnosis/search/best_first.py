@@ -6,9 +6,10 @@ from typing import Protocol
 from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.cost import cost
 from hydrolek_drake.diagnosis.search.enlarging import enlarged
-from hydrolek_drake.diagnosis.search.nominal import fit_nominal, weigh_anew
+from hydrolek_drake.diagnosis.search.nominal import fit_nominal
 from hydrolek_drake.diagnosis.search.openings import Opening, opened, surely_above
 from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.search.weighed_anew import weigh_anew
 from hydrolek_drake.diagnosis.settings import NOISE, Settings
 from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate

@@ -16,11 +16,11 @@ from hydrolek_drake.diagnosis.search.by_continuation import (
     traced,
 )
 from hydrolek_drake.diagnosis.search.cost import gain_needed
-from hydrolek_drake.diagnosis.search.nominal import weigh_anew
 from hydrolek_drake.diagnosis.search.openings import Opening
 from hydrolek_drake.diagnosis.search.parts import supply_before
 from hydrolek_drake.diagnosis.search.standing_in import standing_in
 from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.search.weighed_anew import weigh_anew
 from hydrolek_drake.diagnosis.settings import GAINS, NOISE, Settings
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, redundant, widenings
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
