@@ -23,6 +23,9 @@ WITH = 0.4
 SURELY, CLEARLY_BETTER = 0.85, 0.1
 """Correlation of the speeds from which a lag is believed, and by which it is better than none."""
 
+CHANGED = 0.01
+"""A command changes by more than this share of its range; less is the noise of one that was measured."""
+
 MOST_S = 1.0
 """Clocks may be apart by so much, either way [s]."""
 
@@ -101,7 +104,7 @@ def _about_changes(times: np.ndarray, volts: np.ndarray) -> np.ndarray:
 
     When it comes to a stop under a constant command says how fast it is. # (n,) truth values
     """
-    changed = times[1:][np.diff(volts) != 0.0]
+    changed = times[1:][np.abs(np.diff(volts)) > CHANGED * np.ptp(volts)]
     if not changed.size:
         return np.ones(times.size, dtype=bool)
     after = np.searchsorted(changed, times)

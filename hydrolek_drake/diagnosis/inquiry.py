@@ -46,9 +46,9 @@ AT_THE_CUT = (
 )
 
 AT_BEST = (
-    "what is left, {left:.3g} times the noise of the held-out data, is no more than the rig says that its equations "
-    "leave at best (integration.model_error, {share:.3g} % of each signal's range: {least:.3g} times the noise); what "
-    "is missing below that is not looked for"
+    "what is left, {trained:.3g} times the noise of the fitted and {left:.3g} times that of the held-out data, is "
+    "taken for what the rig says that its equations leave at best: integration.model_error, {share:.3g} % of each "
+    "signal's range, which is {least:.3g} times the noise; what is missing below that is not looked for"
 )
 
 SIGNALS_APART = (
@@ -148,11 +148,16 @@ class Inquiry:
         elif first.left_behind_cut is not None and not known.interrupted:
             uncut = _uncut_over_noise(known)
             remarks = (*remarks, AT_THE_CUT.format(behind=first.left_behind_cut, uncut=uncut))
-        left = first.over_noise if first.left_behind_cut is None else first.left_behind_cut
-        if known.conclusion.verdict != "unlisted_physics" and left > NOISE.explained_ahead:
-            share = 100.0 * known.bench.rig.value("integration.model_error")
-            remarks = (*remarks, AT_BEST.format(left=left, share=share, least=first.least_ahead))
         conclusion, law = self._told(known, next(j for j in known.judged if j.hypothesis is best))
+        if conclusion.verdict != "unlisted_physics" and first.granted:
+            left, trained = first.left_behind_cut, first.trained_behind_cut
+            told = AT_BEST.format(
+                left=first.over_noise if left is None else left,
+                trained=first.hypothesis.fit.over_noise if trained is None else trained,
+                share=100.0 * known.bench.rig.value("integration.model_error"),
+                least=first.least_ahead,
+            )
+            remarks = (*remarks, told)
         if known.interrupted:
             remarks = (*remarks, INTERRUPTED)
             conclusion = replace(conclusion, verdict="interrupted")

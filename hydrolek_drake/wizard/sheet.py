@@ -110,6 +110,12 @@ class Sheet:
         self.zero_length = length - half
         self.own_stops = "link_travel" in self.answers
         if self.own_stops:
+            if not self.zero_length > 0.0:
+                raise InputError(
+                    f"rig new: at half of the stroke mounts are {length:g} m apart, so that a cylinder of stroke "
+                    f"{self['stroke']:g} m has no length drawn in; check --base-mount, --link-mount, --stroke, "
+                    "--mid-stroke-at"
+                )
             self._told_travel()
             return a * b * math.sin(included) / length
         ends = []
@@ -150,6 +156,10 @@ class Sheet:
             raise InputError(
                 "rig new: --compensated yes: a compensated valve is told by --rated-flow and --rated-drop"
             )
+        if self["overlap"] < 0.0:
+            raise InputError(
+                "rig new: --compensated yes: an underlap (--overlap below zero) is told of four edges alone"
+            )
         pa, pb, at, bt = self.rated_flows
         if pa != pb or at != bt or not pa or not at:
             raise InputError(
@@ -175,6 +185,8 @@ class Sheet:
         """Of the rod with the valve wide open and half of the pressure over its inlet, or all that the pump gives."""
         area = self.gradients["pa"] * (self["spool_travel"] - self["overlap"])
         flow = self["flow_coefficient"] * area * math.sqrt(self["supply_pressure"] / self["oil_density"])
+        if self["compensated"] == "yes":
+            flow = min(flow, self.rated_flows[0])
         if self.pump:
             flow = min(flow, self["displacement"] * self["pump_speed"])
         if not flow > 0.0:

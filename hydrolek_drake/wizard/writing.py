@@ -144,10 +144,8 @@ def _at_start(sheet: Sheet) -> str:
     """Pressure of side B at the start, which a fit finds."""
     supply, tank = sheet["supply_pressure"], sheet["tank_pressure"]
     bar = si_factor("bar", "Pa")
-    limits = (
-        0.5 * min(tank, 0.02 * supply) / bar,
-        supply / bar,
-    )  # a falling load may draw it below the tank's
+    lowest = 0.5 * min(tank or supply, 0.02 * supply)  # a falling load may draw it below the tank's
+    limits = (lowest / bar, supply / bar)
     return entry("initial_pressure_b", 0.5 * supply / bar, "bar", "assumed: half of the supply", limits)
 
 
@@ -162,7 +160,8 @@ def _column(sheet: Sheet) -> str:
 def _end(sheet: Sheet, name: str, value: float, source: str) -> str:
     """Where the stroke ends or begins [mm], to within what rods are screwed and built to."""
     spread = 1e3 * fixed("stop_place")["value"] / 100.0 * sheet["stroke"]
-    return entry(name, 1e3 * value, "mm", source, (1e3 * value - spread, 1e3 * value + spread), log=False)
+    limits = (max(1e3 * value - spread, 0.0), 1e3 * value + spread)
+    return entry(name, 1e3 * value, "mm", source, limits, log=False)
 
 
 def _beyond(lower: float, upper: float, unit: str, of: str) -> list[str]:

@@ -6,7 +6,9 @@ from sheets import LINK, SLIDE
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rollout import roll_out
+from hydrolek_drake.wizard import read_answers
 from hydrolek_drake.wizard.making import written_rig
+from hydrolek_drake.wizard.sheet import Sheet
 
 COMPENSATED = SLIDE | {"compensated": "yes", "rated_flow": "6 6 8 8 l/min", "full_command": "3 V"}
 LONG = LINK | {"stroke": "0.5 m", "link_travel": "-40, 60 deg"}
@@ -29,6 +31,12 @@ def test_a_compensated_valve_gives_the_rated_flow_whatever_pushes():
     for offset in (0.0, 600.0):
         loaded = rig.with_values({"effects.load.offset_force.force_N": offset})
         assert _end_speed(loaded, 3.0) == pytest.approx(6e-3 / 60 / area, rel=0.02)
+
+
+def test_damping_is_assumed_by_the_speed_that_compensators_allow():
+    flows = Sheet(read_answers(COMPENSATED)), Sheet(read_answers(COMPENSATED | {"compensated": "no"}))
+    assert flows[0].speed == pytest.approx(6e-3 / 60 / flows[0].area_a)
+    assert flows[1].speed > 2.0 * flows[0].speed
 
 
 def test_commands_count_from_neutral_and_may_retract_above_it():
@@ -61,6 +69,8 @@ def test_a_link_s_own_stops_end_its_motion_where_the_cylinder_s_do_not():
         (LINK | {"stroke": "0.5 m"}, "--link-travel"),
         (LONG | {"link_travel": "-40, 150 deg"}, "no lever left"),
         (LONG | {"link_travel": "20, 60 deg"}, "must hold --mid-stroke-at"),
+        (LONG | {"stroke": "0.9 m"}, "no length drawn in"),
+        (COMPENSATED | {"overlap": "-0.05 mm"}, "an underlap"),
         (LONG | {"link_travel": "20 deg"}, "1 numbers, where 2 belong"),
         (LINK | {"compensated": "yes"}, "told by --rated-flow"),
         (COMPENSATED | {"rated_flow": "24 20 30 30"}, "alike towards A and B"),

@@ -15,6 +15,7 @@ from hydrolek_drake.diagnosis.search.cost import cost, dispersion
 from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.splitting import short_blocks
+from hydrolek_drake.diagnosis.structures.weighing import least_over_noise
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 from hydrolek_drake.identification.experiments.experiment import Experiment
 
@@ -77,7 +78,7 @@ class Judged:
             return True
         if self.left_behind_cut is None:
             return self.over_noise <= most
-        return self.left_behind_cut <= most and self.over_noise <= NOISE.far
+        return self.left_behind_cut <= most and self.over_noise <= max(NOISE.far, most)
 
     @property
     def explains_training(self) -> bool:
@@ -85,7 +86,14 @@ class Judged:
         left, most = self.hypothesis.fit.over_noise, self.least_trained * NOISE.explained
         if self.trained_behind_cut is None:
             return left <= most
-        return self.trained_behind_cut <= most and left <= NOISE.far
+        return self.trained_behind_cut <= most and left <= max(NOISE.far, most)
+
+    @property
+    def granted(self) -> bool:
+        """Whether it explains the data by what the rig says that its equations leave at best, and not without that."""
+        strict = replace(self, least_ahead=1.0, least_trained=1.0)
+        explains = self.explains_training and self.explains_ahead
+        return explains and not (strict.explains_training and strict.explains_ahead)
 
     @property
     def fails_ahead_alone(self) -> bool:
@@ -185,20 +193,6 @@ def with_behind_cut(judged: Judged, training: Sequence[Experiment], held_out: Se
 def with_least(judged: Judged, training: Sequence[Experiment], held_out: Sequence[Experiment]) -> Judged:
     """The same with what equations leave at best."""
     return replace(judged, least_ahead=least_over_noise(held_out), least_trained=least_over_noise(training))
-
-
-def least_over_noise(experiments: Sequence[Experiment]) -> float:
-    """Times the noise that equations leave at best, as the rig's `model_error` says; behind a cut where there is one.
-
-    That of joints which move together is not known: theirs is also what others do to each.
-
-    Args:
-        experiments: whose.
-    """
-    if any(e.others is not None for e in experiments):
-        return 1.0  # what other joints do is no error of the equations
-    behind = [e.behind_cut() for e in experiments]
-    return math.sqrt(1.0 + sum(e.unsure for e in behind) / max(sum(e.counted for e in behind), 1))
 
 
 def over_noise_behind(residuals: np.ndarray, experiments: Sequence[Experiment]) -> float | None:

@@ -78,7 +78,9 @@ def propose(bench: Workbench, conclusion: Conclusion, hypotheses: Sequence[Hypot
         return None
     first, second = hypotheses[0], hypotheses[1]
     template = bench.training[0]
-    amplitude = float(np.abs(template.command).max())
+    neutral = bench.rig.value(f"joints.{template.joint}.command.neutral")
+    amplitude = float(np.abs(template.command - neutral).max())
+    away = f"up to {amplitude:.3g} V" + (f" away from {neutral:.3g} V" if neutral else "")
     options: list[tuple[str, Experiment]] = []
     hydraulic = bench.rig.is_hydraulic(template.joint)
     unrecorded = hydraulic and len(template.channels) == 1
@@ -87,10 +89,10 @@ def propose(bench: Workbench, conclusion: Conclusion, hypotheses: Sequence[Hypot
             ("the same command with both chamber pressures recorded", _with_pressures(bench, template))
         )
     for words, command in commands_of(amplitude).items():
-        experiment = _with_command(template, command)
-        options.append((f"{words} (up to {amplitude:.3g} V)", experiment))
+        experiment = _with_command(template, neutral + command)
+        options.append((f"{words} ({away})", experiment))
         if unrecorded:
-            options.append((f"{words} (up to {amplitude:.3g} V), with both chamber pressures recorded",
+            options.append((f"{words} ({away}), with both chamber pressures recorded",
                             _with_pressures(bench, experiment)))  # fmt: skip
     seen = _separations(bench, first, second, [experiment for _, experiment in options])
     ranked = sorted(zip(seen, options, strict=True), key=lambda pair: -pair[0])

@@ -20,6 +20,7 @@ from hydrolek_drake.diagnosis.lost_commands.windows import (
 )
 from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.addition import Addition
+from hydrolek_drake.diagnosis.structures.weighing import least_over_noise
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.lockstep import descend
@@ -67,7 +68,8 @@ def with_windows(
         now, values = more or needed, _without_windows(fitted)
         if more is None:
             break
-    return [fit for fit in fits if fit.fit.over_noise <= NOISE.explained]
+    most = NOISE.explained * least_over_noise(bench.training)
+    return [fit for fit in fits if fit.fit.over_noise <= most]
 
 
 def _without_windows(structure: Hypothesis) -> dict[str, float]:

@@ -21,9 +21,6 @@ from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.least_squares.lockstep import descend
 
-DEAD_TIME = ".command.delay"
-"""What the path of a dead time ends with."""
-
 
 def continued(bench: Workbench, opening: Opening, left: float) -> list[Runner]:
     """A race by continuation, from the rig's own numbers; near the noise from where the structure was fitted too.
@@ -180,7 +177,7 @@ def _starts(fits: Sequence[Hypothesis], left: float, settings: Settings) -> list
 
 
 def _in_time(bench: Workbench, runners: Sequence[Runner]) -> list[Runner]:
-    """The same from the dead time at which each leaves least, of some over its range.
+    """The same from the dead times at which each leaves least, of some over their ranges: the rig's and an effect's.
 
     Where a dead time is off by more than an observer remembers, every move of the machine has passed before the model
     makes it, and no slope leads there: its fit has a local minimum for each (cycle skipping, as in waveform inversion;
@@ -192,10 +189,12 @@ def _in_time(bench: Workbench, runners: Sequence[Runner]) -> list[Runner]:
     """
     places = descend([r.place for r in runners], 0, bench.pool, bench.cores)
     units = (np.arange(FITS.places) + 0.5) / FITS.places
-    for path in (p for p in bench.parameters(()).paths if p.endswith(DEAD_TIME)):
-        ways = [Along(list(p.problem.parameters.paths).index(path), units) for p in places]
-        free = [way if p.moving[way.index] else None for way, p in zip(ways, places, strict=True)]
-        places = searched_along(places, free, bench.pool, bench.cores)
+    dead_times = [
+        [i for i in np.flatnonzero(p.problem.parameters.arrivals).tolist() if p.moving[i]] for p in places
+    ]
+    for number in range(max((len(each) for each in dead_times), default=0)):
+        ways = [Along(each[number], units) if number < len(each) else None for each in dead_times]
+        places = searched_along(places, ways, bench.pool, bench.cores)
     return [replace(r, place=place) for r, place in zip(runners, places, strict=True)]
 
 

@@ -4,7 +4,6 @@ The chain is cut there (`Experiment.cut_at_supply`): the recorded pressure drive
 followed under the flow that this draws.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -12,6 +11,7 @@ import numpy as np
 from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.settings import NOISE
 from hydrolek_drake.diagnosis.structures.addition import Addition
+from hydrolek_drake.diagnosis.structures.weighing import least_over_noise
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.continuation import Continuation, cut_where_measured
@@ -30,9 +30,7 @@ def enough_for(bench: Workbench) -> float:
     What a recorded supply pressure does between its samples is no missing physics, nor is what the rig says that its
     equations leave at best.
     """
-    counted = max(sum(e.counted for e in bench.training), 1)
-    own_error = math.sqrt(1.0 + sum(e.unsure for e in bench.training) / counted)
-    return max(NOISE.explained if bench.cut else NOISE.at, 0.0 if bench.together else own_error)
+    return max(NOISE.explained if bench.cut else NOISE.at, least_over_noise(bench.training))
 
 
 def acts_behind(rig: Rig, path: str) -> bool:

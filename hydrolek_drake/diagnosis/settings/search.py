@@ -66,11 +66,6 @@ class Fits:
     anew: int = 3
     """So often is a fit begun anew at most: with data weighed by a better one, or in a lower local minimum."""
 
-    @property
-    def slowest_s(self) -> float:
-        """Time constant of the slowest observer of a continuation [s]."""
-        return max(t for t, _ in self.horizons if math.isfinite(t))
-
 
 FITS = Fits()
 

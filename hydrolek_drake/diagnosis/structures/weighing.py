@@ -11,6 +11,7 @@ signal, as is most likely: by what the fitted model leaves of it (Kennedy, O'Hag
 models, J. Royal Statistical Society B 63, 2001). Only ratios count here, their common size is a parameter of the cost.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -179,3 +180,17 @@ def _apart(experiment: Experiment, records: np.ndarray, done: Together) -> np.nd
     models = [channel.model for channel in experiment.channels]
     whole = [np.interp(experiment.time, done.time, done.signals[model][:, column]) for model in models]
     return np.array([getattr(own, model) for model in models]) - np.array(whole)
+
+
+def least_over_noise(experiments: Sequence[Experiment]) -> float:
+    """Times the noise that equations leave at best, as the rig's `model_error` says; behind a cut where there is one.
+
+    That of joints which move together is not known: theirs is also what others do to each.
+
+    Args:
+        experiments: whose.
+    """
+    if any(e.others is not None for e in experiments):
+        return 1.0  # what other joints do is no error of the equations
+    behind = [e.behind_cut() for e in experiments]
+    return math.sqrt(1.0 + sum(e.unsure for e in behind) / max(sum(e.counted for e in behind), 1))

@@ -29,8 +29,7 @@ SPREAD = 1.0 / math.sqrt(12.0)
 """Standard deviation, in ranges, of a parameter of which only its range is known.
 
 Used as a weak prior about the rig's own values: what a recording does not tell stays where the rig has it,
-instead of wandering off to make up for physics that is missing. It is the closer the faster an observer forgets
-(`prior_spread`).
+instead of wandering off to make up for physics that is missing.
 """
 
 
@@ -83,24 +82,6 @@ class Hypothesis:
 def key_of(effects: Iterable[Addition]) -> frozenset[str]:
     """A set of effects, whatever their order."""
     return frozenset(candidate.size_path for candidate in effects)
-
-
-def prior_spread(observer_s: float | None) -> float:
-    """Standard deviation of the prior of the rig's own numbers [ranges], in a fit by an observer.
-
-    A fit that begins far off is led by errors of the model, which are alike from sample to sample, so that a weak prior
-    holds nothing: what the first seconds tell of poorly wandered to the ends of its ranges, from where no slope leads
-    back once more is seen. It is let go as the observer's time constant T grows, the slowest one's being T_s,
-
-        s = s_0 T / T_s
-
-    and is s_0 for free rollouts (iteratively regularised Gauss-Newton: Bakushinskii, Computational Mathematics and
-    Mathematical Physics 32, 1992).
-
-    Args:
-        observer_s: its time constant [s]; None for free rollouts.
-    """
-    return SPREAD if observer_s is None else SPREAD * min(1.0, observer_s / FITS.slowest_s)
 
 
 def moments_of(effects: Iterable[Addition]) -> list[Free]:
@@ -247,7 +228,7 @@ class Workbench:
         """Residuals of this model, on the training data unless others are given."""
         parameters = self.parameters(effects)
         prior = np.full(len(parameters), np.inf)
-        prior[: len(self.numbers(effects))] = prior_spread(pull_time)
+        prior[: len(self.numbers(effects))] = SPREAD
         if kind is Problem and isinstance(parameters, WithWindows):
             kind = LostProblem
         known = {"known": self._moving} if issubclass(kind, ProblemTogether) else {}

@@ -1,5 +1,6 @@
 """Experiments of a recording: one for each joint that is driven in it."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -102,7 +103,7 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
         command_times=np.ascontiguousarray(recording.time, dtype=float),
         command=command,
         channels=tuple(
-            replace(c, least_error=share * spanned(c.measured)).timed(
+            replace(c, least_error=_least_error(c, share)).timed(
                 recording.time, rig.value("integration.time_error")
             )
             for c in channels
@@ -114,6 +115,18 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
         used=np.ones(recording.time.size, dtype=bool),
         recorded=recorded_inputs(rig, joint, recording),
     )
+
+
+def _least_error(channel: Channel, share: float) -> float:
+    """What equations leave at best of a signal, less what its noise holds of that already.
+
+    Args:
+        channel: the signal.
+        share: of its range.
+    """
+    told = noise_level(channel.measured)
+    held = max(channel.noise**2 - told**2, 0.0) if channel.noise <= faithful(channel.measured) else 0.0
+    return math.sqrt(max((share * spanned(channel.measured)) ** 2 - held, 0.0))
 
 
 def _noise(measured: np.ndarray, rig: Rig, joint: str, name: str) -> float:

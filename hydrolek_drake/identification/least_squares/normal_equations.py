@@ -21,22 +21,39 @@ class NormalEquations:
         assert place.slopes is not None and place.residuals is not None
         prior = place.problem.prior_jacobian()
         off = place.problem.prior_residuals(place.unit)
-        self._square = place.slopes.T @ place.slopes + prior.T @ prior
-        self._pull = -(place.slopes.T @ place.residuals + prior.T @ off)
+        square, pull = place.slopes.T @ place.slopes, -place.slopes.T @ place.residuals
+        self._square, self._pull = square + prior.T @ prior, pull - prior.T @ off
+        held = _held(place)
+        self._held_square, self._held_pull = square + held * prior.T @ prior, pull - held * prior.T @ off
         self._unit, self._moving = place.unit, place.moving
 
     def step(self, damping: float) -> np.ndarray:
         """Marquardt's step within the ranges. # (n,)."""
         index = np.flatnonzero(self._moving & (np.diag(self._square) > 0.0))
-        square = self._square[np.ix_(index, index)]
+        square = self._held_square[np.ix_(index, index)]
         damped = square + damping * np.diag(np.diag(square))
         way = np.zeros(self._unit.size)
-        way[index] = lowest_in_box(damped, self._pull[index], -self._unit[index], 1.0 - self._unit[index])
+        way[index] = lowest_in_box(
+            damped, self._held_pull[index], -self._unit[index], 1.0 - self._unit[index]
+        )
         return way
 
     def promises(self, way: np.ndarray) -> float:
         """By how much the squares fall on a way, if the slopes hold."""
         return float(2.0 * self._pull @ way - way @ self._square @ way)
+
+
+def _held(place: Place) -> float:
+    """How much more a step by an observer is held to the prior than the squares are: the mean square that is left.
+
+    Far from the noise what is left is an error of the model, alike from sample to sample, which no weak prior holds:
+    what the data at hand tell poorly runs to the ends of its ranges, from where no slope leads back once more is seen.
+    Steps that are held the less, the less is left (iteratively regularised Gauss-Newton; Bakushinskii, Computational
+    Mathematics and Mathematical Physics 32 (1992) 1353), do not lead there; at the noise they are Marquardt's.
+    """
+    if place.problem.pull_time is None or place.residuals is None:
+        return 1.0
+    return max(float(place.residuals @ place.residuals) / max(place.problem.counted, 1), 1.0)
 
 
 def normal_step(place: Place) -> np.ndarray:

@@ -95,10 +95,12 @@ def response_of(
     recorded = None
     if recording is None:
         time = np.arange(round(DURATION / SAMPLE)) * SAMPLE
-        limit = rig.value(f"joints.{joint}.command.limit")
+        limit, neutral = (rig.value(f"joints.{joint}.command.{name}") for name in ("limit", "neutral"))
         held = round(DWELL / SAMPLE)
         levels = rng.uniform(-1.0, 1.0, -(-time.size // held))
-        command = np.repeat(limit * levels**3, held)[: time.size]  # more small voltages than large ones
+        command = (
+            neutral + np.repeat(limit * levels**3, held)[: time.size]
+        )  # more small voltages than large ones
     else:
         key, recording = f"{joint}.command", with_commands(rig, recording)
         require(recording, [], complete=[key], units={key: "V"})

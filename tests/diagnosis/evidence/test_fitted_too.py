@@ -32,7 +32,7 @@ def test_a_nominal_model_that_explains_all_data_lacks_nothing_though_it_failed_a
     training = recorded(machine, bench, seed=1, largest_V=GENTLE_V)
     held_out = recorded(machine, bench, seed=2, largest_V=HARD_V)
     with ThreadPoolExecutor(2) as pool:
-        workbench = Workbench(bench, free_parameters(bench), training, pool)
+        workbench = Workbench(bench, free_parameters(bench), training, pool, 2)
         nominal = fitted(workbench, rounds=20)
         judged = [Judged(nominal, np.zeros(0), 0, probability=1.0)]
         told = left_of(workbench, judged, held_out)

@@ -36,7 +36,7 @@ def alike(fitted):
     training = experiments_of(rig, Recording("made", time, signals, Path("made.csv")))
     candidates = candidates_of(rig, "right_j2", natural_scales(rig, "right_j2", training))
     with ThreadPoolExecutor(2) as pool:
-        bench = Workbench(rig, free_parameters(rig), training, pool)
+        bench = Workbench(rig, free_parameters(rig), training, pool, 2)
         nominal = fitted(bench, rounds=4)
         bench.training = tuple(weighted_by(bench, nominal, training))
         chosen = [next(c for c in candidates if c.id == id_) for id_ in RIVALS]

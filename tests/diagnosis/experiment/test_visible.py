@@ -33,7 +33,7 @@ def healthy(bench, recorded, fitted):
     """Squared residuals of the fitted nominal model, and the smallest sizes that would have been seen."""
     experiments = recorded(bench, bench, seed=5)
     with ThreadPoolExecutor(2) as pool:
-        work = Workbench(bench, free_parameters(bench), experiments, pool)
+        work = Workbench(bench, free_parameters(bench), experiments, pool, 2)
         nominal = fitted(work)
         candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
         simplified = [replace(c, beneath=SIMPLIFIED if c.id == "sensor.drift" else 0.0) for c in candidates]
@@ -52,7 +52,7 @@ def test_a_size_that_would_be_seen_is_not_made_up_for_by_the_nominal_model(
         size = share * sizes[effect_id]
         machine = bench.with_values({f"effects.{effect_id}.{PLANTED[effect_id]}": size})
         with ThreadPoolExecutor(2) as pool:
-            work = Workbench(bench, free_parameters(bench), recorded(machine, bench, seed=5), pool)
+            work = Workbench(bench, free_parameters(bench), recorded(machine, bench, seed=5), pool, 2)
             again = fitted(work, (), nominal.values)
         return again.fit.objective - nominal.fit.objective
 

@@ -31,7 +31,7 @@ def test_what_the_beginning_does_not_show_goes_on_by_its_promise(bench, recorded
     entrants += [Entrant((candidates[name],), dict(candidates[name].starts[0])) for name in OTHERS]
     heats = (Rung(math.inf, 1.0, 0.6 * LATE_S, 4, 1), Rung(math.inf, 1.0, math.inf, 12, 1))
     with ThreadPoolExecutor(2) as pool:
-        [best] = race(Workbench(bench, free, training, pool), entrants, heats)
+        [best] = race(Workbench(bench, free, training, pool, 2), entrants, heats)
     assert [c.id for c in best.effects] == ["load.payload"]
     assert best.fit.over_noise < 1.05
     assert best.values[f"{PAYLOAD}.mass_kg"] == pytest.approx(20.0, rel=0.1)
@@ -50,7 +50,7 @@ def test_fits_of_a_structure_in_different_minima_go_on_whichever_promised_more(b
 
     def ended(sizes):
         entrants = [Entrant((drift,), {**drift.starts[0], drift.size_path: size}) for size in sizes]
-        return race(Workbench(bench, free, training, pool), entrants, (still,))
+        return race(Workbench(bench, free, training, pool, 2), entrants, (still,))
 
     with ThreadPoolExecutor(2) as pool:
         tried = {s: ended([s])[0].fit.objective for s in drift.size.upper * np.geomspace(1e-4, 1.0, 400)}
@@ -80,7 +80,7 @@ def test_a_structure_in_other_ranges_or_another_order_stands_where_it_was(bench,
     still = Rung(math.inf, 1.0, math.inf, 0, 3, each=3)
     free = [p for p in free_parameters(bench) if p.path.endswith("max_area")]
     with ThreadPoolExecutor(2) as pool:
-        ended = race(Workbench(bench, free, training, pool), entrants, (still,))
+        ended = race(Workbench(bench, free, training, pool, 2), entrants, (still,))
     stands = sorted((h.values[delay.size_path], h.values[drift.size_path]) for h in ended)
     wanted = sorted((v[delay.size_path], v[drift.size_path]) for v in (beyond, within))
     assert [pytest.approx(each) for each in wanted] == [stands[0], stands[-1]]

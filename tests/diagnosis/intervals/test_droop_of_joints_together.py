@@ -45,7 +45,7 @@ def begun(two_joints, machine, recorded_together, fitted) -> Iterator[tuple[Work
     training = experiments_of(two_joints, recorded_together(machine, 1, **LONG)[0])
     nominal = free_parameters(two_joints, [path for path in TRUTH if path != DROOP])
     with ThreadPoolExecutor(1) as pool:
-        bench = Workbench(two_joints, nominal, training, pool)
+        bench = Workbench(two_joints, nominal, training, pool, 2)
         scales = natural_scales(two_joints, MOVING[0], training)
         droop = next(c for c in candidates_of(two_joints, MOVING[0], scales) if c.size_path == DROOP)
         yield bench, fitted(bench, (droop,), {DROOP: 1e10}, 20)

@@ -146,7 +146,7 @@ def test_numbers_of_a_fit_that_ended_early_are_told_within_their_intervals(
     concealed = next(c for c in candidates if c.id == effect)
     start = {f"{concealed.path}.{name}": 1.03 * value for name, value in size.items()}
     with ThreadPoolExecutor(2) as pool:
-        workbench = Workbench(bench, free_parameters(bench), training, pool)
+        workbench = Workbench(bench, free_parameters(bench), training, pool, 2)
         early = fitted(workbench, (concealed,), start, rounds=3, coarse=0.5)
         counted = sum(experiment.counted for experiment in ahead)
         told, known, held_out = with_last_numbers(workbench, Judged(early, np.zeros(1), counted), ahead)
@@ -175,7 +175,7 @@ def test_the_step_of_the_integration_bends_no_number(bench, recorded, fitted) ->
     concealed = next(c for c in candidates if c.id == "fluid.entrained_air")
     path = f"{concealed.path}.air_fraction"
     with ThreadPoolExecutor(2) as pool:
-        workbench = Workbench(bench, free_parameters(bench), training, pool)
+        workbench = Workbench(bench, free_parameters(bench), training, pool, 2)
         with_step_error = fitted(workbench, (concealed,), {path: air}, rounds=20, coarse=0.5)
         found, known = LastNumbers(workbench, with_step_error).found()
     deviation = (known[path].high - known[path].low) / (2.0 * NORMAL)

@@ -36,7 +36,7 @@ def found(bench, recorded, fitted):
     def find(probe, form, planted, unknown_Hz=0.0, seed=1):
         kept = {"largest_V": 7.0, "pressure_noise_Pa": 2e4, "unknown_Hz": unknown_Hz}
         training = recorded(bench, bench, seed=seed, unknown=(probe, planted[0]), **kept)
-        workbench = Workbench(bench, free_parameters(bench), training, pool)
+        workbench = Workbench(bench, free_parameters(bench), training, pool, 2)
         inputs = inputs_of(natural_scales(bench, "joint", training), supply, 10.0, "rad")
         [given] = [each for each in inputs if each.probe == probe]
         span = span_of([training[0].simulate(bench.records()).signals], bench.records()[0], 12.0, "rad")
@@ -85,7 +85,7 @@ def test_the_machine_is_told_as_it_was_fitted_with_the_law(bench, found, recorde
     assert abs(with_law.value - bench.value(path)) < 2.0 * half
     training = recorded(bench, bench, largest_V=7.0, pressure_noise_Pa=2e4, unknown=("capacity_a", HOSE))
     with ThreadPoolExecutor(2) as pool:
-        alone = fitted(Workbench(bench, free_parameters(bench), training, pool))
+        alone = fitted(Workbench(bench, free_parameters(bench), training, pool, 2))
     assert abs(alone.values[path] - bench.value(path)) > 10.0 * half
 
 

@@ -30,7 +30,7 @@ def test_the_interval_of_a_moment_holds_it(bench, recorded, fitted) -> None:
     candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", training))
     payload = next(c for c in candidates if c.id == "load.payload")
     with ThreadPoolExecutor(2) as pool:
-        workbench = Workbench(bench, free_parameters(bench), training, pool)
+        workbench = Workbench(bench, free_parameters(bench), training, pool, 2)
         found = fitted(workbench, (payload,), planted)
         [(path, known)] = intervals_of_moments(workbench, found).items()
         assert intervals_of_moments(workbench, fitted(workbench, rounds=0)) == {}

@@ -28,7 +28,7 @@ def seen_of(bench, recorded, fitted):
     def make(**how):
         training = recorded(bench, bench, pressure_noise_Pa=2e4, **how)
         with ThreadPoolExecutor(2) as pool:
-            workbench = Workbench(bench, free_parameters(bench), training, pool)
+            workbench = Workbench(bench, free_parameters(bench), training, pool, 2)
             nominal = fitted(workbench, rounds=0)
             workbench.training = tuple(weighted_by(workbench, nominal, training))
             scales = natural_scales(bench, "joint", training)

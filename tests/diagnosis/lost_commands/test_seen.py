@@ -35,7 +35,7 @@ def seen_in(bench, recorded, fitted):
     def make(**how):
         training = recorded(bench, bench, **how)
         with ThreadPoolExecutor(2) as pool:
-            workbench = Workbench(bench, free_parameters(bench), training, pool)
+            workbench = Workbench(bench, free_parameters(bench), training, pool, 2)
             nominal = fitted(workbench, rounds=0)
             return training[0], _lost_in(bench, workbench, nominal)
 
@@ -61,7 +61,7 @@ def test_a_machine_that_is_shaken_has_lost_no_commands(bench, recorded, fitted) 
     """Many windows imitate anything a little: what counts is that none explain it to the noise."""
     training = recorded(bench, bench, unknown=("load", 60.0), unknown_Hz=1.3)
     with ThreadPoolExecutor(2) as pool:
-        workbench = Workbench(bench, free_parameters(bench), training, pool)
+        workbench = Workbench(bench, free_parameters(bench), training, pool, 2)
         nominal = fitted(workbench)
         lost = _lost_in(bench, workbench, nominal)
         assert lost is None or with_windows(workbench, nominal, lost) == []

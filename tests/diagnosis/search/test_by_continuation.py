@@ -127,7 +127,7 @@ def test_a_dead_time_that_is_off_by_more_than_an_observer_remembers_is_found(ben
     training = recorded(bench.with_values({dead_time: late_s}), bench, pressure_noise_Pa=2e4)
     settings = Settings(drawn=0)
     with ThreadPoolExecutor(2) as pool:
-        workbench = Workbench(bench, free, training, pool, settings=settings)
+        workbench = Workbench(bench, free, training, pool, 2, settings=settings)
         [stuck] = race(workbench, [Entrant((), {})], (replace(settings.long[0], rounds=40),))
         led = continued_nominal(workbench, fitted(workbench, rounds=0), NOISE.at)
     assert stuck.fit.over_noise > NOISE.far

@@ -75,7 +75,7 @@ def asked(rig: Rig, planted: dict[str, str], say: Callable[[str], None] = lambda
     scales = natural_scales(rig, "joint", [training])
     candidates = [c for c in candidates_of(rig, "joint", scales) if c.id in FEW]
     with ThreadPoolExecutor(2) as pool:
-        bench = Workbench(rig, free_parameters(rig), [training], pool)
+        bench = Workbench(rig, free_parameters(rig), [training], pool, 2)
         inquiry = Inquiry(candidates, {}, apart=True, say=say)
         return inquiry.answer(bench, [held_out])
 
@@ -84,7 +84,7 @@ def test_behind_the_cut_there_is_no_supply(rig) -> None:
     """Neither its numbers nor its signal; effects are on the one side or on the other."""
     experiment = played(rig, {}, 1, seconds=2.0)
     with ThreadPoolExecutor(1) as pool:
-        part = behind_supply(Workbench(rig, free_parameters(rig), [experiment.cut_at_supply()], pool))
+        part = behind_supply(Workbench(rig, free_parameters(rig), [experiment.cut_at_supply()], pool, 2))
     assert part is not None
     assert not [free.path for free in part.nominal if free.path.startswith("supply.")]
     assert "supply_pressure" not in [c.model for e in part.training for c in e.channels]
@@ -95,7 +95,7 @@ def test_behind_the_cut_there_is_no_supply(rig) -> None:
 def test_a_constant_supply_is_not_cut(bench, recorded) -> None:
     """There is nothing that rings."""
     with ThreadPoolExecutor(1) as pool:
-        workbench = Workbench(bench, free_parameters(bench), recorded(bench, bench), pool)
+        workbench = Workbench(bench, free_parameters(bench), recorded(bench, bench), pool, 2)
         workbench.training = cut(workbench, workbench.training)
         assert behind_supply(workbench) is None
 

@@ -23,7 +23,7 @@ def promises_of(bench, fitted):
 
     def make(experiments):
         with ThreadPoolExecutor(2) as pool:
-            work = Workbench(bench, free_parameters(bench, NOMINAL), experiments, pool)
+            work = Workbench(bench, free_parameters(bench, NOMINAL), experiments, pool, 2)
             candidates = candidates_of(bench, "joint", natural_scales(bench, "joint", experiments))
             return opened(work, fitted(work), "effects", candidates, Tried()).free
 

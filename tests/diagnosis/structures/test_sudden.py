@@ -20,7 +20,7 @@ def fading(bench, recorded):
     """Effect -> change of the residuals at a thousandth of where its search begins, over that where it begins."""
     experiments = recorded(bench, bench, largest_V=4.0)
     with ThreadPoolExecutor(1) as pool:
-        workbench = Workbench(bench, free_parameters(bench), experiments, pool)
+        workbench = Workbench(bench, free_parameters(bench), experiments, pool, 2)
 
         def changed(candidate, factor):
             start = dict(candidate.starts[0])

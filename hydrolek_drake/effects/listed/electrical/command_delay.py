@@ -22,7 +22,7 @@ EFFECT = Effect(
     ),
     size="delay_s",
     search={
-        "delay_s": Search("travel_time", 0.15, (0.01, 0.05)),
+        "delay_s": Search("travel_time", 0.5, (0.01, 0.05)),
     },
     source="thesis 6.1.3 (time delay of 0.15 s and 0.25 s, read by eye)",
     confused_with={
