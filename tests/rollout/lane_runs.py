@@ -1,6 +1,7 @@
 """Machines, commands and laws that the tests of lanes share."""
 
 import json
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,13 @@ from hydrolek_drake.rollout.kernel import SIGNALS
 from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes
 from hydrolek_drake.rollout.run import Run
 
-SIZES = json.loads((Path(__file__).parents[2] / "scripts" / "agreement_effects.json").read_text())
+sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
+from two_executions.cases import SIZES as SIZES_FILE
+from two_executions.cases import with_effect  # of docs/evidence/agreement.md
+
+__all__ = ("SIZES", "STEP", "assert_alike", "drawn_law", "driven", "in_lanes", "varied", "with_effect")
+
+SIZES = json.loads(SIZES_FILE.read_text())
 STEP = 5e-4
 
 
@@ -20,20 +27,6 @@ def driven(seconds, seed=3):
     times = np.arange(0.0, seconds, 0.01)
     levels = np.random.default_rng(seed).uniform(-4.0, 4.0, size=times.size // 23 + 1)
     return times, np.repeat(levels, 23)[: times.size]
-
-
-def with_effect(rig, effect):
-    record = rig.records()[0]
-    scale = {
-        "force": float(record["cylinder"]["area_a"] * record["supply"]["pressure"]),
-        "inertia": float(record["load"]["inertia"]),
-        "friction": float(record["cylinder"]["viscous_friction"]),
-        "stroke": float(record["cylinder"]["stroke"]),
-    }
-    where = f"joints.{rig.joints[0]}.effects.{effect}"
-    return rig.with_values(
-        {f"{where}.{name}": v * scale.get(of, 1.0) for name, (v, of) in SIZES[effect].items()}
-    )
 
 
 def varied(record, rng, count):
