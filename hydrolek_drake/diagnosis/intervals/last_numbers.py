@@ -31,7 +31,14 @@ from hydrolek_drake.diagnosis.structures.weighing import felt_together
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench, moments_of
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.least_squares import Fit
-from hydrolek_drake.identification.least_squares.profile import Profile, profile
+from hydrolek_drake.identification.least_squares.profile import (
+    SIDES,
+    Begun,
+    Profile,
+    Side,
+    profile_of,
+    walked,
+)
 from hydrolek_drake.identification.least_squares.secant_descent import SecantDescent
 from hydrolek_drake.identification.parameter_set import Free
 from hydrolek_drake.identification.problem import Problem
@@ -120,28 +127,37 @@ class LastNumbers:
             for index, path in enumerate(self.problem.parameters.paths)
             if path in numbers and self._moving[index] and covariance[index, index] > 0.0
         ]
-        return self._bench.side_by_side(lambda index: self._profile(fit, covariance, index), told)
+        begun = Begun.at(fit.unit, fit.residuals, fit.off_prior, self.problem.counted)
+        sides = self._bench.side_by_side(
+            lambda each: self._side(fit, begun, covariance, *each),
+            [(index, s) for index in told for s in SIDES],
+        )
+        count = len(SIDES)
+        return [
+            profile_of(begun, index, sides[count * k : count * (k + 1)], EVIDENCE.confidence)
+            for k, index in enumerate(told)
+        ]
 
-    def _profile(self, fit: Fit, covariance: np.ndarray, index: int) -> Profile:
-        """One number's, the others led by the fit's Jacobian, which a Jacobian at each place would hardly change."""
+    def _side(self, fit: Fit, begun: Begun, covariance: np.ndarray, index: int, side: float) -> Side:
+        """One side of one number's, the others led by the fit's Jacobian, which one elsewhere would hardly change."""
         along = covariance[:, index] / covariance[index, index]
         others = self._moving & (np.arange(fit.unit.size) != index)
 
         def following(start: np.ndarray) -> tuple[np.ndarray, float]:
-            begun = np.clip(fit.unit + (start[index] - fit.unit[index]) * along, 0.0, 1.0)
-            begun[index] = start[index]
-            there = self._descent.led_by(fit.jacobian, self._descent.at(begun), others)
-            return there.unit, there.objective
+            there = np.clip(fit.unit + (start[index] - fit.unit[index]) * along, 0.0, 1.0)
+            there[index] = start[index]
+            led = self._descent.led_by(fit.jacobian, self._descent.at(there), others)
+            return led.unit, led.objective
 
         deviation = float(np.sqrt(covariance[index, index])) / max(1.0, fit.over_noise)
-        return profile(
-            self.problem,
-            fit.unit,
+        return walked(
+            begun,
             index,
+            side,
             deviation,
+            following,
             confidence=EVIDENCE.confidence,
             first=EVIDENCE.deviations,
-            others=following,
         )
 
     def ahead(self, fitted: Hypothesis, held_out: Sequence[Experiment]) -> np.ndarray:

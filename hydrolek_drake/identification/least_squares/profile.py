@@ -7,7 +7,8 @@ Bioinformatics 25, 2009, equation 8). Unlike the standard error it sees curvatur
 which it never reaches the threshold is open: the recording does not bound the parameter there.
 """
 
-from collections.abc import Callable, Iterator
+import math
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +26,8 @@ MOST_POINTS = 15
 
 WANTED_GROWTH = 0.25
 """Of the threshold from one point to the next; steps are lengthened and shortened towards it."""
+
+SIDES = (-1.0, 1.0)
 
 LONGER, SHORTER = 2.0, 0.5
 """A step changes by no more than these factors."""
@@ -86,25 +89,108 @@ def profile(
     """
     before = problem.evaluations
     at_fit, off_prior = problem.residuals(unit), problem.prior_residuals(unit)
-    chi_squared = float(at_fit @ at_fit)
-    least = chi_squared + float(off_prior @ off_prior)
-    scale = max(chi_squared / max(problem.counted, 1), 1.0)
-    quantile = float(chi2.ppf(confidence, 1))
-    found: dict[float, float] = {float(unit[index]): 0.0}
-    lowest_growth, lowest_place = 0.0, unit
-    interrupted = False
-    step = first * deviation * np.sqrt(scale) if np.isfinite(deviation) else 1.0
+    begun = Begun.at(unit, at_fit, off_prior, problem.counted)
     others = others or _to_the_end(problem, index)
+    sides = [
+        walked(begun, index, side, deviation, others, confidence=confidence, first=first, progress=progress)
+        for side in SIDES
+    ]
+    return profile_of(begun, index, sides, confidence, problem.evaluations - before)
+
+
+@dataclass(frozen=True)
+class Begun:
+    """The fit about which a profile is told.
+
+    Attributes:
+        unit: where it ended. # (n,)
+        least: squares there, those of the prior among them.
+        scale: squared misfit, where that exceeds the noise.
+    """
+
+    unit: np.ndarray
+    least: float
+    scale: float
+
+    @staticmethod
+    def at(unit: np.ndarray, residuals: np.ndarray, off_prior: np.ndarray, counted: int) -> "Begun":
+        """A fit by its residuals and its distances from the prior, and how many values count."""
+        chi_squared = float(residuals @ residuals)
+        return Begun(
+            unit, chi_squared + float(off_prior @ off_prior), max(chi_squared / max(counted, 1), 1.0)
+        )
+
+
+@dataclass(frozen=True)
+class Side:
+    """One side of a profile.
+
+    Attributes:
+        places: of all parameters, outwards. # (n,) each
+        growth: of the squares over the least of each, over the squared misfit.
+        interrupted: whether Ctrl-C ended it early.
+    """
+
+    places: tuple[np.ndarray, ...]
+    growth: tuple[float, ...]
+    interrupted: bool
+
+
+def walked(
+    begun: Begun,
+    index: int,
+    side: float,
+    deviation: float,
+    others: Callable[[np.ndarray], tuple[np.ndarray, float]],
+    *,
+    confidence: float = CONFIDENCE,
+    first: float = FIRST,
+    progress: Callable[[float, float], None] = lambda place, growth: None,
+) -> Side:
+    """One side of the profile of one parameter: outwards, until it has passed the threshold or the range's end.
+
+    Args:
+        begun: the fit.
+        index: which parameter.
+        side: -1 towards smaller values, 1 towards larger ones.
+        deviation: its standard error, as a part of its range.
+        others: fits all other parameters from a place whose `index` is held.
+        confidence: of the interval.
+        first: step, in standard errors.
+        progress: told each place and the growth there.
+    """
+    step = first * deviation * math.sqrt(begun.scale) if np.isfinite(deviation) else 1.0
+    quantile = float(chi2.ppf(confidence, 1))
+    places, growth, interrupted = [], [], False
     try:
-        for side in (-1.0, 1.0):
-            for there, value in _walk(unit, index, side * step, others, scale, least, quantile):
-                place = float(there[index])
-                found[place] = value
-                progress(place, value)
-                if value < lowest_growth:
-                    lowest_growth, lowest_place = value, there
+        for there, value in _walk(begun.unit, index, side * step, others, begun.scale, begun.least, quantile):
+            places.append(there)
+            growth.append(value)
+            progress(float(there[index]), value)
     except KeyboardInterrupt:
         interrupted = True
+    return Side(tuple(places), tuple(growth), interrupted)
+
+
+def profile_of(
+    begun: Begun, index: int, sides: Sequence[Side], confidence: float = CONFIDENCE, evaluations: int = 0
+) -> Profile:
+    """The profile that sides make up.
+
+    Args:
+        begun: the fit.
+        index: which parameter.
+        sides: of the profile.
+        confidence: of the interval.
+        evaluations: rollouts that it took.
+    """
+    quantile = float(chi2.ppf(confidence, 1))
+    told = [
+        (begun.unit, 0.0),
+        *((u, g) for side in sides for u, g in zip(side.places, side.growth, strict=True)),
+    ]
+    lowest_place, _ = min(told, key=lambda each: each[1])
+    found = {float(u[index]): g for u, g in told}
     places = np.array(sorted(found))
     growth = np.array([found[place] for place in places])
     improved = max(-float(growth.min()), 0.0)
@@ -119,8 +205,8 @@ def profile(
         _crossing(places[lowest:], growth[lowest:], quantile),
         improved,
         lowest_place,
-        problem.evaluations - before,
-        interrupted,
+        evaluations,
+        any(side.interrupted for side in sides),
     )
 
 
