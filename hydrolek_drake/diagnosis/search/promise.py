@@ -18,7 +18,7 @@ from hydrolek_drake.diagnosis.settings import GAINS, Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition, Sized
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.least_squares.place import Place
-from hydrolek_drake.identification.problem import Problem
+from hydrolek_drake.identification.problem import DIVERGED, Problem
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
 
@@ -50,9 +50,9 @@ def promises_at(
         place: of a structure, with residuals.
         effects: of that structure.
         candidates: what may be added.
-        step: of the rollouts [s].
+        step: of the rollouts [s]; the place's own where rollouts in these steps diverge, so that nothing shows there.
     """
-    here_problem = place.problem
+    here_problem, own_step = place.problem, bench.step_for(effects)
     fit = hypothesis_of(effects, place, step).fit
     across = Across(fit)
     values = here_problem.parameters.values(place.unit)
@@ -79,6 +79,8 @@ def promises_at(
         bench.cores,
     )
     here = answers[0][0]
+    if step > own_step and np.abs(here).max(initial=0.0) >= DIVERGED:
+        return promises_at(bench, place, effects, candidates, own_step)
     left = across(np.concatenate([fit.residuals, fit.off_prior]))
     unchanged = np.zeros_like(fit.off_prior)
     promises = []

@@ -7,12 +7,16 @@ import pytest
 
 from hydrolek_drake.diagnosis.fitting.projection import gain_of
 from hydrolek_drake.diagnosis.search.openings import opened
+from hydrolek_drake.diagnosis.search.promise import promises_at
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import GAINS
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales
+from hydrolek_drake.identification.least_squares.lockstep import descend
+from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.parameter_set import free_parameters
+from hydrolek_drake.identification.problem import DIVERGED
 
 NOMINAL = ["supply.pressure", "valve.max_area_a", "load.gravity_cos", "amplifier.max_current_a"]
 
@@ -50,6 +54,30 @@ def test_the_visible_size_is_where_the_gain_says_it_is(
     # twice the visible size: four times its gain, within the scatter of noise of three deviations
     expected = 4.0 * GAINS.visible
     assert abs(seen[effect_id].gain ** 0.5 - expected**0.5) < 3.5
+
+
+def test_where_long_steps_diverge_promises_are_told_with_the_rig_s_own(bench, recorded, fitted) -> None:
+    """A machine on a hard base runs away in steps of some milliseconds: nothing would promise anything."""
+    rig = bench.with_values({"effects.base.compliance.stiffness_Nm_per_rad": 1e7})
+    experiments = recorded(rig.with_values({"effects.cylinder.coulomb_friction.coulomb_N": 400.0}), rig)
+    own = experiments[0].longest_step
+    with ThreadPoolExecutor(2) as pool:
+        work = Workbench(rig, free_parameters(rig, NOMINAL), experiments, pool, 2)
+        structure = fitted(work)
+        problem = work.problem((), own)
+        place = Place(problem, work.movable((), problem.parameters), structure.fit.unit, exact=True)
+        [place] = descend([place], 0, pool, 2)
+        candidates = [
+            c
+            for c in candidates_of(rig, "joint", natural_scales(rig, "joint", experiments))
+            if c.id == "cylinder.coulomb_friction"
+        ]
+        diverging = 4.0 * own
+        told = problem.parameters.unit(structure.values)
+        assert np.abs(work.problem((), diverging).residuals(told)).max() == DIVERGED
+        [finely], [coarsely] = (promises_at(work, place, (), candidates, step) for step in (own, diverging))
+    assert finely.gain > GAINS.needed
+    assert coarsely.gain == pytest.approx(finely.gain)
 
 
 def test_a_change_with_which_the_rollout_diverged_promises_nothing() -> None:
