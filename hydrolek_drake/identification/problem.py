@@ -38,7 +38,6 @@ Journal on Numerical Analysis 19, 1982)."""
 DIVERGED = 1e7
 """Residual, in units of noise, where a diverged simulation has no value: worse than any that ends."""
 
-
 Own = TypeVar("Own", bound="Problem")
 """A problem, or one of joints that move together; what is made from it is of the same kind."""
 

@@ -64,7 +64,7 @@ def _raced(bench: Workbench, opening: Opening, candidates: Sequence[Candidate], 
             break
         left = min(reached, parent.fit.over_noise)
         first, rest = (
-            _by_observers(bench, opening, left) if by_observers else _freely(bench, opening, candidates)
+            _by_observers(bench, opening, left) if by_observers else (_freely(bench, opening, candidates), [])
         )
         reached = min((over_noise_of(r) for r in first), default=math.inf)
         runners += [*first, *rest]
@@ -84,10 +84,8 @@ def _by_observers(bench: Workbench, opening: Opening, left: float) -> tuple[list
     return run(bench, runners[:1], bench.settings.ended, traced("first to the end")), runners[1:]
 
 
-def _freely(
-    bench: Workbench, opening: Opening, candidates: Sequence[Candidate]
-) -> tuple[list[Runner], list[Runner]]:
-    """A race of free rollouts, the best one fitted to its end where it leaves more than noise; none beside."""
+def _freely(bench: Workbench, opening: Opening, candidates: Sequence[Candidate]) -> list[Runner]:
+    """A race of free rollouts, the best one fitted to its end where it leaves more than noise."""
     enough = opening.enough
     runners = _led_on(bench, opening, candidates)
     if runners and over_noise_of(runners[0]) > enough:
@@ -96,7 +94,7 @@ def _freely(
         runners = sorted([*_with_supply(bench, runners, NOISE.explained), *runners], key=over_noise_of)
     if runners and over_noise_of(runners[0]) > enough and not runners[0].place.ended:
         runners = [*run(bench, runners[:1], bench.settings.ended, traced("first to the end")), *runners[1:]]
-    return runners, []
+    return runners
 
 
 def _ended(bench: Workbench, runners: Sequence[Runner], enough: float) -> list[Runner]:
