@@ -24,10 +24,13 @@ class Along:
     Attributes:
         index: of the parameter.
         units: its places. # (k,)
+        begun: for a moment, of the size of what begins then: its index, where it does nothing, and where it is tried.
+            Another moment has another slope of the size, told by the difference between both.
     """
 
     index: int
     units: np.ndarray
+    begun: tuple[int, float, float] | None = None
 
 
 def searched_along(
@@ -41,22 +44,12 @@ def searched_along(
         pool: threads.
         cores: that roll out at the same time.
     """
-    moved = []
-    for place, way in zip(places, ways, strict=True):
-        units = []
-        if way is not None:
-            for value in way.units:
-                unit = place.unit.copy()
-                unit[way.index] = value
-                units.append(unit)
-        moved.append(units)
+    moved = [_moved(place, way) if way is not None else [] for place, way in zip(places, ways, strict=True)]
     found = residuals_at(
         [Request(p.problem, tuple(u)) for p, u in zip(places, moved, strict=True)], pool, cores
     )
     followed = [
-        [_followed(place, way.index, unit, residuals) for unit, residuals in zip(units, own, strict=True)]
-        if way is not None
-        else []
+        _followed(place, way, units, own) if way is not None else []
         for place, way, units, own in zip(places, ways, moved, found, strict=True)
     ]
     again = residuals_at(
@@ -88,11 +81,37 @@ def lowest_along_each(place: Place, pool: Executor, cores: int) -> Place:
     return min(searched_along([place] * len(ways), ways, pool, cores), key=lambda p: p.objective)
 
 
-def _followed(place: Place, index: int, unit: np.ndarray, residuals: np.ndarray) -> np.ndarray:
-    """A place with all parameters but one where the slopes ask for them. # (n,)."""
+def _moved(place: Place, way: Along) -> list[np.ndarray]:
+    """Places along one parameter; for a moment the first one without what begins then. # (n,) each."""
+    units = []
+    for value in way.units:
+        unit = place.unit.copy()
+        unit[way.index] = value
+        if way.begun is not None:
+            unit[way.begun[0]] = way.begun[2]
+        units.append(unit)
+    if way.begun is not None and units:
+        without = units[0].copy()
+        without[way.begun[0]] = way.begun[1]
+        units.insert(0, without)
+    return units
+
+
+def _followed(
+    place: Place, way: Along, units: Sequence[np.ndarray], residuals: Sequence[np.ndarray]
+) -> list[np.ndarray]:
+    """The same places with all parameters but one where the slopes ask for them. # (n,) each."""
     if place.slopes is None or np.isnan(place.slopes).any():
-        return unit
+        return list(units)
     moving = place.moving.copy()
-    moving[index] = False
-    there = replace(place, unit=unit, residuals=residuals, moving=moving)
-    return np.clip(unit + normal_step(there), 0.0, 1.0)
+    moving[way.index] = False
+    steps = []
+    for unit, left in zip(units, residuals, strict=True):
+        slopes = place.slopes
+        if way.begun is not None:
+            size, off, tried = way.begun
+            slopes = slopes.copy()
+            slopes[:, size] = (left - residuals[0]) / (tried - off)
+        there = replace(place, unit=unit, residuals=left, moving=moving, slopes=slopes)
+        steps.append(np.clip(unit + normal_step(there), 0.0, 1.0))
+    return steps
