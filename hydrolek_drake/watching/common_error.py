@@ -68,7 +68,9 @@ def shares_of_reference(
     told = slopes.T @ slopes
     # the squares are (u - m)' W (u - m) of the recording's own estimate u, W the inverse of both uncertainties
     inverse = told - told @ np.linalg.solve(told + knowledge, told)
-    root = np.linalg.cholesky(covariance + 1e-15 * np.trace(covariance) * np.eye(len(covariance)))
+    # not by Cholesky: numbers that the reference tells very differently leave it singular but for rounding
+    squares, axes = np.linalg.eigh(covariance)
+    root = axes * np.sqrt(np.clip(squares, 0.0, None))
     shares = np.linalg.eigvalsh(root.T @ inverse @ root)
     return tuple(np.clip(shares[::-1], 0.0, 1.0).tolist())
 

@@ -146,6 +146,9 @@ POINTS = 240
 FEWEST = 3
 """Points from which a trend and its uncertainty can be told: two numbers, and one degree of freedom."""
 
+NEAR = 5
+"""Recordings next to each other whose median size is the usual one there: two of them may be far off."""
+
 REWEIGHTED = 30
 """Rounds at most in which the points of a trend get their weights; a round is a fit of two numbers."""
 

@@ -13,12 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 from ruptures.base import BaseCost
 from ruptures.detection import Pelt
+from scipy.optimize import brentq
 from scipy.stats import chi2
 from scipy.stats import t as student
 
 from hydrolek_drake.diagnosis.intervals.curvature import NORMAL
 from hydrolek_drake.diagnosis.settings import EVIDENCE
-from hydrolek_drake.watching.settings import FEWEST, HUBER, NORMAL_MEDIAN, REWEIGHTED, SETTLED, TOGETHER
+from hydrolek_drake.watching.settings import FEWEST, HUBER, NEAR, NORMAL_MEDIAN, REWEIGHTED, SETTLED, TOGETHER
 
 PER_PIECE = 3
 """Numbers that a further piece has: where it begins, level and slope."""
@@ -109,10 +110,6 @@ class _Lines(BaseCost):
     model = "bounded_line"
     min_size = FEWEST
 
-    def __init__(self, scatter: float) -> None:
-        """Take by how much the squares are larger than deviations allow."""
-        self.scatter = scatter
-
     def fit(self, signal: np.ndarray) -> "_Lines":
         """Take the series. # (n, 3)."""
         self.signal = signal
@@ -121,11 +118,10 @@ class _Lines(BaseCost):
     def error(self, start: int, end: int) -> float:
         """Cost of the piece [start, end)."""
         time, value, deviation = self.signal[start:end].T
-        most = TOGETHER * self.scatter
         off, *_ = _fitted(time - time[0], value / deviation, deviation, rounds=1)
-        if np.any(off**2 > most):  # else plain least squares cost least
+        if np.any(off**2 > TOGETHER):  # else plain least squares cost least
             off, *_ = _fitted(time - time[0], value / deviation, deviation)
-        return float(np.sum(np.minimum(off**2, most)))
+        return float(np.sum(np.minimum(off**2, TOGETHER)))
 
 
 def trend_of(
@@ -151,29 +147,55 @@ def trend_of(
     if time.size < FEWEST or np.ptp(time) <= 0.0:
         return Trend((), None, float(time[0]) if time.size else 0.0)
     span = float(np.ptp(time))
+    deviation = np.maximum(deviation, _usual(deviation))  # beside its neighbours a narrow interval is a jump's
     series = np.stack([(time - time[0]) / span, size, deviation], axis=1)
-    scatter = _scatter(series)
-    penalty = scatter * float(chi2.isf(error_rate / time.size, PER_PIECE))
+    deviation = np.sqrt(deviation**2 + _between(series))
+    series[:, 2] = deviation
+    penalty = float(chi2.isf(error_rate / time.size, PER_PIECE))
     pieces = [time.size]
     if time.size >= 2 * FEWEST:
-        pieces = Pelt(custom_cost=_Lines(scatter), min_size=FEWEST, jump=1).fit(series).predict(pen=penalty)
+        pieces = Pelt(custom_cost=_Lines(), min_size=FEWEST, jump=1).fit(series).predict(pen=penalty)
     first = pieces[-2] if len(pieces) > 1 else 0
     line = _line(time[first:], size[first:], deviation[first:])
     return Trend(tuple(float(time[end]) for end in pieces[:-1]), line, float(time[first]))
 
 
-def _scatter(series: np.ndarray) -> float:
-    """Squares of what lies off the line between its neighbours, over what its deviations allow; 1 at least.
+def _between(series: np.ndarray) -> np.ndarray:
+    """Variances by which sizes differ from recording to recording beyond what each tells of its own. # (n,).
 
-    The median passes over change points.
+    Of an effect the machine's own numbers take a share in one recording and none in the next, as its load and moves
+    have it, and no interval of a single one holds that: a share of the size's square is added to each variance, the
+    same share in all, as between studies (random effects; DerSimonian and Laird, Controlled Clinical Trials 7, 1986,
+    177), so that no narrow interval holds the trend. It is told by what lies off the line between neighbours, and its
+    median passes over change points.
     """
     time, value, deviation = series.T
     if time.size < 2 * FEWEST:
-        return 1.0
+        return np.zeros_like(value)
+    usual = _usual(value) ** 2
     share = (time[1:-1] - time[:-2]) / np.maximum(time[2:] - time[:-2], 1e-12)
-    off = value[1:-1] - (1.0 - share) * value[:-2] - share * value[2:]
-    variance = deviation[1:-1] ** 2 + ((1.0 - share) * deviation[:-2]) ** 2 + (share * deviation[2:]) ** 2
-    return max(1.0, float(np.median(off**2 / variance) / chi2.ppf(0.5, 1)))
+
+    def off_line(variance: np.ndarray) -> np.ndarray:
+        return np.asarray(variance[1:-1] + (1.0 - share) ** 2 * variance[:-2] + share**2 * variance[2:])
+
+    squares = (value[1:-1] - (1.0 - share) * value[:-2] - share * value[2:]) ** 2
+    known, more = off_line(deviation**2), off_line(usual)
+    expected = float(chi2.ppf(0.5, 1))
+
+    def excess(part: float) -> float:
+        return float(np.median(squares / (known + part * more))) - expected
+
+    if excess(0.0) <= 0.0:
+        return np.zeros_like(value)
+    return usual * (float(brentq(excess, 0.0, 1.0)) if excess(1.0) < 0.0 else 1.0)
+
+
+def _usual(values: np.ndarray) -> np.ndarray:
+    """Medians over some values next to each other. # (n,)."""
+    if values.size < NEAR:
+        return np.full_like(values, np.median(values))
+    near = np.pad(values, NEAR // 2, mode="reflect")
+    return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(near, NEAR), axis=1))
 
 
 def _fitted(
