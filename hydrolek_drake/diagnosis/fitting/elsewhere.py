@@ -14,6 +14,7 @@ from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.least_squares.lockstep import descend
 
 _GRID = np.arange(FITS.places)
+_CLOSER = np.array([1.0, 0.3, 0.1, 0.03])
 
 
 def tried_elsewhere(bench: Workbench, runners: Sequence[Runner]) -> list[Runner]:
@@ -23,9 +24,7 @@ def tried_elsewhere(bench: Workbench, runners: Sequence[Runner]) -> list[Runner]
     for number in range(most):
         searches = [_searches(r, number) for r in now]
         for turn in range(max(map(len, searches), default=0)):
-            ways = [
-                own[turn](r) if turn < len(own) else None for own, r in zip(searches, now, strict=True)
-            ]
+            ways = [own[turn](r) if turn < len(own) else None for own, r in zip(searches, now, strict=True)]
             places = searched_along([r.place for r in now], ways, bench.pool, bench.cores)
             moved = [place is not r.place for place, r in zip(places, now, strict=True)]
             places = [p if m else replace(p, ended=True) for p, m in zip(places, moved, strict=True)]
@@ -37,7 +36,8 @@ def tried_elsewhere(bench: Workbench, runners: Sequence[Runner]) -> list[Runner]
 def _searches(runner: Runner, number: int) -> list[Callable[[Runner], Along]]:
     """Searches one after the other along which one of a structure's additions is tried elsewhere.
 
-    What begins at a moment is looked for over the whole recording, and then closer and closer about the best place.
+    What begins at a moment is looked for over the whole recording, as large as it is and with its size begun anew, and
+    then closer and closer about the best place.
     """
     if number >= len(runner.effects):
         return []
@@ -48,7 +48,10 @@ def _searches(runner: Runner, number: int) -> list[Callable[[Runner], Along]]:
         searches.append(partial(_multiples, index=paths.index(candidate.size_path)))
     for free in candidate.searched:
         index = paths.index(free.path)
-        begun = _begun(candidate, paths) if isinstance(candidate, Candidate) else None
+        searches.append(partial(_over_range_and_near, index=index))
+        if not isinstance(candidate, Candidate):  # a window, which was seen where it is
+            continue
+        begun = _begun(candidate, paths)
         searches.append(partial(_over_range, index=index, begun=begun))
         for times in range(1, FITS.closer + 1):
             spacing = (2.0 / FITS.places) ** times / FITS.places
@@ -63,9 +66,15 @@ def _begun(candidate: Candidate, paths: Sequence[str]) -> tuple[int, float, floa
     return paths.index(size.path), size.to_unit(candidate.effect.neutral_size), size.to_unit(tried)
 
 
-def _over_range(runner: Runner, index: int, begun: tuple[int, float, float] | None) -> Along:
-    """What has no slope at places over its range."""
+def _over_range(runner: Runner, index: int, begun: tuple[int, float, float]) -> Along:
+    """What begins at a moment at places over its range, its size begun anew at each."""
     return Along(index, (_GRID + 0.5) / FITS.places, begun)
+
+
+def _over_range_and_near(runner: Runner, index: int) -> Along:
+    """What has no slope at places over its range, and closer together where it is."""
+    near = runner.place.unit[index] + np.concatenate([-_CLOSER, _CLOSER]) / FITS.places
+    return Along(index, np.clip(np.concatenate([(_GRID + 0.5) / FITS.places, near]), 0.0, 1.0))
 
 
 def _multiples(runner: Runner, index: int) -> Along:
@@ -76,10 +85,10 @@ def _multiples(runner: Runner, index: int) -> Along:
     return Along(index, np.clip(places, FITS.negligible, 1.0 - FITS.negligible))
 
 
-def _near(runner: Runner, index: int, spacing: float, begun: tuple[int, float, float] | None) -> Along:
-    """What has no slope at places on both sides of where it is, its size tried as large as it is."""
-    unit = runner.place.unit
-    if begun is not None and abs(unit[begun[0]] - begun[1]) > FITS.tolerance:
-        begun = (begun[0], begun[1], float(unit[begun[0]]))
+def _near(runner: Runner, index: int, spacing: float, begun: tuple[int, float, float]) -> Along:
+    """What begins at a moment at places on both sides of where it is, its size tried as large as it is."""
+    unit, (size, off, _) = runner.place.unit, begun
+    if abs(unit[size] - off) > FITS.tolerance:
+        begun = (size, off, float(unit[size]))
     places = unit[index] + (_GRID - 0.5 * (FITS.places - 1)) * spacing
     return Along(index, np.clip(places, 0.0, 1.0), begun)

@@ -5,8 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant, Runner, Start, entered
-from hydrolek_drake.diagnosis.fitting.race import above_noise, hypotheses_of, race, run
-from hydrolek_drake.diagnosis.laws.additions import LawTerm, of_additions
+from hydrolek_drake.diagnosis.fitting.race import hypotheses_of, race, run
 from hydrolek_drake.diagnosis.lost_commands.search import with_windows
 from hydrolek_drake.diagnosis.search.by_continuation import (
     continued,
@@ -16,14 +15,14 @@ from hydrolek_drake.diagnosis.search.by_continuation import (
     traced,
 )
 from hydrolek_drake.diagnosis.search.cost import gain_needed
+from hydrolek_drake.diagnosis.search.elimination import without_each
 from hydrolek_drake.diagnosis.search.openings import Opening
 from hydrolek_drake.diagnosis.search.parts import supply_before
-from hydrolek_drake.diagnosis.search.standing_in import standing_in
 from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.search.weighed_anew import weigh_anew
-from hydrolek_drake.diagnosis.settings import GAINS, NOISE, Settings
-from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, redundant, widenings
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.settings import GAINS, NOISE
+from hydrolek_drake.diagnosis.structures.candidates import Candidate, widenings
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 
 
 def enlarged(bench: Workbench, opening: Opening, candidates: Sequence[Candidate], found: Tried) -> None:
@@ -46,7 +45,7 @@ def enlarged(bench: Workbench, opening: Opening, candidates: Sequence[Candidate]
         for each in with_windows(bench, parent, opening.lost, reached):
             found.keep(each)
     _widened(bench, found)
-    _lessened(bench, found, candidates)
+    without_each(bench, found, candidates)
 
 
 def _raced(bench: Workbench, opening: Opening, candidates: Sequence[Candidate], found: Tried) -> list[Runner]:
@@ -157,75 +156,6 @@ def _with_supply(bench: Workbench, runners: Sequence[Runner], enough: float) -> 
         if over_noise_of(ended[-1]) <= enough:
             break
     return ended
-
-
-def _lessened(bench: Workbench, found: Tried, candidates: Sequence[Candidate]) -> None:
-    """Backward elimination: the best structure without each addition, and with what may do as well in its place.
-
-    What may do as well is a number of its stage (`standing_in`); a special case; for the forces of a law the same on
-    the other side of the linkage; and for a law the effects that are known at its stage, since it may describe one of
-    them that was fitted in a wrong local minimum. Each is fitted from where the best structure led, and by
-    continuation; where the best one is at the noise, as long as an observer follows them to it, since a free rollout
-    leaves no less.
-    """
-    best = found.best
-    if best is found.lessened or not best.effects:
-        return
-    found.lessened = best
-    entrants = [Entrant(best.without(c), best.values_without(c)) for c in best.effects]
-    alone = zip(best.effects, tuple(entrants), strict=True)
-    entrants += [each for c, without in alone for each in standing_in(bench, without, c)]
-    entrants += [
-        Entrant(effects, {**best.values_without(c), **start})
-        for c, special, effects in narrowings(best.effects, candidates)
-        for start in special.starts[: bench.settings.starts]
-    ]
-    entrants += _across(best)
-    entrants += _named_in_place(best, candidates, bench.settings)
-    rung = replace(bench.settings.again, keep=len(entrants))
-    fitted = race(bench, entrants, (rung,))
-    if len(best.effects) > 1:  # the nominal model was fitted so before
-        own = [Entrant(each.effects, of_additions(each.values)) for each in entrants]
-        rungs = (*steps_for(bench.settings.continued, best.fit.over_noise < NOISE.far), bench.settings.again)
-        runners = entered(bench, own, rungs[0])
-        for step in rungs:
-            runners = run(bench, runners, (step,), traced("without"))
-            if best.fit.over_noise <= NOISE.above:
-                runners = [r for r in runners if not (r.place.ended and above_noise(r))]
-        fitted += hypotheses_of(bench, runners, rungs[-1])
-    for each in fitted:
-        found.keep(each)
-
-
-def _named_in_place(
-    structure: Hypothesis, candidates: Sequence[Candidate], settings: Settings
-) -> list[Entrant]:
-    """The same structure with an effect that is known at the stage of its law in place of this."""
-    law = [c for c in structure.effects if isinstance(c, LawTerm)]
-    places = {(c.joint, c.stage) for c in law}
-    rest = tuple(c for c in structure.effects if c not in law)
-    values = structure.values_without(*law)
-    return [
-        Entrant((*rest, candidate), {**values, **start})
-        for candidate in candidates
-        if (candidate.joint, candidate.stage) in places
-        and candidate.size_path not in structure.ids
-        and not redundant(rest, candidate)
-        for start in candidate.starts[: settings.starts]
-    ]
-
-
-def _across(structure: Hypothesis) -> list[Entrant]:
-    """The same structure with the forces of its law on the other side of the linkage, which may do as well."""
-    forces = [c for c in structure.effects if isinstance(c, LawTerm)]
-    moved = [found for c in forces if (found := c.moved_across(structure.values)) is not None]
-    if not moved or len(moved) < len(forces):
-        return []
-    rest = tuple(c for c in structure.effects if c not in forces)
-    values = structure.values_without(*forces)
-    for _, told in moved:
-        values |= told
-    return [Entrant((*rest, *(term for term, _ in moved)), values)]
 
 
 def _widened(bench: Workbench, found: Tried) -> None:

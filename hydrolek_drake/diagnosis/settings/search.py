@@ -187,6 +187,9 @@ class Settings:
     """Structures that leave at most so many times what the best one leaves are fitted again once the data are weighed
     anew ..."""
 
+    in_place: int = 4
+    """So many effects are fitted in place of a law."""
+
     most_again: int = 6
     """... but no more of them: others lie behind for good."""
 
