@@ -71,6 +71,7 @@ class LastNumbers:
             stop=self._bench.interrupted,
             moving=self._moving,
             slopes=self.problem.jacobian_without_jumps,
+            least=EVIDENCE.renewed,
         )
 
     def _problem(self, experiments: Sequence[Experiment]) -> Problem:
@@ -116,7 +117,12 @@ class LastNumbers:
         bench.evaluations += self.problem.evaluations
         self.problem = self._problem(without_step_error(self.problem, there, self._step, bench.training))
         self._descent = self._descending()
-        return self._descent.from_start(fit.unit)
+        corrected = self._descent.at(fit.unit)
+        # what was taken out is the same at every place: the slopes are these still
+        led = self._descent.led_by(fit.jacobian, corrected, self._moving)
+        if corrected.objective - led.objective < EVIDENCE.renewed:
+            return replace(led, slopes=fit.jacobian)
+        return self._descent.from_start(led.unit)
 
     def _profiles(self, fit: Fit) -> list[Profile]:
         """Of each number of the effects that least squares moves and that the data tell."""

@@ -142,6 +142,10 @@ class Evidence:
     """Squares that a step of the last fit must promise: it moves a number by a third of its standard deviation at
     most otherwise."""
 
+    renewed: float = 0.3
+    """Squares that new slopes must bring, or the last fit ends: half a standard deviation along a valley.
+    Where jumps make slopes rough, eight Jacobians in a row brought 0.3 each."""
+
     lower: float = 1.0
     """Another place is lower if it leaves so many squares less: it is a standard deviation away, or another local
     minimum."""

@@ -41,6 +41,7 @@ class SecantDescent:
         stop: Callable[[], bool],
         moving: np.ndarray,
         slopes: Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray] | None = None,
+        least: float = 0.0,
     ) -> None:
         """Prepare.
 
@@ -50,12 +51,14 @@ class SecantDescent:
             stop: asked before each rollout; True ends the search with `KeyboardInterrupt`.
             moving: which parameters are searched, the others stay where they start. # (n,)
             slopes: Jacobian at a place with these residuals, of the parameters that move; None for the problem's.
+            least: a search from a start ends where a Jacobian beyond the first one brought less than so many squares.
         """
         self.problem = problem
         self.moving = moving
         self._worth = worth
         self._stop = stop
         self._slopes = slopes or problem.jacobian
+        self._least = least
         self._prior = problem.prior_jacobian()
 
     def at(self, unit: np.ndarray) -> Fit:
@@ -74,9 +77,10 @@ class SecantDescent:
         """Where it ends from a place in the unit cube, with new Jacobians as long as they help. # start: (n,)."""
         before = self.problem.evaluations
         best = self.at(np.clip(start, 0.0, 1.0))
-        for _ in range(MOST_JACOBIANS):
+        for number in range(MOST_JACOBIANS):
             begun, best = best, self.led_by(best.jacobian, best, self.moving)
-            if best is begun:
+            brought = begun.objective - best.objective
+            if best is begun or (number and brought < self._least):
                 break
         return replace(best, evaluations=self.problem.evaluations - before)
 
