@@ -83,12 +83,10 @@ def search_structures(
 def _to_be_followed(opening: Opening, found: Tried, settings: Settings) -> bool:
     """Whether a structure is to be enlarged.
 
-    A law describes what has no name, and so hardly reaches the noise: one that explains the data is enlarged only where
-    a further term promises to lead to the noise, or a fifth nearer to it than the best structure is.
+    A law describes what has no name, and so hardly reaches the noise: it is enlarged only where a further term promises
+    to lead to the noise, or a fifth nearer to it than the best structure is.
     """
-    parent = opening.parent
-    described = opening.kind == LAWS and not all(isinstance(c, Candidate) for c in parent.effects)
-    if described and parent.fit.over_noise <= NOISE.explained:
+    if opening.kind == LAWS and not all(isinstance(c, Candidate) for c in opening.parent.effects):
         return opening.leads(found.best, settings.nearer)
     return opening.worth_while
 

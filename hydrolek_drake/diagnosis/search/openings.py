@@ -37,6 +37,7 @@ class Opening:
         left: times the noise that it is promised to leave.
         lost: windows of lost commands that may be added too.
         enough: times the noise that need not be explained unless something promises to.
+        told: largest fall of the squares that is promised, in free rollouts or to an observer.
     """
 
     parent: Hypothesis
@@ -49,6 +50,7 @@ class Opening:
     left: float = math.inf
     lost: LostWindows | None = None
     enough: float = NOISE.at
+    told: float = 0.0
 
     @property
     def key(self) -> tuple[frozenset[str], str]:
@@ -71,8 +73,16 @@ class Opening:
 
     @property
     def worth_while(self) -> bool:
-        """Whether a structure leaves more than noise, or an addition promises to take what it must of the rest."""
-        return bool(self.own) and _worth_while(self.parent, self.own[0], self.promising, self.enough)
+        """Whether a structure leaves more than noise, or an addition promises to take what it must of the rest.
+
+        Of a structure that has additions and is near the noise promises hold: one beside which nothing promises what a
+        further addition must bring lacks none, whatever keeps it from the noise.
+        """
+        if not self.own or not _worth_while(self.parent, self.own[0], self.promising, self.enough):
+            return False
+        fit = self.parent.fit
+        holds = bool(self.parent.effects) and fit.over_noise <= NOISE.far
+        return not holds or self.told >= GAINS.promising * self.own[0].cost * gain_needed(fit)
 
 
 def opened(
@@ -128,7 +138,10 @@ def opened(
         + ", ".join(f"{p.candidate.id} {p.gain:.0f}" for p in pulled[:4])
     )
     over_noise = math.sqrt(left / count)
-    return Opening(parent, kind, own, tuple(free), tuple(pulled), sizes, expected, over_noise, lost, enough)
+    told = max(free[0].gain, max(shares) * excess)
+    return Opening(
+        parent, kind, own, tuple(free), tuple(pulled), sizes, expected, over_noise, lost, enough, told
+    )
 
 
 def surely_above(bench: Workbench, structure: Hypothesis) -> float:
