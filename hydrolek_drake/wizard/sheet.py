@@ -59,9 +59,9 @@ class Sheet:
         self.per_amp = turn * self["efficiency"] * self["torque_constant"]
         self.force = self.per_amp * self["peak_current"]
         self.moved = self["mass"] + self["rotor_inertia"] * turn * turn
-        self.speed = self["top_speed"] or self["travel"] * min(
-            self["position_gain"], 1.0 / fixed("crossing_time")["value"]
-        )
+        crossing = fixed("crossing_time")
+        crossing_s = crossing["value"] * si_factor(crossing["unit"], "s")
+        self.speed = self["top_speed"] or self["travel"] * min(self["position_gain"], 1.0 / crossing_s)
 
     def __getitem__(self, key: str) -> Any:
         """An answer, or what is assumed in its place."""

@@ -160,7 +160,7 @@ def walked(
         progress: told each place and the growth there.
     """
     step = first * deviation * math.sqrt(begun.scale) if np.isfinite(deviation) else 1.0
-    quantile = float(chi2.ppf(confidence, 1))
+    quantile = _allowed(confidence)
     places, growth, interrupted = [], [], False
     try:
         for there, value in _walk(begun.unit, index, side * step, others, begun.scale, begun.least, quantile):
@@ -184,7 +184,7 @@ def profile_of(
         confidence: of the interval.
         evaluations: rollouts that it took.
     """
-    quantile = float(chi2.ppf(confidence, 1))
+    quantile = _allowed(confidence)
     told = [
         (begun.unit, 0.0),
         *((u, g) for side in sides for u, g in zip(side.places, side.growth, strict=True)),
@@ -208,6 +208,11 @@ def profile_of(
         evaluations,
         any(side.interrupted for side in sides),
     )
+
+
+def _allowed(confidence: float) -> float:
+    """By how much the squares grow up to the ends of an interval."""
+    return float(chi2.ppf(confidence, 1))
 
 
 def _to_the_end(problem: LeastSquares, index: int) -> Callable[[np.ndarray], tuple[np.ndarray, float]]:

@@ -11,17 +11,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.stats import qmc
 
 from hydrolek_drake.diagnosis.settings import NOISE
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.place import Place, fit_of
+from hydrolek_drake.identification.rolling import Request, residuals_at
 from hydrolek_drake.watching.fitting.likelihood import Profile
 from hydrolek_drake.watching.fitting.rungs import Rung, followed, held, hopeless, led_on
 from hydrolek_drake.watching.fitting.scanning import Scan, strength, strengths
 from hydrolek_drake.watching.knowledge import Knowledge
 from hydrolek_drake.watching.reference import Session
 from hydrolek_drake.watching.settings import (
+    CHANGED_KEPT,
+    CHANGED_LOG2,
     FARTHER,
     FITTED,
     FURTHER_OUT,
@@ -58,6 +62,8 @@ def rungs_of(
     ]
     if fit_of(nominal).over_noise > NOISE.above * np.sqrt(scale):
         begun += _from_elsewhere(session, nominal, scans, experiments, known)
+    if session.changing:
+        begun += _over_ranges(session, nominal, scans, experiments, known)
     ended = led_on(session, begun, most)
     for _ in range(FARTHER):
         own = {
@@ -107,6 +113,49 @@ def _from_elsewhere(
             unit = rung.place.unit.copy()
             unit[: own.size] = np.clip(own, 1e-6, 1.0 - 1e-6)
             found.append(replace(rung, place=replace(rung.place, unit=unit)))
+    return found
+
+
+def _over_ranges(
+    session: Session,
+    nominal: Place,
+    scans: Sequence[Scan],
+    experiments: Sequence[Experiment],
+    known: Knowledge,
+) -> list[Rung]:
+    """Promising effects at the best of places that fill the ranges of their sizes and of what changes.
+
+    What changes takes up a part of an effect, and the squares have a local minimum for either: a recording whose load
+    was fitted without a dry friction shows a twentieth of it, with a narrow interval (as `beginning.nominal_on`).
+    """
+    paths = nominal.problem.parameters.paths
+    changes = np.flatnonzero([path in session.changing for path in paths])
+    promising = [scan for scan in scans if scan.gain > TRIED and _sizes(scan)][:FITTED]
+    places = qmc.Sobol(changes.size + 1, scramble=False).random_base2(CHANGED_LOG2)
+    begun, requests = [], []
+    for scan in promising:
+        ends = strengths(scan.candidate)
+        likeliest = strength(scan.candidate, scan.start[scan.candidate.size_path])
+        most = ends[1] if likeliest > 0.0 else ends[0]
+        least = min(abs(likeliest), HELD_AT * scan.deviation, abs(most))
+        sizes = np.sign(likeliest) * least * (abs(most) / least) ** places[:, -1]
+        rungs = []
+        for place, strong in zip(places, sizes, strict=True):
+            rung = held(session, nominal, scan, float(strong), experiments, known)
+            unit = rung.place.unit.copy()
+            unit[: known.mean.size] = known.mean
+            unit[changes] = place[:-1]
+            unit = np.clip(unit, 1e-6, 1.0 - 1e-6)
+            rungs.append(replace(rung, place=replace(rung.place, unit=unit)))
+        begun.append(rungs)
+        requests.append(Request(rungs[0].place.problem, tuple(rung.place.unit for rung in rungs)))
+    found = []
+    for rungs, answers in zip(begun, residuals_at(requests, session.bench.pool, session.cores), strict=True):
+        there = [
+            replace(rung, place=replace(rung.place, residuals=residuals))
+            for rung, residuals in zip(rungs, answers, strict=True)
+        ]
+        found += sorted(there, key=lambda rung: rung.place.objective)[:CHANGED_KEPT]
     return found
 
 
