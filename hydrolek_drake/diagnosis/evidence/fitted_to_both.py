@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 from hydrolek_drake.diagnosis.fitting.problems import problem_with
-from hydrolek_drake.diagnosis.settings import FITS
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.lockstep import descend
@@ -38,7 +37,7 @@ def fitted_to_both(bench: Workbench, places: Sequence[Place], *, renewing: bool)
         bench.pool,
         bench.cores,
         share=rung.share,
-        leading=FITS.coarse / bench.settings.last.coarse,
+        leading=bench.coarsest / bench.settings.last.coarse,
         renewing=renewing,
         stop=bench.alive,
     )

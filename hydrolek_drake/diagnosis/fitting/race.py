@@ -61,7 +61,7 @@ def run(
             bench.cores,
             share=rung.share,
             behind=rung.behind,
-            leading=max(FITS.coarse / rung.coarse, 1.0),
+            leading=max(bench.coarsest / rung.coarse, 1.0),
             stop=told,
         )
         bench.evaluations += sum(p.evaluations for p in problems.values())

@@ -10,7 +10,7 @@ from hydrolek_drake.diagnosis.search.by_continuation import steps_for, traced
 from hydrolek_drake.diagnosis.search.promise import promises_at
 from hydrolek_drake.diagnosis.search.standing_in import standing_in
 from hydrolek_drake.diagnosis.search.tried import Tried
-from hydrolek_drake.diagnosis.settings import FITS, NOISE
+from hydrolek_drake.diagnosis.settings import NOISE
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, redundant
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.least_squares.lockstep import descend
@@ -75,7 +75,7 @@ def _named_in_place(
     values = structure.values_without(*law)
     [without] = entered(bench, [Entrant(rest, values)], bench.settings.again)
     [place] = descend([without.place], 0, bench.pool, bench.cores)
-    promises = promises_at(bench, place, rest, own, bench.step_for(rest, FITS.coarse))
+    promises = promises_at(bench, place, rest, own)
     return [
         Entrant((*rest, p.candidate), {**values, **start})
         for p in promises[: bench.settings.in_place]

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
+from hydrolek_drake.diagnosis.fitting.longest_step import no_longer_than_borne
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal, out_of_local_minima
 from hydrolek_drake.diagnosis.search.cost import gain_needed
@@ -23,6 +24,7 @@ def fit_nominal(bench: Workbench, found: Tried) -> None:
     if found.seeds:
         _go_on(bench, found)
         return
+    no_longer_than_borne(bench, (), {})
     rungs = (*bench.settings.free, bench.settings.ended[0])
     best = as_weighed(bench, race(bench, [Entrant((), {})], rungs)[0])
     trace(f"nominal {best.fit.over_noise:.4f}")

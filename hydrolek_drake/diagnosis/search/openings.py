@@ -112,7 +112,7 @@ def opened(
         return Opening(parent, kind, (), (), (), sizes, math.inf)
     exact = Rung(math.inf, 1.0, math.inf, 0, 1)
     place = descend([_place(bench, parent, exact, parent.fit.unit)], 0, bench.pool, bench.cores)[0]
-    free = promises_at(bench, place, parent.effects, own, bench.step_for(parent.effects, FITS.coarse))
+    free = promises_at(bench, place, parent.effects, own)
     if kind == "effects":
         found.left = free
     pulled: list[Promise] = []
@@ -178,7 +178,7 @@ def observed(bench: Workbench, parent: Hypothesis, own: Sequence[Sized]) -> tupl
     parameters = bench.parameters(parent.effects)
     unit = np.clip(parameters.unit(of_additions(parent.values)), FITS.negligible, 1.0 - FITS.negligible)
     near = descend([_place(bench, parent, first, unit)], 2, bench.pool, bench.cores)[0]
-    pulled = promises_at(bench, near, parent.effects, own, bench.step_for(parent.effects, first.coarse))
+    pulled = promises_at(bench, near, parent.effects, own)
     return pulled, _share(pulled[0].gain, near.objective, near.problem.counted)
 
 

@@ -53,6 +53,7 @@ def behind_supply(bench: Workbench) -> Workbench | None:
         bench.progress,
         settings=bench.settings,
         signals_apart=bench.signals_apart,
+        coarsest=bench.coarsest,
     )
 
 

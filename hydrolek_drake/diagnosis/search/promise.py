@@ -12,13 +12,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hydrolek_drake.diagnosis.fitting.longest_step import no_longer_than_borne
 from hydrolek_drake.diagnosis.fitting.problems import hypothesis_of, problem_with
 from hydrolek_drake.diagnosis.fitting.projection import Across, gain_of
-from hydrolek_drake.diagnosis.settings import GAINS, Settings
+from hydrolek_drake.diagnosis.settings import FITS, GAINS, Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition, Sized
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.least_squares.place import Place
-from hydrolek_drake.identification.problem import DIVERGED, Problem
+from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
 
@@ -41,7 +42,7 @@ class Promise:
 
 
 def promises_at(
-    bench: Workbench, place: Place, effects: tuple[Addition, ...], candidates: Sequence[Sized], step: float
+    bench: Workbench, place: Place, effects: tuple[Addition, ...], candidates: Sequence[Sized]
 ) -> list[Promise]:
     """What each of some additions promises at a place, the most promising first.
 
@@ -50,12 +51,13 @@ def promises_at(
         place: of a structure, with residuals.
         effects: of that structure.
         candidates: what may be added.
-        step: of the rollouts [s]; the place's own where rollouts in these steps diverge, so that nothing shows there.
     """
-    here_problem, own_step = place.problem, bench.step_for(effects)
+    here_problem = place.problem
+    values = here_problem.parameters.values(place.unit)
+    no_longer_than_borne(bench, effects, values)
+    step = bench.step_for(effects, FITS.coarse)
     fit = hypothesis_of(effects, place, step).fit
     across = Across(fit)
-    values = here_problem.parameters.values(place.unit)
     tried = [(c, start) for c in candidates for start in _tried(c, bench.settings)]
     problems: dict[str, Problem] = {
         c.size_path: problem_with(
@@ -79,8 +81,6 @@ def promises_at(
         bench.cores,
     )
     here = answers[0][0]
-    if step > own_step and np.abs(here).max(initial=0.0) >= DIVERGED:
-        return promises_at(bench, place, effects, candidates, own_step)
     left = across(np.concatenate([fit.residuals, fit.off_prior]))
     unchanged = np.zeros_like(fit.off_prior)
     promises = []

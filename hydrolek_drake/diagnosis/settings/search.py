@@ -26,6 +26,10 @@ class Fits:
     """Steps so many times the rig's own lead fits until their end, and tell what an addition changes where they are on
     both sides of a difference."""
 
+    runs_away: float = 10.0
+    """A rollout in longer steps has run away if it leaves so many times what one in the rig's own leaves: they leave
+    nearly the same, or thousands of times as much."""
+
     last_step: float = 0.5
     """Last fits use this fraction of the rig's own step, so that the step's error cannot decide."""
 

@@ -103,6 +103,7 @@ class Workbench:
         *,
         settings: Settings | None = None,
         signals_apart: bool = False,
+        coarsest: float = FITS.coarse,
     ) -> None:
         """Prepare.
 
@@ -115,6 +116,7 @@ class Workbench:
             progress: told how the fits stand; None for nobody.
             settings: of the search; None for the usual ones.
             signals_apart: whether each signal has a discrepancy of its own (`weighing`).
+            coarsest: rollouts in steps so many times the rig's own do not run away (`fitting.longest_step`).
         """
         self.rig = rig
         self.nominal = tuple(nominal)
@@ -124,6 +126,7 @@ class Workbench:
         self.progress = progress or Progress()
         self.settings = settings or Settings()
         self.signals_apart = signals_apart
+        self.coarsest = coarsest
         self._stopped = threading.Event()
         self.evaluations = 0
         self._places: dict[Free, tuple[np.ndarray, np.ndarray]] = {}
@@ -150,6 +153,7 @@ class Workbench:
             self.progress,
             settings=self.settings,
             signals_apart=apart,
+            coarsest=self.coarsest,
         )
 
     def interrupted(self) -> bool:
@@ -175,10 +179,10 @@ class Workbench:
 
         Args:
             effects: of the structure.
-            coarse: so many times as long.
+            coarse: so many times as long, where rollouts in such steps do not run away.
         """
         share = 1.0 if self.together else min((c.step_share for c in effects), default=1.0)
-        return share * coarse * self.fine
+        return share * min(coarse, self.coarsest) * self.fine
 
     @property
     def together(self) -> bool:
