@@ -147,9 +147,8 @@ def trend_of(
     if time.size < FEWEST or np.ptp(time) <= 0.0:
         return Trend((), None, float(time[0]) if time.size else 0.0)
     span = float(np.ptp(time))
-    deviation = np.maximum(
-        deviation, _usual(deviation)
-    )  # beside its neighbours a narrow interval is a jump's
+    # an interval much narrower than its neighbours' is that of a jump
+    deviation = np.maximum(deviation, _usual(deviation))
     series = np.stack([(time - time[0]) / span, size, deviation], axis=1)
     deviation = np.sqrt(deviation**2 + _between(series))
     series[:, 2] = deviation

@@ -20,7 +20,7 @@ from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.identification.rolling import Request, residuals_at
 from hydrolek_drake.watching.fitting.likelihood import Profile
 from hydrolek_drake.watching.fitting.rungs import Rung, followed, held, hopeless, led_on
-from hydrolek_drake.watching.fitting.scanning import Scan, strength, strengths
+from hydrolek_drake.watching.fitting.scanning import Scan, at_size, size_of, strength, strengths
 from hydrolek_drake.watching.knowledge import Knowledge
 from hydrolek_drake.watching.reference import Session
 from hydrolek_drake.watching.settings import (
@@ -109,11 +109,14 @@ def _from_elsewhere(
     for scan in [scan for scan in scans if scan.gain > TRIED and scan.slope is not None][:FITTED]:
         strong = strength(scan.candidate, scan.start[scan.candidate.size_path])
         rung = held(session, nominal, scan, strong, experiments, known)
-        for own in (nominal.unit, reference):
-            unit = rung.place.unit.copy()
-            unit[: own.size] = np.clip(own, 1e-6, 1.0 - 1e-6)
-            found.append(replace(rung, place=replace(rung.place, unit=unit)))
+        found += [_beside(rung, rung.place.unit, own) for own in (nominal.unit, reference)]
     return found
+
+
+def _beside(rung: Rung, unit: np.ndarray, own: np.ndarray) -> Rung:
+    """An effect where it stands in a place, beside other own numbers."""
+    there = np.clip(np.concatenate([own, unit[own.size :]]), 1e-6, 1.0 - 1e-6)
+    return replace(rung, place=replace(rung.place, unit=there))
 
 
 def _over_ranges(
@@ -139,14 +142,13 @@ def _over_ranges(
         most = ends[1] if likeliest > 0.0 else ends[0]
         least = min(abs(likeliest), HELD_AT * scan.deviation, abs(most))
         sizes = np.sign(likeliest) * least * (abs(most) / least) ** places[:, -1]
-        rungs = []
-        for place, strong in zip(places, sizes, strict=True):
-            rung = held(session, nominal, scan, float(strong), experiments, known)
-            unit = rung.place.unit.copy()
-            unit[: known.mean.size] = known.mean
-            unit[changes] = place[:-1]
-            unit = np.clip(unit, 1e-6, 1.0 - 1e-6)
-            rungs.append(replace(rung, place=replace(rung.place, unit=unit)))
+        first = held(session, nominal, scan, likeliest, experiments, known)
+        parameters, rungs = first.place.problem.parameters, []
+        for place, strong in zip(places, sizes.tolist(), strict=True):
+            own = known.mean.copy()
+            own[changes] = place[:-1]
+            values = at_size(scan.candidate, scan.start, size_of(scan.candidate, strong))
+            rungs.append(_beside(replace(first, strong=strong), parameters.unit(values), own))
         begun.append(rungs)
         requests.append(Request(rungs[0].place.problem, tuple(rung.place.unit for rung in rungs)))
     found = []
