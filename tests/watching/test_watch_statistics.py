@@ -287,3 +287,15 @@ def test_a_fit_that_failed_in_one_recording_does_not_name_another_effect():
     judgements = [judged(answer, n + 1, rule, healthy) for n, answer in enumerate(answers)]
     alarm = alarm_of(answers, judgements, rule)
     assert alarm is not None and alarm.effect == "linkage.backlash"
+
+
+def test_two_narrow_intervals_far_below_neither_bend_a_trend_nor_begin_another() -> None:
+    """As of recordings in which a load had taken up most of a friction: beside the others they say nothing."""
+    days = np.arange(24.0)
+    size, half = days + 1.0, np.full(24, 1.0)
+    size += 0.4 * np.random.default_rng(3).standard_normal(24)
+    for day, share in ((14, 0.4), (20, 0.1)):
+        size[day], half[day] = share * size[day], 0.02
+    trend = trend_of(days, size, size - half, size + half, 0.1)
+    assert trend.changes == ()
+    assert trend.last is not None and trend.last.slope == pytest.approx(1.0, rel=0.1)
