@@ -62,7 +62,7 @@ def _sum3(functions: list[Compiled]) -> Compiled:
 
 
 def _friction2(functions: list[Compiled]) -> Compiled:
-    """Sum of functions (velocity, joint) -> (force, slope)."""
+    """Sum of functions (velocity or `friction.Sliding`, joint) -> (force, slope)."""
     if not functions:
         return njit(lambda velocity, joint: (0.0, 0.0))
     head, *rest = functions
@@ -109,7 +109,8 @@ supply_drop = _sum2(_functions("supply_drop"))
 pump_loss = _sum1(_functions("pump_loss"))
 compressibility = _sum2(_functions("compressibility"))
 cross_conductance = _sum1(_functions("cross_conductance"))
-rod_friction = _friction3(_functions("rod_friction"))
+rod_friction = _friction2(_functions("rod_friction"))
+rod_damping = _friction3(_functions("rod_damping"))
 load_friction = _friction2(_functions("load_friction"))
 payload = _sum2(_functions("payload"))
 reading_error = _sum3(_functions("reading_error"))

@@ -31,6 +31,7 @@ RARE: dict[str, tuple[str, ...]] = {
 RARE_NUMBERS: tuple[tuple[str, str], ...] = (
     ("cylinder", "stop_stiffness"),
     ("cylinder", "column_compliance"),
+    ("cylinder", "bristle_deflection"),
     ("solenoid", "slew_rate"),
 )
 """Stages and their parameters that stand behind it where they are above zero."""

@@ -148,6 +148,7 @@ def pulled(s: State, share: float, reading: float, measured: np.ndarray) -> tupl
         s.lead_q + by,
         s.lead_w,
         s.relief,
+        s.bent,
     )
     return moved, by
 
@@ -158,7 +159,7 @@ def supply_pulled(s: State, share: float, outside: Probe, joint: Any) -> State:
     if not is_followed(joint):
         return s
     supply = s.supply + share * (outside.supply - supply_pressure(s.supply, joint))
-    return State(s.p_a, s.p_b, s.q, s.w, supply, s.tilt, s.tilt_rate, s.lead_q, s.lead_w, s.relief)
+    return State(s.p_a, s.p_b, s.q, s.w, supply, s.tilt, s.tilt_rate, s.lead_q, s.lead_w, s.relief, s.bent)
 
 
 @njit(cache=True, nogil=True)
@@ -182,9 +183,9 @@ def integrate(
 
     Args:
         joints: parameter record, shape (1,).
-        state: x, spool velocity, then `State` but its last, what the sensor's play reads, the time since switching on
-            [s] at the first of `times`, the voltage behind the ramp [V], the coils' `Currents`, and `State.relief`;
-            shape (17,); holds the final state afterwards.
+        state: x, spool velocity, then `State` but its last two, what the sensor's play reads, the time since
+            switching on [s] at the first of `times`, the voltage behind the ramp [V], the coils' `Currents`, and these
+            two; shape (18,); holds the final state afterwards.
         command_times: when the command changes [s], shape (m,).
         command_values: held from then on [V], shape (m,); neutral before the first one has arrived.
         times: when to write [s], shape (n,); the integration starts at the first.
@@ -206,8 +207,9 @@ def integrate(
     joint = joints[0]
     d = Drive(state[13], Currents(state[14], state[15]), state[0], state[1])
     s = State(
-        state[2], state[3], state[4], state[5], state[6], state[7], state[8], state[9], state[10], state[16]
-    )
+        state[2], state[3], state[4], state[5], state[6], state[7], state[8], state[9], state[10],
+        state[16], state[17],
+    )  # fmt: skip
     line: Any
     if lines is None:
         line = None
@@ -279,15 +281,15 @@ def integrate(
             s = supply_pulled(s, share, probe, joint)
             play += by
     if not playing:
-        s = State(s.p_a, s.p_b, s.q, s.w, s.supply, s.tilt, s.tilt_rate, s.q, s.w, s.relief)
+        s = State(s.p_a, s.p_b, s.q, s.w, s.supply, s.tilt, s.tilt_rate, s.q, s.w, s.relief, s.bent)
     if not rocking:
-        s = State(s.p_a, s.p_b, s.q, s.w, s.supply, 0.0, 0.0, s.lead_q, s.lead_w, s.relief)
+        s = State(s.p_a, s.p_b, s.q, s.w, s.supply, 0.0, 0.0, s.lead_q, s.lead_w, s.relief, s.bent)
     state[0], state[1] = d.x, d.xd
     state[2], state[3], state[4], state[5], state[6] = s.p_a, s.p_b, s.q, s.w, s.supply
     state[7], state[8], state[9], state[10] = s.tilt, s.tilt_rate, s.lead_q, s.lead_w
     state[11], state[12] = play, times[-1] - on
     state[13], state[14], state[15] = d.behind, d.currents.a, d.currents.b
-    state[16] = s.relief
+    state[16], state[17] = s.relief, s.bent
     if lines is not None:
         put_lines(lines, line)
     return len(times)

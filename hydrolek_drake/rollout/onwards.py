@@ -100,7 +100,7 @@ class JointOnwards:
         self.time = until
 
     def states(self) -> np.ndarray:
-        """Where it is, as `kernel.integrate` takes it up again. # (1, 17)."""
+        """Where it is, as `kernel.integrate` takes it up again. # (1, 18)."""
         return self._state[None].copy()
 
     def _go(

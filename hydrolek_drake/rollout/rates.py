@@ -41,6 +41,7 @@ class State(NamedTuple):
     lead_q: float  # position of the cylinder's side of a play [rad]
     lead_w: float
     relief: float  # where a relief valve stands [Pa]; of such a drive the integral of the speed's error [m]
+    bent: float  # share of the rod's dry friction at rest that bristles hold, -1 to 1 (`physics.friction`)
 
 
 class Slopes(NamedTuple):
@@ -60,7 +61,8 @@ class Slopes(NamedTuple):
     turned_by: float  # acceleration of what the actuator turns for each newton of its force [rad/s^2/N]
     tilted_by: float  # and of the base, the other way
     contact: float  # mean moment through a play over the step [N m]
-    sprung: float  # by how much an elastic stop slows what the actuator turns for each rad further [1/s^2]
+    sprung: float  # by how much elastic stops and bristles slow what the actuator turns for each rad further [1/s^2]
+    lever: float  # of the rod at the joint [m/rad]
 
 
 class Turned(NamedTuple):
@@ -108,7 +110,7 @@ def rod_side(s: State, joint: Any) -> tuple[float, float]:
 def as_recorded(s: State, x: float, outside: Probe, joint: Any) -> tuple[State, float]:
     """State and spool position with what was recorded in place of what the model has."""
     p_a, p_b = chamber_pressures(s.p_a, s.p_b, outside, joint)
-    state = State(p_a, p_b, s.q, s.w, s.supply, s.tilt, s.tilt_rate, s.lead_q, s.lead_w, s.relief)
+    state = State(p_a, p_b, s.q, s.w, s.supply, s.tilt, s.tilt_rate, s.lead_q, s.lead_w, s.relief, s.bent)
     return state, spool_position(x, outside, joint)
 
 
@@ -206,9 +208,10 @@ def rates(
         rises_b = stiff_b * joint.cylinder.area_b * lever if s.p_b > 0.0 else 0.0
         if rare(joint) and pressures_are_driven(joint):
             rate_a = rate_b = slope_a = slope_b = falls_a = rises_b = 0.0
-        friction, slope_f = cylinder.friction_force(stroke, v, time, joint)
+        friction, slope_f, bristles = cylinder.friction_force(stroke, v, s.bent, h, time, joint)
         stop_damping, stop_stiffness = end_stops.slopes(stroke, v, h, joint)
         slope_f += stop_damping
+        stop_stiffness += bristles
         force = cylinder.pressure_force(s.p_a, s.p_b, joint) - friction
         supply_rate, slope_supply = supply.rate_of_change(s.supply, s.relief, drawn + probe.flow, joint)
 
@@ -225,9 +228,9 @@ def rates(
         if secant > 0.0 and s.w != 0.0:
             further, _ = hooks.load_friction(FURTHER * s.w, joint)
             slope_r += slope_of_growth(rubbing, secant, further, s.w)
-        rubbing, secant = hooks.rod_friction(v, stroke, joint)
+        rubbing, secant, _ = cylinder.dry_friction(v, s.bent, h, joint)
         if secant > 0.0 and v != 0.0:
-            further, _ = hooks.rod_friction(FURTHER * v, stroke, joint)
+            further, _, _ = cylinder.dry_friction(FURTHER * v, s.bent, h, joint)
             slope_f += slope_of_growth(rubbing, secant, further, v)
     lead_acceleration = slope_lead = through = 0.0
     per_inertia = 1.0 / inertia  # a division takes as long as ten products
@@ -264,6 +267,7 @@ def rates(
             s.lead_w,
             lead_acceleration,
             relief_rate,
+            0.0,
         ),
         Slopes(
             slope_a,
@@ -278,6 +282,7 @@ def rates(
             tilted_by,
             through,
             stop_stiffness * lever * turned_by,
+            lever,
         ),
         p_supply,
         force,

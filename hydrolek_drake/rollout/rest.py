@@ -150,7 +150,7 @@ def state_at_reading(joint: np.ndarray, state: np.ndarray, reading: float) -> np
 
     Args:
         joint: parameter record, shape (1,).
-        state: as of `kernel.integrate`, shape (17,).
+        state: as of `kernel.integrate`, shape (18,).
         reading: what was measured [rad or m].
     """
     there = state.copy()

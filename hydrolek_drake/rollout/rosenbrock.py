@@ -68,6 +68,7 @@ def implicit(f: State, slope: Slopes, h: float, joint: Any) -> State:
         f.lead_q + part * lead_w,
         lead_w,
         f.relief,
+        0.0,
     )
 
 
@@ -133,6 +134,12 @@ def _remembered(
 
 
 @njit(forceinline=True)
+def _turned_by_rod(k: State, joint: Any) -> float:
+    """Rate at which the rod turns the joint against the base [rad/s], of the rates of a stage."""
+    return (k.lead_q if hooks.linkage_gap(joint) > 0.0 else k.q) - k.tilt
+
+
+@njit(forceinline=True)
 def first_stage(s: State, k: State, slope: Slopes, h: float, joint: Any) -> State:
     """State after a step of `h` seconds with the rates `k` of its first stage, `implicit`."""
     remembered, relief = _remembered(s, k.supply, k.relief, slope.supply, h, joint)
@@ -147,6 +154,7 @@ def first_stage(s: State, k: State, slope: Slopes, h: float, joint: Any) -> Stat
         s.lead_q + h * k.lead_q,
         s.lead_w + h * k.lead_w,
         relief,
+        cylinder.bent_on(s.bent, h * slope.lever * _turned_by_rod(k, joint), h, joint),
     )
 
 
@@ -164,6 +172,7 @@ def changed(m: State, k: State) -> State:
         m.lead_q - 2.0 * k.lead_q,
         m.lead_w - 2.0 * k.lead_w,
         m.relief,
+        0.0,
     )
 
 
@@ -174,6 +183,7 @@ def second_stage(s: State, k: State, m: State, slope: Slopes, h: float, joint: A
     mean, mean_relief = 0.5 * (k.supply + m.supply), 0.5 * (k.relief + m.relief)
     remembered, relief = _remembered(s, mean, mean_relief, slope.supply, h, joint)
     half = 0.5 * h
+    turning = 3.0 * _turned_by_rod(k, joint) + _turned_by_rod(n, joint)
     return State(
         max(s.p_a + half * (3.0 * k.p_a + n.p_a), 0.0),
         max(s.p_b + half * (3.0 * k.p_b + n.p_b), 0.0),
@@ -185,6 +195,7 @@ def second_stage(s: State, k: State, m: State, slope: Slopes, h: float, joint: A
         s.lead_q + half * (3.0 * k.lead_q + n.lead_q),
         s.lead_w + half * (3.0 * k.lead_w + n.lead_w),
         relief,
+        cylinder.bent_on(s.bent, half * slope.lever * turning, h, joint),
     )
 
 

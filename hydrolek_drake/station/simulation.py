@@ -84,7 +84,7 @@ def initial_context(station: Station, positions: np.ndarray | None = None) -> Co
             [rest_pressures(record, leads[i] - tilts[i], needed[i]) for i, record in enumerate(joints)]
         )
         actuator = station.systems["actuator"]
-        actuator.GetMyMutableContextFromRoot(context).SetContinuousState(pressures.T.ravel())
+        actuator.rest(actuator.GetMyMutableContextFromRoot(context), pressures)
         if "long_lines" in station.systems:
             lines = station.systems["long_lines"]
             lines.rest(lines.GetMyMutableContextFromRoot(context), pressures)

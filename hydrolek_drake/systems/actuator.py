@@ -8,7 +8,13 @@ import numpy as np
 from numba import njit
 from pydrake.systems.framework import BasicVector, Context, ContinuousState, LeafSystem
 
-from hydrolek_drake.physics.cylinder import friction_force, pressure_force, pressure_rates
+from hydrolek_drake.physics.cylinder import (
+    bent_on,
+    bent_rate,
+    friction_force,
+    pressure_force,
+    pressure_rates,
+)
 from hydrolek_drake.physics.driven import INPUTS
 from hydrolek_drake.physics.fluid import softened
 from hydrolek_drake.physics.probes import CAPACITY_A, CAPACITY_B, CYLINDER
@@ -35,9 +41,23 @@ def _rates(
 
 
 @njit(cache=True)
+def _bristle_rates(
+    joints: np.ndarray, bent: np.ndarray, motion: np.ndarray, ahead: float, out: np.ndarray
+) -> None:
+    n = len(joints)
+    for i in range(n):
+        v = motion[n + i]
+        if ahead > 0.0:  # with which an Euler step is exact where a body slides: it would run away otherwise
+            out[i] = (bent_on(bent[i], v * ahead, ahead, joints[i]) - bent[i]) / ahead
+        else:
+            out[i] = bent_rate(bent[i], v, joints[i])
+
+
+@njit(cache=True)
 def _forces(
     joints: np.ndarray,
     pressure: np.ndarray,
+    bent: np.ndarray,
     flow: np.ndarray,
     motion: np.ndarray,
     outside: np.ndarray,
@@ -48,7 +68,9 @@ def _forces(
     n = len(joints)
     for i in range(n):
         joint = joints[i]
-        friction, _ = friction_force(motion[i], motion[n + i], time, joint)
+        v = motion[n + i]
+        held = bent_on(bent[i], v * ahead, ahead, joint)
+        friction, _, _ = friction_force(motion[i], v, held, ahead, time, joint)
         p_a, p_b = pressure[i], pressure[n + i]
         if ahead > 0.0 and joint.driven.chamber_pressures <= 0.0:
             rate_a, rate_b, stiff_a, stiff_b = pressure_rates(
@@ -66,7 +88,8 @@ class Actuator(LeafSystem):
         in `oil_flow` (3n) [m^3/s].
         in `rod_motion` (2n): strokes [m], then velocities [m/s]; angles for vane and motor.
         in `outside` (15 n): what a law adds, or open.
-        out `pressure` (2n): chambers A, then B [Pa]; the continuous state.
+        out `pressure` (2n): chambers A, then B [Pa]; the continuous state, and beside it for each joint the share of
+            its rod's dry friction that bristles hold.
         out `rod_force` (n): positive pushes out [N]; moments [N m] for vane and motor.
     """
 
@@ -91,13 +114,13 @@ class Actuator(LeafSystem):
         self.flow = self.DeclareVectorInputPort("oil_flow", 3 * n)
         self.motion = self.DeclareVectorInputPort("rod_motion", 2 * n)
         self.outside = Outside(self, n)
-        self._state = self.DeclareContinuousState(BasicVector(2 * n))
-        if self._recorded:
-            self.pressure = self.DeclareVectorOutputPort(
-                "pressure", 2 * n, self._calc_pressure, {self.xc_ticket(), self.time_ticket()}
-            )
-        else:
-            self.pressure = self.DeclareStateOutputPort("pressure", self._state)
+        self.DeclareContinuousState(BasicVector(3 * n))
+        self.pressure = self.DeclareVectorOutputPort(
+            "pressure",
+            2 * n,
+            self._calc_pressure,
+            {self.xc_ticket(), self.time_ticket()} if self._recorded else {self.xc_ticket()},
+        )
         self.force = self.DeclareVectorOutputPort(
             "rod_force",
             n,
@@ -113,7 +136,8 @@ class Actuator(LeafSystem):
 
     def DoCalcTimeDerivatives(self, context: Context, derivatives: ContinuousState) -> None:
         """Continuity of the oil in both chambers."""
-        rates = np.empty(2 * len(self._joints))
+        n = len(self._joints)
+        rates = np.empty(3 * n)
         pressure = self._pressures(context, 0.0)
         _rates(
             self._joints,
@@ -124,12 +148,23 @@ class Actuator(LeafSystem):
             rates,
         )
         if self._recorded:
-            rates[np.tile(self._driven, 2)] = 0.0
+            rates[: 2 * n][np.tile(self._driven, 2)] = 0.0
+        _bristle_rates(
+            self._joints, self._bent(context), self.motion.Eval(context), self._ahead, rates[2 * n :]
+        )
         derivatives.SetFromVector(rates)
+
+    def rest(self, context: Context, pressures: np.ndarray) -> None:
+        """Begin with chambers at these pressures [Pa] and no bristle bent. # (n, 2)."""
+        context.SetContinuousState(np.concatenate([pressures.T.ravel(), np.zeros(len(self._joints))]))
+
+    def _bent(self, context: Context) -> np.ndarray:
+        state: np.ndarray = context.get_continuous_state_vector().CopyToVector()
+        return state[2 * len(self._joints) :]
 
     def _pressures(self, context: Context, ahead: float) -> np.ndarray:
         """Pressures of the chambers, those that are recorded so much later [s]. # (2n,)."""
-        pressure = context.get_continuous_state_vector().CopyToVector()
+        pressure: np.ndarray = context.get_continuous_state_vector().CopyToVector()[: 2 * len(self._joints)]
         if self._recorded:
             rows = self._recorded.at(context.get_time() + ahead)
             both = np.concatenate([rows[:, place] for place in INPUTS["chamber_pressures"]])
@@ -146,4 +181,14 @@ class Actuator(LeafSystem):
         motion = self.motion.Eval(context)
         force = output.get_mutable_value()
         outside = self.outside.eval(context)
-        _forces(self._joints, pressure, flow, motion, outside, context.get_time(), self._ahead, force)
+        _forces(
+            self._joints,
+            pressure,
+            self._bent(context),
+            flow,
+            motion,
+            outside,
+            context.get_time(),
+            self._ahead,
+            force,
+        )

@@ -136,7 +136,7 @@ def _cylinder(sheet: Sheet) -> list[str]:
         f"  {_column(sheet)}",
         f"  {_at_start(sheet)}",
         f"  {asked(sheet, 'seal_damping', 'viscous_friction')}",
-        f"  {kept('friction_velocity')}",
+        *(f"  {kept(name)}" for name in ("friction_velocity", "bristle_deflection", "bristle_time")),
     ]
 
 

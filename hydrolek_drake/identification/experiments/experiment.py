@@ -48,7 +48,7 @@ class Experiment:
         cut: part of the model that `recorded` replaces for what lies behind it, besides those that the rig names, while
             the part itself is followed under what is drawn of it (`physics.driven.FOLLOWED`).
         state: where a joint that does not rest at the beginning is, as an observer left it, see `kernel.integrate`; it
-            is moved to where the sensor reads `start`. None for one that rests. # (17,)
+            is moved to where the sensor reads `start`. None for one that rests. # (18,)
     """
 
     name: str
@@ -124,7 +124,7 @@ class Experiment:
         )
 
     def _begin(self, record: np.ndarray) -> np.ndarray | None:
-        """State at the beginning; None for where the rig rests. # (17,)."""
+        """State at the beginning; None for where the rig rests. # (18,)."""
         if self.start is None:
             return self.state
         if self.state is None:

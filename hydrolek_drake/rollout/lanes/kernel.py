@@ -113,6 +113,7 @@ def _loop(kind: Any, b: np.ndarray) -> None:
         b[f + 13 * _L] = e.currents.b if go else d.currents.b
         b[f + 14 * _L] = played if go else play
         b[f + 15 * _L] = n.relief if go else s.relief
+        b[f + 16 * _L] = n.bent if go else s.bent
         b[g] = position.value if go else near.position.value
         b[g + _L] = position.sine if go else near.position.sine
         b[g + 2 * _L] = position.cosine if go else near.position.cosine
@@ -149,7 +150,7 @@ def integrate_lanes(
         joints: their records, shape (lanes,).
         numbers: the same as numbers, shape (lanes, n).
         laws: terms of their laws, rows of `law.LAW`, shape (lanes, terms); None without.
-        states: see `rollout.kernel.integrate`, shape (lanes, 17); hold the final states afterwards.
+        states: see `rollout.kernel.integrate`, shape (lanes, 18); hold the final states afterwards.
         command_times: [s], infinite behind the last one, shape (lanes, m).
         command_values: [V], NaN there, shape (lanes, m).
         times: when to write [s], shape (lanes, k).

@@ -24,6 +24,7 @@ SOMETIMES = (
     "valve.flow_force",
     "cylinder.stop_stiffness",
     "cylinder.column_compliance",
+    "cylinder.bristle_deflection",
 )
 """Parameters of the stages that most machines have at zero, and that cost as much."""
 

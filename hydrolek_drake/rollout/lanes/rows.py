@@ -59,7 +59,7 @@ def enter(
         joint, v = joints[lane], states[lane]
         for i in range(numbers.shape[1]):
             b[(NUMBERS_OF_JOINT + i) * _L + lane] = numbers[lane, i]
-        s = State(v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10], v[16])
+        s = State(v[2], v[3], v[4], v[5], v[6], v[7], v[8], v[9], v[10], v[16], v[17])
         put(b, STATE, lane, s, Drive(v[13], Currents(v[14], v[15]), v[0], v[1]), v[11])
         b[ROD * _L + lane] = load.reflected_rod_inertia(joint)
         machines[lane, 0], machines[lane, 1] = times[lane, 0] - v[12], command.transport_delay(joint)
@@ -205,3 +205,4 @@ def leave(
         v[9], v[10] = (s.lead_q, s.lead_w) if playing else (s.q, s.w)
         v[11], v[12] = b[(STATE + 14) * _L + lane], times[lane, rows[lane] - 1] - machines[lane, 0]
         v[13], v[14], v[15], v[16] = d.behind, d.currents.a, d.currents.b, s.relief
+        v[17] = s.bent

@@ -18,18 +18,18 @@ _L = LANES
 # Rows of the one table that the loop over the lanes works in. With several arrays the compiler would have to suppose
 # that what it writes to one is what it reads from another.
 # Of a state: p_a, p_b, q, w, supply, tilt, tilt_rate, lead_q, lead_w, x, xd, behind, current a, current b, play,
-# relief.
-STATE, NEXT = 0, 16
-NEAR, NEAR_NEXT = 32, 38  # value, sine, cosine of the link's angle and of the one between the mounts
+# relief, bent.
+STATE, NEXT = 0, 17
+NEAR, NEAR_NEXT = 34, 40  # value, sine, cosine of the link's angle and of the one between the mounts
 # Step [s], command that acts [V], time since switching on [s]; with inputs from outside also the command with what they
 # add to it where it begins to act, and the shares of the way between samples before and after the step.
-H, VOLTS, TIME, COMMANDED, SHARE, SHARE_NEXT = 44, 45, 46, 47, 48, 49
+H, VOLTS, TIME, COMMANDED, SHARE, SHARE_NEXT = 46, 47, 48, 49, 50, 51
 PLANNED = 6  # these rows
-ROD = 50
+ROD = 52
 # Samples of the inputs from outside, and by how much they rise to the next ones, before and after the step.
-SAMPLE, RISE, SAMPLE_NEXT, RISE_NEXT = 51, 66, 81, 96
-KEPT = 16  # rows of `STATE`
-NUMBERS_OF_JOINT = 111
+SAMPLE, RISE, SAMPLE_NEXT, RISE_NEXT = 53, 68, 83, 98
+KEPT = 17  # rows of `STATE`
+NUMBERS_OF_JOINT = 113
 TERMS = NUMBERS_OF_JOINT + NUMBERS  # of a law, one after the other
 
 
@@ -48,6 +48,7 @@ def state_in(b: np.ndarray, first: int, lane: int) -> State:
         b[f + 7 * _L],
         b[f + 8 * _L],
         b[f + 15 * _L],
+        b[f + 16 * _L],
     )
 
 
@@ -66,7 +67,7 @@ def put(b: np.ndarray, first: int, lane: int, s: State, d: Drive, play: float) -
     b[f + 5 * _L], b[f + 6 * _L], b[f + 7 * _L], b[f + 8 * _L] = s.tilt, s.tilt_rate, s.lead_q, s.lead_w
     b[f + 9 * _L], b[f + 10 * _L], b[f + 11 * _L] = d.x, d.xd, d.behind
     b[f + 12 * _L], b[f + 13 * _L], b[f + 14 * _L] = d.currents.a, d.currents.b, play
-    b[f + 15 * _L] = s.relief
+    b[f + 15 * _L], b[f + 16 * _L] = s.relief, s.bent
 
 
 @njit

@@ -146,7 +146,7 @@ def halfway(r: np.ndarray, i: int, h: float, joint: Any) -> None:
 @njit
 def _with_supply(k: State, rate: float) -> State:
     """Rates with that of what the supply remembers replaced."""
-    return State(k.p_a, k.p_b, k.q, k.w, rate, k.tilt, k.tilt_rate, k.lead_q, k.lead_w, k.relief)
+    return State(k.p_a, k.p_b, k.q, k.w, rate, k.tilt, k.tilt_rate, k.lead_q, k.lead_w, k.relief, k.bent)
 
 
 @njit
@@ -200,6 +200,7 @@ def ends(r: np.ndarray, i: int, h: float, joint: Any) -> None:
             n.lead_q if go else begun.lead_q,
             n.lead_w if go else begun.lead_w,
             n.relief if go else begun.relief,
+            n.bent if go else begun.bent,
         ),
     )
     r[i, PLAY] = played if go else play

@@ -12,21 +12,21 @@ from hydrolek_drake.rollout.drive import Drive
 from hydrolek_drake.rollout.rates import Slopes, State, Turned
 
 STATE, RATES, MIDDLE, LATER, SLOPES, NEAR, DRIVE, SPOOL, VOLTS, COMMAND, PLAY, INERTIA, ROD, DRAG = (
-    0, 10, 20, 30, 40, 51, 57, 62, 63, 64, 65, 66, 67, 68,
+    0, 11, 22, 33, 44, 56, 62, 67, 68, 69, 70, 71, 72, 73,
 )  # fmt: skip
 """Where a joint's numbers begin in its row: `State`, its rates at the beginning of a step, the state after the first
 stage and rates there, stiff slopes at the beginning, `Turned` at the beginning, `Drive`, the spool before the
 step, the voltage that drives, the command, what the sensor's play reads, inertia with the others held, the rod's part
 of it, and the drag that enters a step through the mass matrix."""
 
-MOMENT, SINE, COSINE, DRAWN, TOTAL = range(69, 74)
+MOMENT, SINE, COSINE, DRAWN, TOTAL = range(74, 79)
 """What it tells the others where its rates were taken: the moment left for motion, sine and cosine of its angle, and
 the flow that it draws from the supply; and the flow that all of them draw."""
 
-OIL, PUSH = 74, 75
+OIL, PUSH = 79, 80
 """How the oil acts on the joint within a step: `rosenbrock.through_oil`'s share, and `rosenbrock.pushed` of a stage."""
 
-ROW_SIZE = 76
+ROW_SIZE = 81
 
 TORQUE, BIAS, PAYLOAD, SINES, COSINES, SPEEDS = range(6)
 """Rows of what the arms' equation of motion takes and gives, a number for each joint."""
@@ -43,7 +43,7 @@ spool in `Drive`."""
 
 
 def room(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Room for so many joints: rows, vectors and matrices. # (n, 76), (6, n), (3, n, n)."""
+    """Room for so many joints: rows, vectors and matrices. # (n, 81), (6, n), (3, n, n)."""
     return np.zeros((n, ROW_SIZE)), np.zeros((6, n)), np.zeros((3, n, n))
 
 
@@ -62,6 +62,7 @@ def state_at(rows: np.ndarray, i: int, f: int) -> State:
         r[i, f + 7],
         r[i, f + 8],
         r[i, f + 9],
+        r[i, f + 10],
     )
 
 
@@ -76,7 +77,7 @@ def put_state(rows: np.ndarray, i: int, f: int, s: State) -> None:
         s.supply,
     )
     rows[i, f + 5], rows[i, f + 6], rows[i, f + 7], rows[i, f + 8] = s.tilt, s.tilt_rate, s.lead_q, s.lead_w
-    rows[i, f + 9] = s.relief
+    rows[i, f + 9], rows[i, f + 10] = s.relief, s.bent
 
 
 @njit
@@ -115,6 +116,7 @@ def slopes_at(r: np.ndarray, i: int) -> Slopes:
         r[i, f + 9],
         r[i, f + 10],
         0.0,  # the arms' accelerations are known without it
+        r[i, f + 11],
     )
 
 
@@ -125,7 +127,7 @@ def put_slopes(r: np.ndarray, i: int, slope: Slopes) -> None:
     r[i, f], r[i, f + 1], r[i, f + 2], r[i, f + 3] = slope.p_a, slope.p_b, slope.w, slope.tilt_rate
     r[i, f + 4], r[i, f + 5], r[i, f + 6] = slope.lead_w, slope.supply, slope.falls_a
     r[i, f + 7], r[i, f + 8], r[i, f + 9] = slope.rises_b, slope.turned_by, slope.tilted_by
-    r[i, f + 10] = slope.contact
+    r[i, f + 10], r[i, f + 11] = slope.contact, slope.lever
 
 
 @njit

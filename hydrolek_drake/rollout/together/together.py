@@ -62,7 +62,7 @@ class RunTogether:
         records: of the joints. # (joints,)
         carriers: see `arms.carriers_of`. # (joints,)
         laws: of each joint, rows of `law.LAW`.
-        begun: states at rest, see `rollout.kernel.integrate`; None where there is none. # (joints, 17)
+        begun: states at rest, see `rollout.kernel.integrate`; None where there is none. # (joints, 18)
         command_times: when commands change [s]. # (m,)
         command_values: held from then on [V]. # (m, joints)
         times: when signals are wanted [s]. # (k,)
@@ -137,9 +137,10 @@ def put_begun(rows: np.ndarray, begun: np.ndarray) -> None:
 
     Args:
         rows: # (joints, at least 69) or (joints, at least 69, lanes)
-        begun: # (joints, 17) or (joints, 17, lanes)
+        begun: # (joints, 18) or (joints, 18, lanes)
     """
-    rows[:, STATE : RATES - 1], rows[:, RATES - 1], rows[:, PLAY] = begun[:, 2:11], begun[:, 16], begun[:, 11]
+    rows[:, STATE : RATES - 2], rows[:, RATES - 2 : RATES] = begun[:, 2:11], begun[:, 16:18]
+    rows[:, PLAY] = begun[:, 11]
     rows[:, DRIVE : DRIVE + 3], rows[:, DRIVE + 3 : SPOOL] = begun[:, 13:16], begun[:, :2]
 
 

@@ -4,7 +4,7 @@ from typing import Any
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Formula, Search
-from hydrolek_drake.physics.friction import coulomb_friction
+from hydrolek_drake.physics.friction import Sliding, coulomb_friction
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -26,7 +26,7 @@ EFFECT = Effect(
         "rod, seals too tight, side load of mounts out of line."
     ),
     size="coulomb_N",
-    reads=("cylinder.friction_velocity",),
+    reads=("cylinder.friction_velocity", "cylinder.bristle_deflection", "cylinder.bristle_time"),
     beneath="rubbing",
     search={
         "coulomb_N": Search("force", 0.4, (0.01, 0.06)),
@@ -42,7 +42,6 @@ EFFECT = Effect(
 
 @EFFECT.hook("rod_friction")
 @njit
-def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, float]:
-    """Friction [N] and its secant slope [N s/m] at a rod velocity [m/s]."""
-    level = joint.effects.cylinder_coulomb_friction.coulomb_N
-    return coulomb_friction(velocity, level, joint.cylinder.friction_velocity)
+def rod_friction(at: Sliding, joint: Any) -> tuple[float, float]:
+    """Friction [N] and its secant slope [N s/m] as the seals rub."""
+    return coulomb_friction(at, joint.effects.cylinder_coulomb_friction.coulomb_N)

@@ -36,9 +36,9 @@ EFFECT = Effect(
 )
 
 
-@EFFECT.hook("rod_friction")
+@EFFECT.hook("rod_damping")
 @njit
-def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, float]:
+def rod_damping(velocity: float, stroke: float, joint: Any) -> tuple[float, float]:
     """Braking force [N] and its slope [N s/m]."""
     p = joint.effects.cylinder_end_cushion
     if p.damping_N_s_per_m == 0.0 or velocity >= 0.0 or stroke >= p.length_m:

@@ -4,8 +4,8 @@ from typing import Any
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Formula, Search
+from hydrolek_drake.physics.friction import Sliding, sign_of
 from hydrolek_drake.physics.parameters import Parameter
-from hydrolek_drake.physics.smooth import hyperbolic_tangent
 
 EFFECT = Effect(
     id="cylinder.friction_asymmetry",
@@ -26,7 +26,7 @@ EFFECT = Effect(
         "and side load."
     ),
     size="coulomb_N",
-    reads=("cylinder.friction_velocity",),
+    reads=("cylinder.friction_velocity", "cylinder.bristle_deflection", "cylinder.bristle_time"),
     search={
         "coulomb_N": Search("force", 0.2, (0.01, -0.01), lowest=-0.2),
     },
@@ -43,10 +43,10 @@ EFFECT = Effect(
 
 @EFFECT.hook("rod_friction")
 @njit
-def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, float]:
+def rod_friction(at: Sliding, joint: Any) -> tuple[float, float]:
     """Force [N] and its secant slope [N s/m], zero since it pushes rather than brakes in one direction."""
     coulomb = joint.effects.cylinder_friction_asymmetry.coulomb_N
     if coulomb == 0.0:
         return 0.0, 0.0
-    share = hyperbolic_tangent(velocity / joint.cylinder.friction_velocity)
+    share = sign_of(at)
     return coulomb * share * share, 0.0

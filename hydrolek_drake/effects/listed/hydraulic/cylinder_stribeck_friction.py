@@ -4,7 +4,7 @@ from typing import Any
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import STICKS_AND_SLIPS, Effect, Formula, Search
-from hydrolek_drake.physics.friction import stribeck
+from hydrolek_drake.physics.friction import Sliding, stribeck
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -40,7 +40,12 @@ EFFECT = Effect(
     ),
     step_share=STICKS_AND_SLIPS,
     size="stribeck_N",
-    reads=("cylinder.friction_velocity", "effects.cylinder.stribeck_friction.fading_exponent"),
+    reads=(
+        "cylinder.friction_velocity",
+        "cylinder.bristle_deflection",
+        "cylinder.bristle_time",
+        "effects.cylinder.stribeck_friction.fading_exponent",
+    ),
     beneath="rubbing",
     contains=("cylinder.coulomb_friction",),
     search={
@@ -59,14 +64,13 @@ EFFECT = Effect(
 
 @EFFECT.hook("rod_friction")
 @njit
-def rod_friction(velocity: float, stroke: float, joint: Any) -> tuple[float, float]:
-    """Friction [N] and its secant slope [N s/m] at a rod velocity [m/s]."""
+def rod_friction(at: Sliding, joint: Any) -> tuple[float, float]:
+    """Friction [N] and its secant slope [N s/m] as the seals rub."""
     p = joint.effects.cylinder_stribeck_friction
     return stribeck(
-        velocity,
+        at,
         p.coulomb_N,
         p.stribeck_N,
         p.stribeck_velocity_m_per_s,
         p.fading_exponent,
-        joint.cylinder.friction_velocity,
     )

@@ -4,7 +4,7 @@ from typing import Any
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import Effect, Formula, Search
-from hydrolek_drake.physics.friction import coulomb_friction
+from hydrolek_drake.physics.friction import Sliding, coulomb_friction
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -40,6 +40,5 @@ EFFECT = Effect(
 @njit
 def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
     """Friction [N] and its secant slope [N s/m]."""
-    return coulomb_friction(
-        velocity, joint.effects.load_coulomb_friction.force_N, joint.load.friction_velocity
-    )
+    at = Sliding(velocity, joint.load.friction_velocity, 0.0)
+    return coulomb_friction(at, joint.effects.load_coulomb_friction.force_N)

@@ -4,7 +4,7 @@ from typing import Any
 
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.effects.effect import STICKS_AND_SLIPS, Effect, Formula, Search
-from hydrolek_drake.physics.friction import stribeck
+from hydrolek_drake.physics.friction import Sliding, stribeck
 from hydrolek_drake.physics.parameters import Parameter
 
 EFFECT = Effect(
@@ -64,11 +64,11 @@ EFFECT = Effect(
 def load_friction(velocity: float, joint: Any) -> tuple[float, float]:
     """Friction [N or N m] and its secant slope."""
     p = joint.effects.load_stribeck_friction
+    at = Sliding(velocity, joint.load.friction_velocity, 0.0)
     return stribeck(
-        velocity,
+        at,
         p.force_N,
         p.stribeck_N,
         p.stribeck_velocity_m_per_s,
         p.fading_exponent,
-        joint.load.friction_velocity,
     )
