@@ -5,6 +5,7 @@ and cosine, and a frequency) and the numbers of its place. The joint's record ho
 is fitted, searched and judged as one with effects is.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
@@ -53,7 +54,11 @@ class LawTerm:
     step_share: ClassVar[float] = 1.0
     moments: ClassVar[tuple[Free, ...]] = ()
     searched: ClassVar[tuple[Free, ...]] = ()
-    beneath: ClassVar[float] = 0.0
+
+    @property
+    def beneath(self) -> float:
+        """No larger than this, its amplitude makes no difference in practice."""
+        return self.input.beneath
 
     @property
     def stage(self) -> str:
@@ -163,8 +168,9 @@ class LawTerm:
         return values
 
     def says_something(self, values: Mapping[str, float]) -> bool:
-        """Whether it is more than what the model's own equations simplify; see `Candidate`."""
-        return True
+        """Whether it is more than what makes no difference in practice; see `Candidate`."""
+        amplitude = math.hypot(values[self.size_path], values.get(f"{self.path}.cosine", 0.0))
+        return self.beneath == 0.0 or amplitude > self.beneath
 
     def is_special_case_of(self, other: object) -> bool:
         """Whether another addition contains this one: no term does."""

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from hydrolek_drake.effects.scales import Scales
+from hydrolek_drake.effects.scales import GROUND, Scales
 from hydrolek_drake.physics.probes import PROBES
 
 
@@ -19,6 +19,8 @@ class Input:
         scale: a large amplitude for this machine.
         one_sided: whether it is a constant of the machine that cannot be less than none: a time that something takes,
             or a share.
+        beneath: an amplitude that makes no difference in practice, as for the effect that does the same
+            (`effects.scales`); 0 where none is known.
     """
 
     stage: str
@@ -27,6 +29,7 @@ class Input:
     unit: str
     scale: float
     one_sided: bool = False
+    beneath: float = 0.0
 
 
 SIDES = ("cylinder", "load")
@@ -43,21 +46,36 @@ def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str)
         position_unit: rad or m.
     """
     moment = "N m" if position_unit == "rad" else "N"
+    ground = 0.0 if math.isnan(scales.opening) else GROUND  # of the spool's opening, and so of what drives it
     inputs = [
-        Input("command", "command", "voltage added to the command", "V", 0.3 * limit),
+        Input("command", "command", "voltage added to the command", "V", 0.3 * limit, beneath=ground * limit),
         Input("load", "load", "moment added at the joint" if moment == "N m" else "force added at the load", moment,
-              0.3 * scales.load_force),
-        Input("sensor", "sensor", "added to the reading", position_unit, 0.1 * scales.travel),
+              0.3 * scales.load_force, beneath=scales.load_rubbing),
+        Input("sensor", "sensor", "added to the reading", position_unit, 0.1 * scales.travel, beneath=scales.bit),
         Input("command", "ramp", "time that a ramp of the voltage takes for each volt", "s/V",
               0.3 * scales.travel_time / limit, one_sided=True),
     ]  # fmt: skip
     if math.isfinite(scales.conductance):
         inputs += [
             Input("supply", "supply", "added to the supply pressure", "Pa", 0.3 * pressure),
-            Input("amplifier", "amplifier", "relative change of the coil currents", "1", 0.3),
-            Input("valve", "valve", "relative change of the valve's opening", "1", 0.6),
-            Input("valve", "back_a", "relative change of what flows from side A to the tank", "1", 0.6),
-            Input("valve", "back_b", "relative change of what flows from side B to the tank", "1", 0.6),
+            Input("amplifier", "amplifier", "relative change of the coil currents", "1", 0.3, beneath=ground),
+            Input("valve", "valve", "relative change of the valve's opening", "1", 0.6, beneath=ground),
+            Input(
+                "valve",
+                "back_a",
+                "relative change of what flows from side A to the tank",
+                "1",
+                0.6,
+                beneath=ground,
+            ),
+            Input(
+                "valve",
+                "back_b",
+                "relative change of what flows from side B to the tank",
+                "1",
+                0.6,
+                beneath=ground,
+            ),
             Input(
                 "amplifier",
                 "coil_time",
@@ -74,7 +92,14 @@ def inputs_of(scales: Scales, pressure: float, limit: float, position_unit: str)
                 0.3,
                 one_sided=True,
             ),
-            Input("cylinder", "cylinder", "force added at the rod", "N", 0.3 * scales.force),
+            Input(
+                "cylinder",
+                "cylinder",
+                "force added at the rod",
+                "N",
+                0.3 * scales.force,
+                beneath=scales.rubbing,
+            ),
             Input(
                 "fluid", "capacity_a", "volume taken per pressure on side A, added", "m^3/Pa", scales.capacity
             ),

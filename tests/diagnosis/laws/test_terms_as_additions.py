@@ -6,6 +6,7 @@ import pytest
 from hydrolek_drake.diagnosis.laws.additions import LawTerm, WithTerms
 from hydrolek_drake.diagnosis.laws.inputs import inputs_of
 from hydrolek_drake.diagnosis.laws.terms import TERMS, law_record, span_of
+from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 
@@ -81,3 +82,14 @@ def test_what_is_no_force_has_no_other_side(machine) -> None:
     _, inputs, span = machine
     term = LawTerm(inputs["supply"], None, "joint", span, 1.3)
     assert term.moved_across(term.neutral()) is None
+
+
+def test_a_law_is_no_finding_where_the_effect_that_does_the_same_is_none(bench, machine) -> None:
+    """A shifted null and a voltage before the amplifier; a friction and a force at the rod."""
+    experiment, inputs, span = machine
+    candidates = {c.id: c for c in candidates_of(bench, "joint", natural_scales(bench, "joint", [experiment]))}
+    for probe, effect in (("command", "valve.asymmetric_overlap"), ("cylinder", "cylinder.coulomb_friction")):
+        law, listed = LawTerm(inputs[probe], TERMS[0], "joint", span), candidates[effect]
+        for times, told in ((0.99, False), (1.01, True)):
+            assert law.says_something({law.size_path: times * law.beneath}) is told
+            assert listed.says_something({listed.size_path: times * listed.beneath}) is told
