@@ -73,7 +73,9 @@ def _ringing(lines, s, steps, h, joint, out):
     for i in range(steps):
         lines, fed = lines_advanced(lines, s, 0.0, 0.0, h, no_probe(), no_probe(), joint)
         rate_a, rate_b, _, _ = cylinder.pressure_rates(s.p_a, s.p_b, fed.a, fed.b, stroke, 0.0, joint)
-        s = State(s.p_a + h * rate_a, s.p_b + h * rate_b, s.q, 0.0, s.supply, 0.0, 0.0, s.q, 0.0, s.relief)
+        s = State(
+            s.p_a + h * rate_a, s.p_b + h * rate_b, s.q, 0.0, s.supply, 0.0, 0.0, s.q, 0.0, s.relief, 0.0
+        )
         out[i, 0], out[i, 1] = s.p_a, lines.a.p_0
     return lines
 
@@ -81,7 +83,7 @@ def _ringing(lines, s, steps, h, joint, out):
 def _retracted(joint, p):
     """At rest without any stroke, where chamber A is its dead volume."""
     q = brentq(lambda angle: linkage.stroke_and_lever(angle, joint)[0], -0.6, 0.6)
-    return State(p, p, q, 0.0, 0.0, 0.0, 0.0, q, 0.0, 0.0)
+    return State(p, p, q, 0.0, 0.0, 0.0, 0.0, q, 0.0, 0.0, 0.0)
 
 
 def test_a_flow_that_is_stopped_gives_the_water_hammer_of_joukowsky(with_component):

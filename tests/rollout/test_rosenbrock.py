@@ -12,10 +12,20 @@ from hydrolek_drake.rollout.rosenbrock import implicit, pushed, through_oil
 
 SLOPES = Slopes(
     p_a=-90.0, p_b=-40.0, w=-15.0, tilt_rate=-6.0, lead_w=-30.0, supply=-50.0,
-    falls_a=4e6, rises_b=3e6, turned_by=2e-3, tilted_by=8e-4, contact=3.0, sprung=2e4,
+    falls_a=4e6, rises_b=3e6, turned_by=2e-3, tilted_by=8e-4, contact=3.0, sprung=2e4, lever=0.1,
 )  # fmt: skip
 RATES = State(
-    p_a=2e7, p_b=-1e7, q=0.3, w=5.0, supply=0.0, tilt=0.01, tilt_rate=-2.0, lead_q=0.4, lead_w=7.0, relief=0.0
+    p_a=2e7,
+    p_b=-1e7,
+    q=0.3,
+    w=5.0,
+    supply=0.0,
+    tilt=0.01,
+    tilt_rate=-2.0,
+    lead_q=0.4,
+    lead_w=7.0,
+    relief=0.0,
+    bent=0.0,
 )
 STEP = 2e-3
 

@@ -158,19 +158,23 @@ def test_actuator_state_and_force():
     rng = np.random.default_rng(5)
     pressure, flow = rng.uniform(1e6, 9e6, 2 * N), rng.uniform(-1e-5, 1e-5, 3 * N)
     motion = np.concatenate([rng.uniform(0.01, 0.03, N), rng.uniform(-0.02, 0.02, N)])
-    system = Actuator(JOINTS, 0.0)
+    joints, bent = JOINTS.copy(), rng.uniform(-0.9, 0.9, N)
+    joints["cylinder"]["bristle_deflection"] = 2e-5
+    joints["effects"]["cylinder_coulomb_friction"]["coulomb_N"] = 400.0
+    system = Actuator(joints, 0.0)
     context = system.CreateDefaultContext()
-    context.SetContinuousState(pressure)
+    context.SetContinuousState(np.concatenate([pressure, bent]))
     system.GetInputPort("oil_flow").FixValue(context, flow)
     system.GetInputPort("rod_motion").FixValue(context, motion)
     rates = system.EvalTimeDerivatives(context).CopyToVector()
     force = system.GetOutputPort("rod_force").Eval(context)
-    for i, joint in enumerate(JOINTS):
+    for i, joint in enumerate(joints):
         a, b, _, _ = cylinder.pressure_rates(
             pressure[i], pressure[N + i], flow[i], flow[N + i], motion[i], motion[N + i], joint
         )
         assert (rates[i], rates[N + i]) == (a, b)
-        friction, _ = cylinder.friction_force(motion[i], motion[N + i], 0.0, joint)
+        assert rates[2 * N + i] == cylinder.bent_rate(bent[i], motion[N + i], joint)
+        friction, _, _ = cylinder.friction_force(motion[i], motion[N + i], bent[i], 0.0, 0.0, joint)
         p = joint["cylinder"]
         assert force[i] == pytest.approx(p["area_a"] * pressure[i] - p["area_b"] * pressure[N + i] - friction)
 

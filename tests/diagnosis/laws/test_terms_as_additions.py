@@ -87,7 +87,9 @@ def test_what_is_no_force_has_no_other_side(machine) -> None:
 def test_a_law_is_no_finding_where_the_effect_that_does_the_same_is_none(bench, machine) -> None:
     """A shifted null and a voltage before the amplifier; a friction and a force at the rod."""
     experiment, inputs, span = machine
-    candidates = {c.id: c for c in candidates_of(bench, "joint", natural_scales(bench, "joint", [experiment]))}
+    candidates = {
+        c.id: c for c in candidates_of(bench, "joint", natural_scales(bench, "joint", [experiment]))
+    }
     for probe, effect in (("command", "valve.asymmetric_overlap"), ("cylinder", "cylinder.coulomb_friction")):
         law, listed = LawTerm(inputs[probe], TERMS[0], "joint", span), candidates[effect]
         for times, told in ((0.99, False), (1.01, True)):
