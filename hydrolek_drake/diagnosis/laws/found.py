@@ -39,7 +39,7 @@ def law_of(
         held_out: data that it was held against.
         rivals: other stages at which a law does as well.
     """
-    h = judged.hypothesis
+    h = bench.without_jumps(judged.hypothesis)
     terms = terms_of(h)
     first = terms[0]
     periodic = first.term is None
@@ -213,7 +213,7 @@ def lost_of(bench: Workbench, judged: Judged, held_out: Sequence[Experiment]) ->
         judged: a structure with lost commands.
         held_out: data that it was held against.
     """
-    h = judged.hypothesis
+    h = bench.without_jumps(judged.hypothesis)
     lost = lost_in(h)
     assert lost is not None
     every = lost.windows(h.values)
