@@ -185,8 +185,7 @@ def _diagnosed(
         bench.resume()
         remarks = (*remarks, INTERRUPTED)
     if not intervals:
-        told = best if bench.together else bench.without_jumps(best)
-        intervals = intervals_of(bench.parameters(best.effects), told.fit)
+        intervals = intervals_of(bench.parameters(best.effects), bench.without_jumps(best).fit)
     return Diagnosis(
         rig=rig,
         verdict=conclusion.verdict,

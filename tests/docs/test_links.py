@@ -1,5 +1,6 @@
 """Links, pictures and commands of the documentation lead somewhere."""
 
+import importlib.util
 import os
 import re
 import shlex
@@ -63,6 +64,15 @@ def test_every_picture_is_shown():
         if mark
     }
     assert not set((DOCS / "pictures").rglob("*.png")) - shown
+
+
+def test_every_picture_is_made_by_the_script():
+    spec = importlib.util.spec_from_file_location("pictures", ROOT / "scripts" / "pictures.py")
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    made = {name for one in script.MADE for name in one.pictures} | set(script.COMPOSED)
+    pictures = DOCS / "pictures"
+    assert made == {str(p.relative_to(pictures).with_suffix("")) for p in pictures.rglob("*.png")}
 
 
 def test_every_page_is_in_the_site():

@@ -8,7 +8,8 @@ import pytest
 
 from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.fit import fit_rig
-from hydrolek_drake.identification.least_squares.continuation import Continuation, spread_evenly
+from hydrolek_drake.identification.least_squares.continuation import FOLLOWED, Continuation, spread_evenly
+from hydrolek_drake.identification.least_squares.least_squares import fit_from
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet, free_parameters
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.recordings import Recording, read_recording
@@ -117,19 +118,17 @@ def test_what_the_pump_lacks_is_found_with_the_supply_and_not_behind_the_cut() -
 
 @pytest.mark.long("ten seconds")
 def test_what_rings_is_found_over_a_horizon_that_grows(recording) -> None:
-    """Free rollouts from the rig's own numbers end in another local minimum, part by part they reach the noise."""
+    """Free rollouts from the rig's own numbers end in another local minimum; led part by part they reach the noise."""
     rig = load_rig("hopsan_link", {path: text for path, text in TRUE.items() if path == "load.mass"})
     supply = [path for path in rig.free_parameters() if path.startswith("supply.")]
     parameters = ParameterSet(rig, free_parameters(rig, [*supply, "load.damping"]))
     experiments = tuple(experiments_of(rig, recording))
     with ThreadPoolExecutor(1) as pool:
-        unit = Continuation(parameters, experiments, pool, 1).from_the_cut([parameters.unit()])
-    assert unit is not None
-    problem = Problem(parameters, experiments)
-    left = problem.residuals(unit)
-    assert np.sqrt(left @ left / problem.counted) < 1.1
+        place = Continuation(parameters, experiments, pool, 1).from_starts([parameters.unit()])
+    assert np.sqrt(place.objective / place.problem.counted) < 1.1
+    assert fit_from(Problem(parameters, experiments), parameters.unit()).over_noise > FOLLOWED
     for path in ("supply.displacement", "supply.relief_hysteresis"):
-        value = parameters.values(unit)[rig.full_path(path)]
+        value = parameters.values(place.unit)[rig.full_path(path)]
         assert value == pytest.approx(load_rig("hopsan_link", TRUE).value(path), rel=0.1)
 
 

@@ -76,7 +76,7 @@ def diagnose(
     if out is not None:
         prepare_folder(out)
     with progress("starting") as tell, _pool(workers, cluster) as (pool, count):
-        tell("checking ...")
+        tell("checking (the first time, the physics is compiled: half a minute) ...")
         tell_what_looks_wrong(loaded, [*train, *held], output)
 
         def say(text: str) -> None:

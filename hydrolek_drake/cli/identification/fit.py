@@ -82,7 +82,7 @@ def fit(
     from hydrolek_drake.runs.time_limit import ended_after
 
     output = console()
-    with progress("checking"):
+    with progress("checking (the first time, the physics is compiled: half a minute)"):
         tell_what_looks_wrong(loaded, [*read, *held], output)
     profiled = check_profiled(loaded, profile or [], [f.path for f in searched(loaded, read, parameter)])
     with progress(f"fitting by {method} ...") as tell:

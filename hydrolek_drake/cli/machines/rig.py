@@ -36,7 +36,7 @@ def new(
     Each question is an option, such as --bore '40 mm'; in a terminal, those that are needed and missing are asked.
     What nobody knows is assumed, with a wide range, and says so in the file.
     """
-    from hydrolek_drake.cli.output import console
+    from hydrolek_drake.cli.output import console, progress
     from hydrolek_drake.wizard import questions as all_questions
 
     out = console()
@@ -60,7 +60,8 @@ def new(
     from hydrolek_drake.files import write_whole
     from hydrolek_drake.wizard.making import written_rig
 
-    text, made = written_rig(file.stem, given)
+    with progress("trying the rig's steps (the first time, the physics is compiled: half a minute)"):
+        text, made = written_rig(file.stem, given)
     write_whole(file, text)
     free = made.free_parameters()
     assumed = [path for path, entry in made.entries.items() if entry.source.startswith("assumed")]
@@ -80,16 +81,17 @@ def check(
 
     Exit status 1 if anything does.
     """
-    from hydrolek_drake.cli.output import console
+    from hydrolek_drake.cli.output import console, progress
     from hydrolek_drake.recordings import read_recording
     from hydrolek_drake.rigs import load_rig
 
     loaded = load_rig(name, parse_settings(set_))
-    wrong = _say(loaded, None)
-    for path in recordings or []:
-        recording = read_recording(path, loaded.columns, dead_time=loaded.dead_time)
-        tell_of_clocks(recording, console())
-        wrong += _say(loaded, recording)
+    with progress("checking (the first time, the physics is compiled: half a minute)"):
+        wrong = _say(loaded, None)
+        for path in recordings or []:
+            recording = read_recording(path, loaded.columns, dead_time=loaded.dead_time)
+            tell_of_clocks(recording, console())
+            wrong += _say(loaded, recording)
     if not wrong:
         console().print("nothing looks wrong")
     return WRONG if wrong else 0

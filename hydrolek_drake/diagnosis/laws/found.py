@@ -14,7 +14,13 @@ from hydrolek_drake.diagnosis.laws.inputs import SIDES, Input
 from hydrolek_drake.diagnosis.laws.law import FRICTIONS, FoundLaw, Law
 from hydrolek_drake.diagnosis.laws.terms import Term
 from hydrolek_drake.diagnosis.lost_commands.search import lost_in
-from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows, Windows, arrivals, recording_of
+from hydrolek_drake.diagnosis.lost_commands.windows import (
+    LostWindows,
+    Windows,
+    arrivals,
+    joined,
+    recording_of,
+)
 from hydrolek_drake.diagnosis.settings import DROPOUTS, LOCATING, NOISE
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
@@ -39,7 +45,7 @@ def law_of(
         held_out: data that it was held against.
         rivals: other stages at which a law does as well.
     """
-    h = judged.hypothesis
+    h = bench.without_jumps(judged.hypothesis)
     terms = terms_of(h)
     first = terms[0]
     periodic = first.term is None
@@ -213,13 +219,14 @@ def lost_of(bench: Workbench, judged: Judged, held_out: Sequence[Experiment]) ->
         judged: a structure with lost commands.
         held_out: data that it was held against.
     """
-    h = judged.hypothesis
+    h = bench.without_jumps(judged.hypothesis)
     lost = lost_in(h)
     assert lost is not None
-    every = lost.windows(h.values)
+    every = {recording: joined(windows) for recording, windows in lost.windows(h.values).items()}
     for effects, unit in with_stands(bench, judged, held_out).stands.values():
         ahead = next(c for c in effects if isinstance(c, LostWindows))
-        every |= ahead.windows(bench.parameters(effects).values(unit))
+        own = ahead.windows(bench.parameters(effects).values(unit))
+        every |= {recording: joined(windows) for recording, windows in own.items()}
     parameters = bench.parameters(h.effects)
     records = parameters.records(h.fit.unit)
     first = next(e for e in bench.training if e.joint == lost.joint)

@@ -263,7 +263,12 @@ class Workbench:
         return np.array([path not in held for path in parameters.paths])
 
     def without_jumps(self, hypothesis: Hypothesis) -> Hypothesis:
-        """The same fit with slopes that are worth an interval (`Problem.jacobian_without_jumps`)."""
+        """The same fit with slopes that are worth an interval (`Problem.jacobian_without_jumps`).
+
+        Of joints that move together the slopes are those of the fit.
+        """
+        if self.together:
+            return hypothesis
         problem = self.problem(hypothesis.effects, hypothesis.step)
         moving = self.movable(hypothesis.effects, problem.parameters)
         unit = hypothesis.fit.unit

@@ -51,7 +51,7 @@ def found(bench, recorded, fitted):
         yield find
 
 
-@pytest.mark.long("some seconds")
+@pytest.mark.thorough
 def test_repeated_recordings_give_a_size_as_uncertain_as_its_interval_says(found) -> None:
     off = []
     for seed in range(1, SEEDS + 1):
