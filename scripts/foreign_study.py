@@ -60,7 +60,7 @@ def explained(report: dict) -> bool:
     number of the sheet may do the same.
     """
     baseline = report["fit"]["baseline"]
-    return max(baseline["train_over_noise"], baseline["holdout_over_noise"]) <= NOISE.ahead
+    return max(baseline["train_over_noise"], baseline["holdout_over_noise"]) <= NOISE.held_out
 
 
 def row(case: Foreign, folder: Path) -> tuple[str, bool, bool]:

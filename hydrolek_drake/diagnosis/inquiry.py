@@ -9,18 +9,17 @@ import numpy as np
 from hydrolek_drake.diagnosis.evidence.judged import Conclusion, Judged, conclude, with_behind_cut
 from hydrolek_drake.diagnosis.evidence.judging import judge_as_fitted, judge_structures
 from hydrolek_drake.diagnosis.evidence.reported import left_of
-from hydrolek_drake.diagnosis.laws.additions import LawTerm
+from hydrolek_drake.diagnosis.fitting.parts import cut
+from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.laws.found import law_of, likeliest_side, lost_of, terms_of
 from hydrolek_drake.diagnosis.laws.law import FoundLaw
 from hydrolek_drake.diagnosis.locating.terms_for import estimates_for, terms_for
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
-from hydrolek_drake.diagnosis.lost_commands.search import lost_in
-from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.search.from_the_cut import search_machine
-from hydrolek_drake.diagnosis.search.parts import cut
-from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, NOISE
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
+from hydrolek_drake.diagnosis.structures.lost_windows import LostWindows, lost_in
 from hydrolek_drake.diagnosis.structures.splitting import halves, mixed
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
@@ -155,7 +154,7 @@ class Inquiry:
                 left=first.over_noise if left is None else left,
                 trained=first.hypothesis.fit.over_noise if trained is None else trained,
                 share=100.0 * known.bench.rig.value("integration.model_error"),
-                least=first.least_ahead,
+                least=first.least_held_out,
             )
             remarks = (*remarks, told)
         if known.interrupted:
@@ -214,7 +213,7 @@ class Inquiry:
     def _told(self, known: Known, best: Judged) -> tuple[Conclusion, FoundLaw | None]:
         """The conclusion, and the law of the best structure, if it has one."""
         terms = terms_of(best.hypothesis)
-        if lost_in(best.hypothesis) is not None:
+        if lost_in(best.hypothesis.effects) is not None:
             lost = lost_of(known.bench, best, known.held_out)
             told = replace(known.conclusion, verdict="unlisted_physics", best=_beside(known, best), groups=())
             return told, lost
@@ -265,16 +264,16 @@ def _astray(known: Known) -> bool:
     """Whether the best structure leaves more of the held-out data than the training data lead one to expect.
 
     That is as much, to what noise is known to; where it does not explain these, what it leaves is its own discrepancy,
-    which differs between movements by more. What a pump's line does is not told for long (`Judged.explains_ahead`), but
-    what lies behind its recorded pressure is.
+    which differs between movements by more. What a pump's line does is not told for long
+    (`Judged.explains_held_out`), but what lies behind its recorded pressure is.
     """
     best = with_behind_cut(known.judged[0], known.bench.training, known.held_out)
     left, ahead = best.hypothesis.fit.over_noise, best.over_noise
     if best.trained_behind_cut is not None and best.left_behind_cut is not None:
         left, ahead = best.trained_behind_cut, best.left_behind_cut
-        if not best.explains_ahead:
+        if not best.explains_held_out:
             return True
-    return ahead > max(left, 1.0) * (NOISE.ahead if left <= NOISE.ahead else NOISE.explained_ahead)
+    return ahead > max(left, 1.0) * (NOISE.held_out if left <= NOISE.held_out else NOISE.explained_held_out)
 
 
 def _far_in_all(known: Known) -> bool:

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.report.words import unit_at
-from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.cost import gain_needed
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.lockstep import with_slopes

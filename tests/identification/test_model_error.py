@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.settings import GAINS
+from hydrolek_drake.diagnosis.structures.cost import gain_needed
 from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.least_squares.least_squares import fit_from
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.laws.terms import Reach, Span, Term, law_record
+from hydrolek_drake.diagnosis.structures.term_forms import Reach, Span, Term, law_record
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.rigs.machine.short_law import terms_of
 from hydrolek_drake.rollout import roll_out

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.laws.terms import TERMS, Term, law_record, law_records, span_of
+from hydrolek_drake.diagnosis.structures.term_forms import TERMS, Term, law_record, law_records, span_of
 from hydrolek_drake.physics.law import NEAR, Seen, law_value
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rigs import load_rig

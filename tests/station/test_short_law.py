@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import yaml
 
-from hydrolek_drake.diagnosis.laws.terms import Term, law_record, law_records, span_of
+from hydrolek_drake.diagnosis.structures.term_forms import Term, law_record, law_records, span_of
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rigs.machine.short_law import UNITS, terms_of

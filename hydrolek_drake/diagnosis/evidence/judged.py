@@ -11,9 +11,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.search.cost import cost, dispersion
 from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.addition import Addition
+from hydrolek_drake.diagnosis.structures.cost import cost, dispersion
 from hydrolek_drake.diagnosis.structures.splitting import short_blocks
 from hydrolek_drake.diagnosis.structures.weighing import least_over_noise
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
@@ -39,7 +39,7 @@ class Judged:
         left_behind_cut: times the noise that it leaves of these data behind the recorded pressure of a pump
             (`over_noise_behind`); None where there is none, or nobody asked.
         trained_behind_cut: the same of the training data.
-        least_ahead: times the noise that the rig's equations leave of these data at best, by its `model_error`.
+        least_held_out: times the noise that the rig's equations leave of these data at best, by its `model_error`.
         least_trained: the same of the training data.
         stands: recording (`windows.recording_of`) -> additions and place in the unit cube there (`nuisance`).
     """
@@ -56,7 +56,7 @@ class Judged:
     fitted_too: float | None = None
     left_behind_cut: float | None = None
     trained_behind_cut: float | None = None
-    least_ahead: float = 1.0
+    least_held_out: float = 1.0
     least_trained: float = 1.0
     stands: Mapping[str, tuple[tuple[Addition, ...], np.ndarray]] = field(default_factory=dict)
 
@@ -66,14 +66,16 @@ class Judged:
         return math.sqrt(float(self.held_out @ self.held_out) / max(self.held_out_counted, 1))
 
     @property
-    def explains_ahead(self) -> bool:
+    def explains_held_out(self) -> bool:
         """Whether it leaves so little of the held-out data that nothing is missing that these show.
 
         When a relief valve sticks and its line rings next depends on all before it, which no model tells for long: one
         that explains what lies behind the recorded pressure may be off in the line now and then, but not be far from
         the noise on the whole.
         """
-        most = self.least_ahead * (NOISE.explained_ahead if self.hypothesis.effects else NOISE.explained)
+        most = self.least_held_out * (
+            NOISE.explained_held_out if self.hypothesis.effects else NOISE.explained
+        )
         if self.fitted_too is not None and self.fitted_too <= most:
             return True
         if self.left_behind_cut is None:
@@ -91,16 +93,16 @@ class Judged:
     @property
     def granted(self) -> bool:
         """Whether it explains the data by what the rig says that its equations leave at best, and not without that."""
-        strict = replace(self, least_ahead=1.0, least_trained=1.0)
-        explains = self.explains_training and self.explains_ahead
-        return explains and not (strict.explains_training and strict.explains_ahead)
+        strict = replace(self, least_held_out=1.0, least_trained=1.0)
+        explains = self.explains_training and self.explains_held_out
+        return explains and not (strict.explains_training and strict.explains_held_out)
 
     @property
-    def fails_ahead_alone(self) -> bool:
+    def fails_held_out_alone(self) -> bool:
         """Whether it explains what it was fitted to, and not the held-out data."""
         behind = self.trained_behind_cut
         left = self.hypothesis.fit.over_noise if behind is None else behind
-        return left <= self.least_trained * NOISE.ahead and not self.explains_ahead
+        return left <= self.least_trained * NOISE.held_out and not self.explains_held_out
 
     @property
     def log_density(self) -> float:
@@ -192,7 +194,9 @@ def with_behind_cut(judged: Judged, training: Sequence[Experiment], held_out: Se
 
 def with_least(judged: Judged, training: Sequence[Experiment], held_out: Sequence[Experiment]) -> Judged:
     """The same with what equations leave at best."""
-    return replace(judged, least_ahead=least_over_noise(held_out), least_trained=least_over_noise(training))
+    return replace(
+        judged, least_held_out=least_over_noise(held_out), least_trained=least_over_noise(training)
+    )
 
 
 def over_noise_behind(residuals: np.ndarray, experiments: Sequence[Experiment]) -> float | None:
@@ -244,7 +248,7 @@ def conclude(judged: Sequence[Judged]) -> Conclusion:
     paths = {path for j in judged for path in j.hypothesis.ids}
     probability = {path: probability_of(path, judged) for path in paths}
     groups = _groups(best, judged)
-    if not (best.explains_training and best.explains_ahead):
+    if not (best.explains_training and best.explains_held_out):
         return Conclusion("unlisted_physics", best, probability, groups if best.hypothesis.effects else ())
     if not best.hypothesis.effects:
         return Conclusion(

@@ -28,10 +28,10 @@ from hydrolek_drake.diagnosis.evidence.nuisance import own_of_recordings, with_s
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.problems import problem_with
 from hydrolek_drake.diagnosis.fitting.race import race
-from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
-from hydrolek_drake.diagnosis.search.cost import cost, gain_needed
-from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE
+from hydrolek_drake.diagnosis.structures.cost import cost, gain_needed
+from hydrolek_drake.diagnosis.structures.lost_windows import recording_of
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.least_squares import Fit

@@ -11,11 +11,11 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged
 from hydrolek_drake.diagnosis.fitting.problems import problem_with
-from hydrolek_drake.diagnosis.laws.additions import LawTerm
-from hydrolek_drake.diagnosis.lost_commands.search import windows_ahead
-from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows, recording_of
+from hydrolek_drake.diagnosis.lost_commands.search import windows_held_out
 from hydrolek_drake.diagnosis.settings import EVIDENCE
 from hydrolek_drake.diagnosis.structures.addition import Addition
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
+from hydrolek_drake.diagnosis.structures.lost_windows import LostWindows, recording_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.lockstep import descend
@@ -38,7 +38,7 @@ def with_stands(bench: Workbench, judged: Judged, held_out: Sequence[Experiment]
         if recording_of(part) in stands:
             continue
         experiment = part.split(np.ones_like(part.used))  # a lost command moves all that comes after it
-        lost = windows_ahead(bench, h, experiment, h.step)
+        lost = windows_held_out(bench, h, experiment, h.step)
         effects: tuple[Addition, ...] = tuple(
             lost if lost is not None and isinstance(c, LostWindows) else c for c in h.effects
         )

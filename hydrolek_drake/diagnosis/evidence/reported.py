@@ -9,10 +9,10 @@ import numpy as np
 from hydrolek_drake.diagnosis.evidence.fitted_to_both import beyond, fitted_to_both, to_both
 from hydrolek_drake.diagnosis.evidence.judged import Judged, with_behind_cut, with_differences
 from hydrolek_drake.diagnosis.evidence.nuisance import own_of_recordings, with_stands
+from hydrolek_drake.diagnosis.fitting.behind_cut import fitted_behind
 from hydrolek_drake.diagnosis.fitting.line_search import lowest_along_each
 from hydrolek_drake.diagnosis.fitting.problems import problem_with
-from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
-from hydrolek_drake.diagnosis.search.from_the_cut import fitted_behind
+from hydrolek_drake.diagnosis.structures.lost_windows import recording_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.rolling import Request, residuals_at
@@ -58,7 +58,7 @@ def left_of(bench: Workbench, judged: Sequence[Judged], held_out: Sequence[Exper
     )
     told = with_differences(told, held_out)
     told = (with_behind_cut(told[0], bench.training, held_out), *told[1:])
-    if not told[0].fails_ahead_alone or own_of_recordings(told[0].hypothesis).any():
+    if not told[0].fails_held_out_alone or own_of_recordings(told[0].hypothesis).any():
         return told
     asked, best, ahead = bench, told[0].hypothesis, list(held_out)
     behind = fitted_behind(bench, best)
@@ -68,7 +68,7 @@ def left_of(bench: Workbench, judged: Sequence[Judged], held_out: Sequence[Exper
     begun = to_both(asked, best, ahead)
     [both] = fitted_to_both(asked, [begun], renewing=True)
     now = replace(told[0], fitted_too=math.sqrt(beyond(both, best) / counted))
-    if now.fails_ahead_alone:
+    if now.fails_held_out_alone:
         elsewhere = lowest_along_each(both, asked.pool, asked.cores)
         [both] = fitted_to_both(asked, [elsewhere], renewing=True)
         now = replace(told[0], fitted_too=math.sqrt(beyond(both, best) / counted))

@@ -13,8 +13,8 @@ import numpy as np
 from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.race import race
-from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.settings import NOISE
+from hydrolek_drake.diagnosis.structures.cost import gain_needed
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
 

@@ -166,7 +166,7 @@ class LastNumbers:
             first=EVIDENCE.deviations,
         )
 
-    def ahead(self, fitted: Hypothesis, held_out: Sequence[Experiment]) -> np.ndarray:
+    def held_out_residuals(self, fitted: Hypothesis, held_out: Sequence[Experiment]) -> np.ndarray:
         """Residuals on the held-out data, in units of the noise, without what the step adds, as fitted. # (values,)."""
         told = held_out
         if not self._bench.together:
@@ -191,7 +191,7 @@ def with_last_numbers(
     there, intervals = last.found()
     rig = bench.rig.with_values(there.values)
     training, told = felt_together(rig, bench.training), felt_together(rig, held_out)
-    ahead = last.ahead(there, told)
+    ahead = last.held_out_residuals(there, told)
     bench.training = tuple(training)  # an interrupt before leaves all as it was
     return replace(best, hypothesis=there, held_out=ahead), intervals, tuple(told)
 

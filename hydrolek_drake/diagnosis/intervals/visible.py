@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from hydrolek_drake.diagnosis.fitting.projection import Across
-from hydrolek_drake.diagnosis.search.cost import gain_needed
-from hydrolek_drake.diagnosis.search.promise import Promise
+from hydrolek_drake.diagnosis.fitting.promise import Promise
 from hydrolek_drake.diagnosis.settings import EXPERIMENTS, FITS, GAINS
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.cost import gain_needed
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects import EFFECTS
 

@@ -9,19 +9,19 @@ import numpy as np
 from hydrolek_drake.diagnosis.evidence.judged import Judged
 from hydrolek_drake.diagnosis.evidence.nuisance import with_stands
 from hydrolek_drake.diagnosis.intervals.curvature import intervals_of
-from hydrolek_drake.diagnosis.laws.additions import LawTerm
-from hydrolek_drake.diagnosis.laws.inputs import SIDES, Input
 from hydrolek_drake.diagnosis.laws.law import FRICTIONS, FoundLaw, Law
-from hydrolek_drake.diagnosis.laws.terms import Term
-from hydrolek_drake.diagnosis.lost_commands.search import lost_in
-from hydrolek_drake.diagnosis.lost_commands.windows import (
+from hydrolek_drake.diagnosis.settings import DROPOUTS, LOCATING, NOISE
+from hydrolek_drake.diagnosis.structures.inputs import SIDES, Input
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
+from hydrolek_drake.diagnosis.structures.lost_windows import (
     LostWindows,
     Windows,
     arrivals,
     joined,
+    lost_in,
     recording_of,
 )
-from hydrolek_drake.diagnosis.settings import DROPOUTS, LOCATING, NOISE
+from hydrolek_drake.diagnosis.structures.term_forms import Term
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.least_squares import Fit
@@ -84,7 +84,7 @@ def law_of(
         held_out_over_noise=judged.over_noise,
         difference=with_law - plain,
         span=first.span,
-        ahead=tuple(own for own, e in zip(ahead, held_out, strict=True) if e.joint == first.joint),
+        held_out_values=tuple(own for own, e in zip(ahead, held_out, strict=True) if e.joint == first.joint),
         joint=first.joint,
         rivals=tuple(rivals),
         intervals={
@@ -220,7 +220,7 @@ def lost_of(bench: Workbench, judged: Judged, held_out: Sequence[Experiment]) ->
         held_out: data that it was held against.
     """
     h = bench.without_jumps(judged.hypothesis)
-    lost = lost_in(h)
+    lost = lost_in(h.effects)
     assert lost is not None
     every = {recording: joined(windows) for recording, windows in lost.windows(h.values).items()}
     for effects, unit in with_stands(bench, judged, held_out).stands.values():
@@ -243,7 +243,7 @@ def lost_of(bench: Workbench, judged: Judged, held_out: Sequence[Experiment]) ->
         held_out_over_noise=judged.over_noise,
         difference=with_lost - plain,
         span=lost.span,
-        ahead=tuple(every[recording_of(e)].ravel() for e in held_out if e.joint == lost.joint),
+        held_out_values=tuple(every[recording_of(e)].ravel() for e in held_out if e.joint == lost.joint),
         joint=lost.joint,
         intervals={p: known for p, known in intervals_of(parameters, h.fit).items() if ".lost." not in p},
         windows=every,

@@ -8,9 +8,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hydrolek_drake.diagnosis.intervals.curvature import NORMAL, Interval, covariance_of
-from hydrolek_drake.diagnosis.laws.inputs import Input
-from hydrolek_drake.diagnosis.laws.terms import CONSTANT, Span, Term, law_record, law_records
 from hydrolek_drake.diagnosis.settings import LOCATING
+from hydrolek_drake.diagnosis.structures.inputs import Input
+from hydrolek_drake.diagnosis.structures.term_forms import CONSTANT, Span, Term, law_record, law_records
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.least_squares import Fit
 from hydrolek_drake.physics.law import PLACED
@@ -80,7 +80,8 @@ class FoundLaw:
         held_out_over_noise: root mean square on held-out data over the noise.
         difference: of the reading on the first training recording, with and without the law. # (n,)
         span: what its variables are told in.
-        ahead: its values on each held-out recording of the joint, where a periodic one has its phase of its own.
+        held_out_values: its values on each held-out recording of the joint, where a periodic one has a phase of its
+            own.
         joint: at which it acts; of several that were driven, the one whose data `fit` and held-out error are of.
         rivals: other stages at which a law leaves as little of all data.
         intervals: full path -> the parameters fitted with it, with their intervals.
@@ -93,7 +94,7 @@ class FoundLaw:
     held_out_over_noise: float
     difference: np.ndarray
     span: Span
-    ahead: tuple[np.ndarray, ...]
+    held_out_values: tuple[np.ndarray, ...]
     joint: str
     rivals: tuple[str, ...] = ()
     intervals: Mapping[str, Interval] = field(default_factory=dict)
@@ -135,14 +136,14 @@ class FoundLaw:
         """The law with what it leaves of held-out data, of which the weights may have changed since it was found.
 
         Args:
-            held_out: in the order of `ahead`, of all joints.
+            held_out: in the order of `held_out_values`, of all joints.
             records: of all joints of the rig, with the parameters fitted with the law. # (joints,)
             step: of the integration [s].
         """
         at_joint = [experiment for experiment in held_out if experiment.joint == self.joint]
         left = [
             e.residuals(self.signals(e, records, step, own))
-            for e, own in zip(at_joint, self.ahead, strict=True)
+            for e, own in zip(at_joint, self.held_out_values, strict=True)
         ]
         squares = sum(float(part @ part) for part in left)
         counted = sum(experiment.counted for experiment in at_joint)

@@ -13,8 +13,8 @@ from typing import ClassVar, Protocol
 import numpy as np
 from scipy.sparse import csc_matrix
 
-from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.settings import LOCATING
+from hydrolek_drake.diagnosis.structures.inputs import Input
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes
 from hydrolek_drake.rollout.lanes.view import LANES

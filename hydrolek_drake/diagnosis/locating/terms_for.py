@@ -6,9 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.laws.additions import LawTerm
-from hydrolek_drake.diagnosis.laws.inputs import SIDES, Input, inputs_of
-from hydrolek_drake.diagnosis.laws.terms import TERMS, Span, law_record, span_of
+from hydrolek_drake.diagnosis.locating.lost_windows_seen import lost_seen
 from hydrolek_drake.diagnosis.locating.unknown_input import (
     Estimate,
     Seen,
@@ -16,9 +14,11 @@ from hydrolek_drake.diagnosis.locating.unknown_input import (
     near,
     unknown_inputs,
 )
-from hydrolek_drake.diagnosis.lost_commands.seen import lost_seen
-from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
 from hydrolek_drake.diagnosis.settings import LOCATING
+from hydrolek_drake.diagnosis.structures.inputs import SIDES, Input, inputs_of
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
+from hydrolek_drake.diagnosis.structures.lost_windows import LostWindows
+from hydrolek_drake.diagnosis.structures.term_forms import TERMS, Span, law_record, span_of
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiments.experiment import Experiment

@@ -10,27 +10,23 @@ from hydrolek_drake.diagnosis.fitting.elsewhere import tried_elsewhere
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant, Runner
 from hydrolek_drake.diagnosis.fitting.problems import hypothesis_of, problem_with
 from hydrolek_drake.diagnosis.fitting.race import race
-from hydrolek_drake.diagnosis.laws.additions import of_additions
-from hydrolek_drake.diagnosis.lost_commands.seen import lost_seen
-from hydrolek_drake.diagnosis.lost_commands.windows import (
+from hydrolek_drake.diagnosis.locating.lost_windows_seen import lost_seen
+from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS, NOISE
+from hydrolek_drake.diagnosis.structures.addition import Addition
+from hydrolek_drake.diagnosis.structures.law_terms import of_additions
+from hydrolek_drake.diagnosis.structures.lost_windows import (
     NONE,
     LostWindows,
     joined,
+    lost_in,
     recording_of,
 )
-from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS, NOISE
-from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.weighing import least_over_noise
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.lockstep import descend
 from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.identification.rolling import Request, residuals_at
-
-
-def lost_in(hypothesis: Hypothesis) -> LostWindows | None:
-    """Lost commands of a structure, if it has any."""
-    return next((c for c in hypothesis.effects if isinstance(c, LostWindows)), None)
 
 
 def with_windows(
@@ -150,7 +146,7 @@ def _seen_beside(
     return lost_seen(own, there, lost.input, lost.neutral, known, lost.span, values)
 
 
-def windows_ahead(
+def windows_held_out(
     bench: Workbench, structure: Hypothesis, experiment: Experiment, step: float
 ) -> LostWindows | None:
     """Windows in a recording to which nothing else of a structure is fitted; None where it has no lost commands.
@@ -163,7 +159,7 @@ def windows_ahead(
         experiment: the recording.
         step: of the integration [s].
     """
-    lost = lost_in(structure)
+    lost = lost_in(structure.effects)
     if lost is None:
         return None
     which = recording_of(experiment)

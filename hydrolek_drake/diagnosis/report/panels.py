@@ -105,7 +105,7 @@ def law_values(law: FoundLaw, held_out: Sequence[Experiment], experiment: Experi
         experiment: one of these, or of the training data.
     """
     place = next((i for i, held in enumerate(held_out) if held is experiment), None)
-    return law.values if place is None else law.ahead[place]
+    return law.values if place is None else law.held_out_values[place]
 
 
 def _stack(

@@ -3,16 +3,16 @@
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
-from hydrolek_drake.diagnosis.search.cost import cost
+from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.search.enlarging import enlarged
 from hydrolek_drake.diagnosis.search.nominal import fit_nominal
 from hydrolek_drake.diagnosis.search.openings import Opening, opened, surely_above
-from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.search.weighed_anew import weigh_anew
 from hydrolek_drake.diagnosis.settings import NOISE, Settings
 from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.cost import cost
+from hydrolek_drake.diagnosis.structures.lost_windows import LostWindows
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
 EFFECTS, LAWS = "effects", "laws"
@@ -119,7 +119,7 @@ def _open(
             listed = all(isinstance(c, Candidate) for c in h.effects)
             if listed and (h.ids, EFFECTS) not in done:
                 items.append((h, EFFECTS))
-            elif laws and best.fit.over_noise > NOISE.ahead and not _explained_by(best, h, bench.settings):
+            elif laws and best.fit.over_noise > NOISE.held_out and not _explained_by(best, h, bench.settings):
                 items.append((h, LAWS))
     return [(h, kind) for h, kind in items if (h.ids, kind) not in done]
 

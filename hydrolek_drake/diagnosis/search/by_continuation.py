@@ -11,13 +11,13 @@ from hydrolek_drake.diagnosis.fitting.entrants import Entrant, Runner, Start, en
 from hydrolek_drake.diagnosis.fitting.line_search import Along, searched_along
 from hydrolek_drake.diagnosis.fitting.local_search import has_other_minima, searched_near
 from hydrolek_drake.diagnosis.fitting.race import above_noise, hypotheses_of, run
-from hydrolek_drake.diagnosis.laws.additions import of_additions
-from hydrolek_drake.diagnosis.search.cost import cost
+from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.search.openings import Opening, observed, surely_above
-from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import FITS, NOISE, Rung, Settings
 from hydrolek_drake.diagnosis.structures.addition import names_of
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.cost import cost
+from hydrolek_drake.diagnosis.structures.law_terms import of_additions
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.least_squares.lockstep import descend
 

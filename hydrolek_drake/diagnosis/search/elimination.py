@@ -4,14 +4,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant, entered
+from hydrolek_drake.diagnosis.fitting.promise import promises_at
 from hydrolek_drake.diagnosis.fitting.race import above_noise, hypotheses_of, race, run
-from hydrolek_drake.diagnosis.laws.additions import LawTerm, of_additions
+from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.search.by_continuation import steps_for, traced
-from hydrolek_drake.diagnosis.search.promise import promises_at
 from hydrolek_drake.diagnosis.search.standing_in import standing_in
-from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import NOISE
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, narrowings, redundant
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm, of_additions
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.least_squares.lockstep import descend
 

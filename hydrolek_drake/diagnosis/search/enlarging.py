@@ -5,7 +5,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant, Runner, Start, entered
+from hydrolek_drake.diagnosis.fitting.parts import supply_before
 from hydrolek_drake.diagnosis.fitting.race import hypotheses_of, race, run
+from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.lost_commands.search import with_windows
 from hydrolek_drake.diagnosis.search.by_continuation import (
     continued,
@@ -14,14 +16,12 @@ from hydrolek_drake.diagnosis.search.by_continuation import (
     steps_for,
     traced,
 )
-from hydrolek_drake.diagnosis.search.cost import gain_needed
 from hydrolek_drake.diagnosis.search.elimination import without_each
 from hydrolek_drake.diagnosis.search.openings import Opening
-from hydrolek_drake.diagnosis.search.parts import supply_before
-from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.search.weighed_anew import weigh_anew
 from hydrolek_drake.diagnosis.settings import GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, widenings
+from hydrolek_drake.diagnosis.structures.cost import gain_needed
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 
 

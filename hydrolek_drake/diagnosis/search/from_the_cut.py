@@ -9,15 +9,16 @@ on among what the supply may lack.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+from hydrolek_drake.diagnosis.fitting.behind_cut import behind_of
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
+from hydrolek_drake.diagnosis.fitting.parts import acts_behind, behind_supply, supply_before
 from hydrolek_drake.diagnosis.fitting.race import race
-from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
+from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.search.best_first import Unlisted, search_structures
-from hydrolek_drake.diagnosis.search.parts import acts_behind, behind_supply, supply_before
-from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench, key_of
+from hydrolek_drake.diagnosis.structures.lost_windows import LostWindows
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
 
 def search_machine(
@@ -43,7 +44,7 @@ def search_machine(
     if part is None:
         search_structures(bench, candidates, found, say, unlisted)
         return
-    seen = Tried(seeds=_behind_of(bench, found.seeds))
+    seen = Tried(seeds=behind_of(bench, found.seeds))
     behind = [c for c in candidates if acts_behind(bench.rig, c.size_path)]
 
     def told(text: str) -> None:
@@ -72,34 +73,6 @@ def _keep_as_they_are(bench: Workbench, seen: Tried, found: Tried) -> None:
     if ended:
         for each in race(bench, ended, (replace(bench.settings.again, rounds=0, keep=len(ended)),)):
             found.keep(each)
-
-
-def _behind_of(bench: Workbench, seeds: Sequence[Hypothesis]) -> list[Hypothesis]:
-    """Structures of all of the machine without what they add before the cut, the best of each."""
-    kept: dict[frozenset[str], Hypothesis] = {}
-    for each in sorted(seeds, key=lambda h: h.fit.over_noise):
-        effects = tuple(c for c in each.effects if acts_behind(bench.rig, c.size_path))
-        kept.setdefault(key_of(effects), replace(each, effects=effects))
-    return list(kept.values())
-
-
-def fitted_behind(bench: Workbench, structure: Hypothesis) -> tuple[Workbench, Hypothesis] | None:
-    """What lies behind the recorded pressure of a pump, fitted for itself from where all of the machine was.
-
-    Args:
-        bench: data and problems of all of the machine.
-        structure: fitted to all of the machine.
-
-    Returns:
-        Data and problems, and the structure; None where there is no cut.
-    """
-    part = behind_supply(bench)
-    if part is None:
-        return None
-    [behind] = _behind_of(bench, [structure])
-    [fitted] = race(part, [Entrant(behind.effects, behind.values)], (bench.settings.again,))
-    bench.evaluations += part.evaluations
-    return part, fitted
 
 
 def _with_supply(bench: Workbench, seen: Tried, before: Sequence[Hypothesis]) -> list[Hypothesis]:

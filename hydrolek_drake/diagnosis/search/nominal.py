@@ -6,11 +6,11 @@ from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.longest_step import no_longer_than_borne
 from hydrolek_drake.diagnosis.fitting.race import race
+from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal, out_of_local_minima
-from hydrolek_drake.diagnosis.search.cost import gain_needed
-from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.search.weighed_anew import as_weighed
 from hydrolek_drake.diagnosis.settings import NOISE
+from hydrolek_drake.diagnosis.structures.cost import gain_needed
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 
@@ -40,11 +40,17 @@ def fit_nominal(bench: Workbench, found: Tried) -> None:
 
 
 def _go_on(bench: Workbench, found: Tried) -> None:
-    """Structures that were fitted to other data, the nominal model among them, the data weighed by the best one."""
+    """Structures that were fitted to other data, the nominal model among them, the data weighed by the best one.
+
+    By an observer first: where bristles hold a rod that a hair's breadth lets go, a free rollout of the new data has a
+    local minimum where the old ones left it.
+    """
     first = min(found.seeds, key=lambda h: h.fit.over_noise)
     bench.training = tuple(weighted_by(bench, first, bench.training))
-    rung = replace(bench.settings.again, keep=len(found.seeds))
-    fits = race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (rung,))
+    rungs = tuple(
+        replace(rung, keep=len(found.seeds)) for rung in (bench.settings.near[0], bench.settings.again)
+    )
+    fits = race(bench, [Entrant(h.effects, h.values) for h in found.seeds], rungs)
     for each in fits:
         found.keep(each)
     best = found.best  # what it contains may only have been fitted in another local minimum

@@ -7,16 +7,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hydrolek_drake.diagnosis import trace
+from hydrolek_drake.diagnosis.fitting.parts import enough_for
 from hydrolek_drake.diagnosis.fitting.problems import problem_of
-from hydrolek_drake.diagnosis.laws.additions import of_additions
-from hydrolek_drake.diagnosis.lost_commands.windows import LostWindows
-from hydrolek_drake.diagnosis.search.cost import dispersion, gain_needed
-from hydrolek_drake.diagnosis.search.parts import enough_for
-from hydrolek_drake.diagnosis.search.promise import Promise, promises_at
-from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.fitting.promise import Promise, promises_at
+from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS, GAINS, NOISE, Rung
 from hydrolek_drake.diagnosis.structures.addition import Sized, names_of
 from hydrolek_drake.diagnosis.structures.candidates import redundant
+from hydrolek_drake.diagnosis.structures.cost import dispersion, gain_needed
+from hydrolek_drake.diagnosis.structures.law_terms import of_additions
+from hydrolek_drake.diagnosis.structures.lost_windows import LostWindows
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.least_squares.lockstep import descend
 from hydrolek_drake.identification.least_squares.place import Place
@@ -154,7 +154,7 @@ def surely_above(bench: Workbench, structure: Hypothesis) -> float:
     enough = enough_for(bench)
     if enough > NOISE.at:
         return enough
-    return NOISE.ahead if structure.effects else NOISE.at
+    return NOISE.held_out if structure.effects else NOISE.at
 
 
 def _worth_while(parent: Hypothesis, addition: Sized, promised: float, enough: float) -> bool:

@@ -5,9 +5,9 @@ from dataclasses import replace
 from hydrolek_drake.diagnosis import trace
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.race import race
-from hydrolek_drake.diagnosis.search.cost import cost
-from hydrolek_drake.diagnosis.search.tried import Tried
+from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.settings import FITS, NOISE
+from hydrolek_drake.diagnosis.structures.cost import cost
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 

@@ -19,7 +19,7 @@ class Noise:
     off from there on; whether other values of its parameters follow both is tried.
     """
 
-    explained_ahead: float = 1.5
+    explained_held_out: float = 1.5
     """A structure with additions explains held-out data if it leaves at most so much, since these numbers' own
     uncertainty adds to the noise.
 
@@ -38,8 +38,8 @@ class Noise:
         return 1.0 + 2.0 * self.known
 
     @property
-    def ahead(self) -> float:
-        """A model lacks something ahead if it leaves so much there, whatever its uncertainty accounts for.
+    def held_out(self) -> float:
+        """A model lacks something if it leaves so much of held-out data, whatever its uncertainty accounts for.
 
         It is four times what the noise is known to: numbers that are bent are uncertain too.
         """

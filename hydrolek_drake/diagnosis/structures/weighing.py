@@ -18,9 +18,9 @@ from functools import partial
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.lost_commands.windows import arrivals
 from hydrolek_drake.diagnosis.settings import DATA, NOISE
 from hydrolek_drake.diagnosis.structures.as_rig import rig_of
+from hydrolek_drake.diagnosis.structures.lost_windows import arrivals
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.channel import faithful
 from hydrolek_drake.identification.experiments.experiment import Experiment

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.laws.additions import LawTerm, WithTerms
-from hydrolek_drake.diagnosis.lost_commands.windows import LostProblem, LostWindows, WithWindows
 from hydrolek_drake.diagnosis.progress import Progress
 from hydrolek_drake.diagnosis.settings import FITS, Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm, WithTerms
+from hydrolek_drake.diagnosis.structures.lost_windows import LostProblem, LostWindows, WithWindows
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.experiments.recorded_together import OneRecording
 from hydrolek_drake.identification.least_squares.least_squares import Fit

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
+from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.intervals.visible import visible_sizes
 from hydrolek_drake.diagnosis.search.openings import opened
-from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import GAINS
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench

@@ -9,12 +9,12 @@ from scipy.stats import chi2
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged
 from hydrolek_drake.diagnosis.intervals.curvature import NORMAL
-from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.laws.found import LostCommands, law_of
-from hydrolek_drake.diagnosis.laws.inputs import inputs_of
 from hydrolek_drake.diagnosis.laws.law import amplitude_intervals, frequency_interval
-from hydrolek_drake.diagnosis.laws.terms import Term, span_of
 from hydrolek_drake.diagnosis.report.words import known_to
+from hydrolek_drake.diagnosis.structures.inputs import inputs_of
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
+from hydrolek_drake.diagnosis.structures.term_forms import Term, span_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters

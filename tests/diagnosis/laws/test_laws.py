@@ -7,10 +7,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.laws.inputs import Input
 from hydrolek_drake.diagnosis.laws.law import FoundLaw, Law
-from hydrolek_drake.diagnosis.laws.terms import TERMS, Term, law_record, law_records, span_of
 from hydrolek_drake.diagnosis.report.words import where_sentence
+from hydrolek_drake.diagnosis.structures.inputs import Input
+from hydrolek_drake.diagnosis.structures.term_forms import TERMS, Term, law_record, law_records, span_of
 from hydrolek_drake.physics.law import BELOW, BEYOND, NEAR, Seen, law_value
 from hydrolek_drake.rigs.machine.short_law import read_law, terms_of
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.evidence.judged import Judged
-from hydrolek_drake.diagnosis.laws.additions import LawTerm
 from hydrolek_drake.diagnosis.laws.found import likeliest_side
-from hydrolek_drake.diagnosis.laws.inputs import Input
-from hydrolek_drake.diagnosis.laws.terms import Term
 from hydrolek_drake.diagnosis.settings import NOISE
+from hydrolek_drake.diagnosis.structures.inputs import Input
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
+from hydrolek_drake.diagnosis.structures.term_forms import Term
 
 RUBS, PUSHES = Term((), speed="sign(v)"), Term((), place="z")
 LEFT = 1000.0

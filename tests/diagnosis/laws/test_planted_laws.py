@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.laws.terms import Term, law_records, span_of
+from hydrolek_drake.diagnosis.laws.enlarged_rig import enlarged_rig
 from hydrolek_drake.diagnosis.report.panels import after
-from hydrolek_drake.diagnosis.structures.as_rig import enlarged_rig
+from hydrolek_drake.diagnosis.structures.term_forms import Term, law_records, span_of
 from hydrolek_drake.physics.law import BELOW, NEAR
 from hydrolek_drake.station.simulation import command_source, initial_context
 from hydrolek_drake.station.simulation import run as run_diagram

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.laws.additions import LawTerm, WithTerms
-from hydrolek_drake.diagnosis.laws.inputs import inputs_of
-from hydrolek_drake.diagnosis.laws.terms import TERMS, law_record, span_of
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
+from hydrolek_drake.diagnosis.structures.inputs import inputs_of
+from hydrolek_drake.diagnosis.structures.law_terms import LawTerm, WithTerms
+from hydrolek_drake.diagnosis.structures.term_forms import TERMS, law_record, span_of
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters
 

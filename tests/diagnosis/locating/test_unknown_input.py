@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.sparse import csc_matrix
 
-from hydrolek_drake.diagnosis.laws.inputs import inputs_of
 from hydrolek_drake.diagnosis.laws.law import FRICTIONS
-from hydrolek_drake.diagnosis.laws.terms import TERMS, law_record, span_of
 from hydrolek_drake.diagnosis.locating.knot_responses import squared
 from hydrolek_drake.diagnosis.locating.terms_for import Slightly, terms_seen
 from hydrolek_drake.diagnosis.locating.unknown_input import unknown_inputs
+from hydrolek_drake.diagnosis.structures.inputs import inputs_of
+from hydrolek_drake.diagnosis.structures.term_forms import TERMS, law_record, span_of
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from hydrolek_drake.diagnosis.laws.enlarged_rig import enlarged_rig
 from hydrolek_drake.diagnosis.laws.found import names_of
-from hydrolek_drake.diagnosis.lost_commands.windows import joined, recording_of
 from hydrolek_drake.diagnosis.report.words import law_sentence, where_sentence
-from hydrolek_drake.diagnosis.structures.as_rig import enlarged_rig
+from hydrolek_drake.diagnosis.structures.lost_windows import joined, recording_of
 from hydrolek_drake.identification.experiments.experiment import Experiment
 
 LOST_S, AHEAD_S = ((3.27, 3.41), (8.14, 8.26)), ((8.08, 8.22),)

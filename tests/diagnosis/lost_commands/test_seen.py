@@ -5,11 +5,11 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from hydrolek_drake.diagnosis.laws.inputs import inputs_of
-from hydrolek_drake.diagnosis.laws.terms import span_of
+from hydrolek_drake.diagnosis.locating.lost_windows_seen import lost_seen
 from hydrolek_drake.diagnosis.lost_commands.search import with_windows
-from hydrolek_drake.diagnosis.lost_commands.seen import lost_seen
-from hydrolek_drake.diagnosis.lost_commands.windows import recording_of
+from hydrolek_drake.diagnosis.structures.inputs import inputs_of
+from hydrolek_drake.diagnosis.structures.lost_windows import recording_of
+from hydrolek_drake.diagnosis.structures.term_forms import span_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales
 from hydrolek_drake.identification.parameter_set import free_parameters

@@ -10,9 +10,9 @@ import pytest
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.evidence.judged import Conclusion, Judged
 from hydrolek_drake.diagnosis.fitting.problems import hypothesis_of
+from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.intervals.curvature import Interval
 from hydrolek_drake.diagnosis.locating.place import Location
-from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales

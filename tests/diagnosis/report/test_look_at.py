@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from hydrolek_drake.diagnosis.laws.inputs import inputs_of
 from hydrolek_drake.diagnosis.report.look_at import look_at, stage_sentences
+from hydrolek_drake.diagnosis.structures.inputs import inputs_of
 from hydrolek_drake.effects import EFFECTS
 
 SCALES = SimpleNamespace(

@@ -8,10 +8,10 @@ import pytest
 from hydrolek_drake.challenge.cases import read_case, record
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.race import race
+from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.search.best_first import search_structures
 from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal
 from hydrolek_drake.diagnosis.search.nominal import fit_nominal
-from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import NOISE, Settings
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.splitting import prepared

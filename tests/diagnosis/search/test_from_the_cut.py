@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hydrolek_drake.diagnosis.fitting.parts import acts_behind, behind_supply, cut
 from hydrolek_drake.diagnosis.inquiry import Answer, Inquiry
-from hydrolek_drake.diagnosis.search.parts import acts_behind, behind_supply, cut
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.fitting.projection import gain_of
+from hydrolek_drake.diagnosis.fitting.promise import promises_at
+from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.search.openings import opened
-from hydrolek_drake.diagnosis.search.promise import promises_at
-from hydrolek_drake.diagnosis.search.tried import Tried
 from hydrolek_drake.diagnosis.settings import GAINS
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
 from hydrolek_drake.diagnosis.structures.workbench import Workbench

@@ -12,9 +12,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.laws.inputs import Input
-from hydrolek_drake.diagnosis.laws.terms import Span, Term, law_record
 from hydrolek_drake.diagnosis.settings import FITS, GAINS, LOCATING
+from hydrolek_drake.diagnosis.structures.inputs import Input
+from hydrolek_drake.diagnosis.structures.term_forms import Span, Term, law_record
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.physics.law import PLACED, TERM_NAMES
 from hydrolek_drake.physics.records import copied

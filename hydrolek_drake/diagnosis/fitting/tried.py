@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, field
 
-from hydrolek_drake.diagnosis.search.cost import cost
-from hydrolek_drake.diagnosis.search.promise import Promise
+from hydrolek_drake.diagnosis.fitting.promise import Promise
 from hydrolek_drake.diagnosis.settings import GAINS, Settings
+from hydrolek_drake.diagnosis.structures.cost import cost
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 
 

@@ -6,10 +6,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.laws.inputs import Input
-from hydrolek_drake.diagnosis.laws.terms import Span
 from hydrolek_drake.diagnosis.locating.unknown_input import Unknown, near, unknown_inputs
-from hydrolek_drake.diagnosis.lost_commands.windows import (
+from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS
+from hydrolek_drake.diagnosis.structures.inputs import Input
+from hydrolek_drake.diagnosis.structures.lost_windows import (
     NONE,
     LostWindows,
     Windows,
@@ -18,7 +18,7 @@ from hydrolek_drake.diagnosis.lost_commands.windows import (
     recording_of,
     too_much,
 )
-from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS
+from hydrolek_drake.diagnosis.structures.term_forms import Span
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.rollout.run import Run

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.laws.inputs import Input
+from hydrolek_drake.diagnosis.structures.inputs import Input
 from hydrolek_drake.physics.law import BELOW, BEYOND, LAW, NEAR, OTHERS, PLACED, PLACES, SPEEDS, TIMES
 from hydrolek_drake.physics.probes import PROBES
 from hydrolek_drake.rollout.one_point import stroke_and_lever

@@ -13,10 +13,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from hydrolek_drake.diagnosis.laws.inputs import Input
-from hydrolek_drake.diagnosis.laws.terms import Span
 from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS
 from hydrolek_drake.diagnosis.structures.addition import Addition
+from hydrolek_drake.diagnosis.structures.inputs import Input
+from hydrolek_drake.diagnosis.structures.term_forms import Span
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.identification.problem import Problem
@@ -220,3 +220,8 @@ class WithWindows(ParameterSet):
         given = {**self._seen, **(values or {})}
         own = [free.to_unit(given[free.path]) for free in self.free[of_rig.size :]]
         return np.concatenate([of_rig, np.clip(np.array(own), 0.0, 1.0)])
+
+
+def lost_in(additions: Sequence[object]) -> LostWindows | None:
+    """Lost commands among the additions of a structure, if it has any."""
+    return next((c for c in additions if isinstance(c, LostWindows)), None)
