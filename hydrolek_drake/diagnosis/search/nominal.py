@@ -50,7 +50,9 @@ def _go_on(bench: Workbench, found: Tried) -> None:
     rungs = tuple(
         replace(rung, keep=len(found.seeds)) for rung in (bench.settings.near[0], bench.settings.again)
     )
-    fits = race(bench, [Entrant(h.effects, h.values) for h in found.seeds], rungs)
+    fits = race(bench, [Entrant((), h.values) for h in found.seeds if not h.effects], rungs[1:])
+    enlarged = [Entrant(h.effects, h.values) for h in found.seeds if h.effects]
+    fits += race(bench, enlarged, rungs) if enlarged else []
     for each in fits:
         found.keep(each)
     best = found.best  # what it contains may only have been fitted in another local minimum
