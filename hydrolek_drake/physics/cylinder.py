@@ -254,6 +254,8 @@ def dry_friction(velocity: float, bent: float, h: float, joint: Any) -> tuple[fl
         friction, slope = hooks.rod_friction(Sliding(velocity, p.friction_velocity, 0.0), joint)
         return friction, slope, 0.0
     level = _fully_bent(0.0, bent, joint)
+    if level == 0.0:
+        return 0.0, 0.0, 0.0
     fading = _fading(velocity, joint)
     rate, rise = bending(bent, velocity, h, fading, p.friction_velocity, p.bristle_deflection)
     stiffness = abs(level) * rise
@@ -278,7 +280,7 @@ def _fading(velocity: float, joint: Any) -> float:
 @njit
 def bent_on(bent: float, travel: float, h: float, joint: Any) -> float:
     """Share of the dry friction that bristles hold after the rod's way [m] within a step of `h` seconds."""
-    if not has_bristles(joint):
+    if not has_bristles(joint) or _fully_bent(0.0, travel, joint) == 0.0:
         return bent
     p = joint.cylinder
     fading = _fading(travel / h if h > 0.0 else 0.0, joint)

@@ -4,15 +4,16 @@ Surfaces meet in bristles, which bend before they slide (Dahl, A solid friction 
 1968; LuGre: Canudas de Wit, Olsson, Astrom, Lischinsky, IEEE Transactions on Automatic Control 40 (1995) 419). How far
 they are bent tells the share s of the dry friction at rest that acts:
 
-    s' = (v - v coth(v / v_0) s / g(v)) / z_b
+    s' = (v - sqrt(v^2 + v_0^2) s / g(v)) / z_b
 
 z_b is the deflection at which they slide at rest, g the friction at a speed over that at rest, v_0 the speed over
-which the sign of the speed is smoothed: at a steady speed s = g tanh(v / v_0). With z_b = 0 that is so at any time, and
-a body at rest creeps; with v_0 -> 0 it is LuGre's model, which holds a body at rest and lets
-friction fall over a way, not at once; with g = 1 it is Dahl's. LuGre's damping of the bristles, sigma_1 s' z_b, is told
-by the time sigma_1 / sigma_0 of damping over stiffness.
+which the sign of the speed is smoothed: at a steady speed s = g v / sqrt(v^2 + v_0^2). With z_b -> 0 that is so at any
+time, and a body at rest creeps; with v_0 -> 0 it is LuGre's model, which holds a body at rest and lets friction fall
+over a way, not at once; with g = 1 it is Dahl's. LuGre's damping of the bristles, sigma_1 s' z_b, is told by the time
+sigma_1 / sigma_0 of damping over stiffness.
 """
 
+import math
 from typing import NamedTuple
 
 from hydrolek_drake.compiling import njit
@@ -32,14 +33,14 @@ class Sliding(NamedTuple):
     """How two surfaces rub, for dry frictions of any level."""
 
     velocity: float  # of the body [m/s or rad/s]
-    smooth: float  # speed below which the sign of the velocity is smoothed; 0 where bristles are fully bent
-    side: float  # to which they are bent then, -1 or 1
+    smooth: float  # speed below which the sign of the velocity is smoothed
+    side: float  # to which bristles are fully bent, -1 or 1; 0 where there are none
 
 
 @njit
 def sign_of(at: Sliding) -> float:
     """Share of a dry friction that acts: tanh(v / smooth), or that of fully bent bristles."""
-    return hyperbolic_tangent(at.velocity / at.smooth) if at.smooth > 0.0 else at.side
+    return hyperbolic_tangent(at.velocity / at.smooth) if at.side == 0.0 else at.side
 
 
 @njit
@@ -53,7 +54,7 @@ def coulomb_friction(at: Sliding, level: float) -> tuple[float, float]:
     if level == 0.0:
         return 0.0, 0.0
     share = sign_of(at)
-    if not at.smooth > 0.0:
+    if at.side != 0.0:
         return level * share, 0.0
     return level * share, level * share / at.velocity if abs(share) > 1e-3 else level / at.smooth
 
@@ -101,9 +102,9 @@ def slope_of_growth(friction: float, secant: float, further: float, velocity: fl
 
 @njit
 def _smoothed_size(velocity: float, smooth: float) -> tuple[float, float]:
-    """The product v coth(v / v_0), a size of the velocity that does not fall below v_0, and tanh(v / v_0)."""
-    share = hyperbolic_tangent(velocity / smooth)
-    return velocity / share if abs(share) > 1e-3 else smooth, share
+    """Size of a velocity that does not fall below v_0, sqrt(v^2 + v_0^2), and its smoothed sign, v over that."""
+    size = math.sqrt(velocity * velocity + smooth * smooth)
+    return size, velocity / size
 
 
 @njit

@@ -228,10 +228,11 @@ def rates(
         if secant > 0.0 and s.w != 0.0:
             further, _ = hooks.load_friction(FURTHER * s.w, joint)
             slope_r += slope_of_growth(rubbing, secant, further, s.w)
-        rubbing, secant, _ = cylinder.dry_friction(v, s.bent, h, joint)
-        if secant > 0.0 and v != 0.0:
-            further, _, _ = cylinder.dry_friction(FURTHER * v, s.bent, h, joint)
-            slope_f += slope_of_growth(rubbing, secant, further, v)
+        if not cylinder.has_bristles(joint):  # what these hold, they hold by their stiffness
+            rubbing, secant, _ = cylinder.dry_friction(v, s.bent, h, joint)
+            if secant > 0.0 and v != 0.0:
+                further, _, _ = cylinder.dry_friction(FURTHER * v, s.bent, h, joint)
+                slope_f += slope_of_growth(rubbing, secant, further, v)
     lead_acceleration = slope_lead = through = 0.0
     per_inertia = 1.0 / inertia  # a division takes as long as ten products
     if playing:

@@ -57,10 +57,15 @@ def _off_deg(
             "joints.right_j3.effects.cylinder.coulomb_friction.coulomb_N": 2000.0,
             "joints.right_j2.effects.valve.null_leakage.conductance_m3_per_s_Pa": 1e-13,
         },
+        {
+            "joints.right_j3.effects.cylinder.coulomb_friction.coulomb_N": 2000.0,
+            "joints.right_j3.cylinder.bristle_deflection": 3e-5,
+            "joints.right_j3.cylinder.bristle_time": 3e-4,
+        },
         {"joints.right_j2.effects.base.compliance.stiffness_Nm_per_rad": 2e5},
         {"joints.right_j2.effects.linkage.backlash.gap_rad": 0.005},
     ],
-    ids=["healthy", "droop", "payload", "friction and leak", "rocking base", "play"],
+    ids=["healthy", "droop", "payload", "friction and leak", "bristles", "rocking base", "play"],
 )
 @pytest.mark.thorough(but=1)
 def test_joints_move_as_in_the_diagram(two_joints, values) -> None:

@@ -40,19 +40,11 @@ def fit_nominal(bench: Workbench, found: Tried) -> None:
 
 
 def _go_on(bench: Workbench, found: Tried) -> None:
-    """Structures that were fitted to other data, the nominal model among them, the data weighed by the best one.
-
-    By an observer first: where bristles hold a rod that a hair's breadth lets go, a free rollout of the new data has a
-    local minimum where the old ones left it.
-    """
+    """Structures that were fitted to other data, the nominal model among them, the data weighed by the best one."""
     first = min(found.seeds, key=lambda h: h.fit.over_noise)
     bench.training = tuple(weighted_by(bench, first, bench.training))
-    rungs = tuple(
-        replace(rung, keep=len(found.seeds)) for rung in (bench.settings.near[0], bench.settings.again)
-    )
-    fits = race(bench, [Entrant((), h.values) for h in found.seeds if not h.effects], rungs[1:])
-    enlarged = [Entrant(h.effects, h.values) for h in found.seeds if h.effects]
-    fits += race(bench, enlarged, rungs) if enlarged else []
+    rung = replace(bench.settings.again, keep=len(found.seeds))
+    fits = race(bench, [Entrant(h.effects, h.values) for h in found.seeds], (rung,))
     for each in fits:
         found.keep(each)
     best = found.best  # what it contains may only have been fitted in another local minimum

@@ -13,7 +13,7 @@ from hydrolek_drake.physics.solenoid import steps_needed
 from hydrolek_drake.rollout.drive import acts_early
 from hydrolek_drake.rollout.lanes.view import Kind
 
-GROUPS = (("rod_friction", "load_friction"),)
+GROUPS = (("rod_friction", "rod_damping", "load_friction"),)
 """Hooks whose effects take time in every step. A loop over lanes is compiled with a group or without it. What enters at
 other hooks is a number that may be zero: all of them together make a step of eight machines a fifth slower, and each
 kind that is not compiled costs 10 s, or has its machines rolled out one by one, which takes three times as long."""
