@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from lane_runs import SIZES, STEP, drawn_law, in_lanes, varied, with_effect
 
+from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.physics.law import TERM_NAMES
+from hydrolek_drake.physics.records import position_of
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout.lanes import compiling as lane_compiling
 from hydrolek_drake.rollout.lanes.kinds import kind_of
@@ -19,6 +21,14 @@ def test_few_kinds_are_compiled():
         kind_of(with_effect(rig, effect).records()[:1], 1) for effect in SIZES if effect != "linkage.backlash"
     }
     assert len(kinds) <= 6  # without any, rubbing, warming, sticking, rocking, driven otherwise
+
+
+def test_a_loop_knows_of_no_friction_where_nothing_rubs():
+    """Each of these asks where the machine is, which would keep the loop from vector instructions: twice the time."""
+    known = dict(kind_of(load_rig("hydrolek_right_j2").records()[:1], 1).known)
+    for effect in EFFECTS.values():
+        if {"rod_friction", "rod_damping", "load_friction"} & set(effect.hooks):
+            assert position_of(effect.key, effect.size) in known, effect.id
 
 
 def test_until_a_loop_is_compiled_machines_go_one_by_one_and_nobody_waits(monkeypatch, tmp_path):

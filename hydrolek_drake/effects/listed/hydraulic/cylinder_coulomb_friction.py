@@ -10,7 +10,7 @@ from hydrolek_drake.physics.parameters import Parameter
 EFFECT = Effect(
     id="cylinder.coulomb_friction",
     title="seal friction",
-    equation="coulomb tanh(v / friction_velocity) against the rod",
+    equation="coulomb tanh(v / friction_velocity) against the rod, or as the rig's bristles hold it",
     parameters=(
         Parameter(
             "coulomb_N", "N", "Coulomb friction of the seals (N m for a vane)", neutral=0.0, lowest=0.0

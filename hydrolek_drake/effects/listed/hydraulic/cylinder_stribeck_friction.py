@@ -10,7 +10,7 @@ from hydrolek_drake.physics.parameters import Parameter
 EFFECT = Effect(
     id="cylinder.stribeck_friction",
     title="Coulomb and Stribeck friction of the seals",
-    equation="(coulomb + stribeck e^(-|v/v_s|^n)) tanh(v / friction_velocity) against the rod",
+    equation="(coulomb + stribeck e^(-|v/v_s|^n)) tanh(v / friction_velocity) against the rod, or as bristles hold it",
     parameters=(
         Parameter("coulomb_N", "N", "Coulomb friction of the seals", neutral=0.0, lowest=0.0),
         Parameter("stribeck_N", "N", "further friction near zero speed", neutral=0.0, lowest=0.0),
