@@ -121,6 +121,7 @@ def test_the_diagram_agrees_with_the_rollout(name):
     assert largest <= 0.02
 
 
+@pytest.mark.thorough
 def test_a_lane_does_what_the_machine_does_alone(gripped, random_volts):
     records = np.repeat(gripped(**{BRISTLES: DEFLECTION}).records(), 3)
     records["cylinder"]["bristle_deflection"] *= [1.0, 3.0, 0.1]

@@ -176,7 +176,8 @@ def test_numbers_that_only_frictions_read_are_searched_with_these_alone() -> Non
     scales = hydraulic_scales(rig.records()[0], 1e-4, 0.2, 0.5, 40.0, 0.0, (0.2, 0.2))
     found = {c.id: c for c in candidates_of(rig, "joint", scales)}
     nominal = free_of_joints(rig, {"joint"})
-    assert not [free.path for free in nominal if "friction_velocity" in free.path or "fading" in free.path]
+    read = ("friction_velocity", "fading", "bristle")
+    assert not [free.path for free in nominal if any(name in free.path for name in read)]
 
     def numbers(*ids: str) -> list[str]:
         with ThreadPoolExecutor(1) as pool:
@@ -185,7 +186,11 @@ def test_numbers_that_only_frictions_read_are_searched_with_these_alone() -> Non
         return [free.path.removeprefix("joints.joint.") for free in added]
 
     assert numbers("command.delay") == []
-    assert numbers("cylinder.coulomb_friction") == ["cylinder.friction_velocity"]
+    assert numbers("cylinder.coulomb_friction") == [
+        "cylinder.friction_velocity",
+        "cylinder.bristle_deflection",
+        "cylinder.bristle_time",
+    ]
     assert numbers("load.coulomb_friction") == ["load.friction_velocity"]
     assert numbers("load.coulomb_friction", "load.stribeck_friction") == [
         "load.friction_velocity",
