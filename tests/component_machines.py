@@ -46,5 +46,5 @@ def machine_text(name: str) -> str:
             entries = dict(given)
             if "flows" in entries:
                 entries |= _flows(entries.pop("flows"))
-            joint[stage] = entries if "variant" in entries else joint[stage] | entries
+            joint[stage] = entries if "variant" in entries else joint.get(stage, {}) | entries
     return str(yaml.safe_dump(tree, sort_keys=False))

@@ -161,5 +161,6 @@ def bending(
         deflection: as of `bristle_rate`.
     """
     size, share = _smoothed_size(velocity, smooth)
-    over = 1.0 / (deflection + size * h / fading)
-    return (velocity - size * bent / fading) * over, max(1.0 - bent * share / fading, 0.0) * over
+    within = deflection + size * h / fading
+    rate = bristle_rate(bent, velocity, fading, smooth, within)
+    return rate, max(1.0 - bent * share / fading, 0.0) / within

@@ -8,7 +8,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import base, cylinder, end_stops, fluid, hooks, linkage, load, supply, valve
+from hydrolek_drake.physics import (
+    base,
+    cylinder,
+    end_stops,
+    fluid,
+    hooks,
+    linkage,
+    load,
+    rod_friction,
+    supply,
+    valve,
+)
 from hydrolek_drake.physics.angle import Angle, AngleKept, angle, angle_near
 from hydrolek_drake.physics.driven import (
     chamber_pressures,
@@ -208,7 +219,7 @@ def rates(
         rises_b = stiff_b * joint.cylinder.area_b * lever if s.p_b > 0.0 else 0.0
         if rare(joint) and pressures_are_driven(joint):
             rate_a = rate_b = slope_a = slope_b = falls_a = rises_b = 0.0
-        friction, slope_f, bristles = cylinder.friction_force(stroke, v, s.bent, h, time, joint)
+        friction, slope_f, bristles = rod_friction.friction_force(stroke, v, s.bent, h, time, joint)
         stop_damping, stop_stiffness = end_stops.slopes(stroke, v, h, joint)
         slope_f += stop_damping
         stop_stiffness += bristles
@@ -228,10 +239,10 @@ def rates(
         if secant > 0.0 and s.w != 0.0:
             further, _ = hooks.load_friction(FURTHER * s.w, joint)
             slope_r += slope_of_growth(rubbing, secant, further, s.w)
-        if not cylinder.has_bristles(joint):  # what these hold, they hold by their stiffness
-            rubbing, secant, _ = cylinder.dry_friction(v, s.bent, h, joint)
+        if not rod_friction.has_bristles(joint):  # what these hold, they hold by their stiffness
+            rubbing, secant, _ = rod_friction.dry_friction(v, s.bent, h, joint)
             if secant > 0.0 and v != 0.0:
-                further, _, _ = cylinder.dry_friction(FURTHER * v, s.bent, h, joint)
+                further, _, _ = rod_friction.dry_friction(FURTHER * v, s.bent, h, joint)
                 slope_f += slope_of_growth(rubbing, secant, further, v)
     lead_acceleration = slope_lead = through = 0.0
     per_inertia = 1.0 / inertia  # a division takes as long as ten products

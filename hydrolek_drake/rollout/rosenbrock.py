@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import cylinder, hooks, supply
+from hydrolek_drake.physics import cylinder, hooks, rod_friction, supply
 from hydrolek_drake.physics.lines.long_line import Fed
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.physics.solenoid import GAMMA
@@ -154,7 +154,7 @@ def first_stage(s: State, k: State, slope: Slopes, h: float, joint: Any) -> Stat
         s.lead_q + h * k.lead_q,
         s.lead_w + h * k.lead_w,
         relief,
-        cylinder.bent_on(s.bent, h * slope.lever * _turned_by_rod(k, joint), h, joint),
+        rod_friction.bent_on(s.bent, h * slope.lever * _turned_by_rod(k, joint), h, joint),
     )
 
 
@@ -195,7 +195,7 @@ def second_stage(s: State, k: State, m: State, slope: Slopes, h: float, joint: A
         s.lead_q + half * (3.0 * k.lead_q + n.lead_q),
         s.lead_w + half * (3.0 * k.lead_w + n.lead_w),
         relief,
-        cylinder.bent_on(s.bent, half * slope.lever * turning, h, joint),
+        rod_friction.bent_on(s.bent, half * slope.lever * turning, h, joint),
     )
 
 

@@ -8,16 +8,11 @@ import numpy as np
 from numba import njit
 from pydrake.systems.framework import BasicVector, Context, ContinuousState, LeafSystem
 
-from hydrolek_drake.physics.cylinder import (
-    bent_on,
-    bent_rate,
-    friction_force,
-    pressure_force,
-    pressure_rates,
-)
+from hydrolek_drake.physics.cylinder import pressure_force, pressure_rates
 from hydrolek_drake.physics.driven import INPUTS
 from hydrolek_drake.physics.fluid import softened
 from hydrolek_drake.physics.probes import CAPACITY_A, CAPACITY_B, CYLINDER
+from hydrolek_drake.physics.rod_friction import bent_on, bent_rate, friction_force
 from hydrolek_drake.systems.recorded import Recorded
 from hydrolek_drake.systems.short_law import Outside
 

@@ -1,7 +1,4 @@
-"""Dry friction that bristles hold: closed forms, rest, and both executions."""
-
-import sys
-from pathlib import Path
+"""Dry friction that bristles hold: closed forms and rest; both executions stand in `test_component_executions`."""
 
 import numpy as np
 import pytest
@@ -11,12 +8,6 @@ from scipy.integrate import solve_ivp
 from hydrolek_drake.physics.friction import bending, bent_after, bristle_rate
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
-from hydrolek_drake.rollout.kernel import SIGNALS
-from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes
-from hydrolek_drake.rollout.run import Run
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "scripts"))
-from two_executions import differences
 
 SMOOTH, DEFLECTION = 1e-4, 2e-5  # m/s, m
 COULOMB = "effects.cylinder.coulomb_friction.coulomb_N"
@@ -112,24 +103,3 @@ def test_steps_four_times_as_long_lead_to_the_same_rest(gripped):
         _, coarse = _pushed(rig, step)
         assert_allclose(coarse.position[-1], fine.position[-1], atol=np.radians(0.02))
         assert_allclose(_force(rig, coarse)[-1], _force(rig, fine)[-1], atol=0.02 * LEVEL)
-
-
-@pytest.mark.parametrize("name", ["hydrolek_right_j2", "joint_bench"])
-def test_the_diagram_agrees_with_the_rollout(name):
-    rig = load_rig(name).with_values({BRISTLES: DEFLECTION, COULOMB: 300.0, "cylinder.bristle_time": 2e-4})
-    [(_, largest)] = differences.compare(rig, 3.0, 2.5e-4, 5)
-    assert largest <= 0.02
-
-
-@pytest.mark.thorough
-def test_a_lane_does_what_the_machine_does_alone(gripped, random_volts):
-    records = np.repeat(gripped(**{BRISTLES: DEFLECTION}).records(), 3)
-    records["cylinder"]["bristle_deflection"] *= [1.0, 3.0, 0.1]
-    times, volts = random_volts(3.0)
-    together = roll_out_lanes(
-        Run(records[:1], times, volts, times, longest_step=5e-4).of(records), at_once=True
-    )
-    for place, found in enumerate(together):
-        alone = roll_out(records[place : place + 1], times, volts, times, longest_step=5e-4)
-        for signal in SIGNALS:
-            np.testing.assert_array_equal(getattr(found.signals, signal), getattr(alone.signals, signal))

@@ -5,7 +5,7 @@ import pytest
 from bench_commands import AT_REST, LOWER, STEP_UP, lever
 from numpy.testing import assert_allclose
 
-from hydrolek_drake.physics import amplifier, cylinder, fluid, hooks
+from hydrolek_drake.physics import amplifier, fluid, hooks, rod_friction
 from hydrolek_drake.rigs import load_rig
 
 
@@ -33,7 +33,7 @@ def test_warm_up_thins_the_oil_on_its_time_course(record):
         share = 0.13 * (1 - np.exp(-time / 7))
         assert_allclose(hooks.flow_gain(time, joint), 1 + share, rtol=1e-13)
         assert_allclose(
-            cylinder.friction_force(0.1, 0.03, 0.0, 0.0, time, joint)[0],
+            rod_friction.friction_force(0.1, 0.03, 0.0, 0.0, time, joint)[0],
             3000 * (1 - share) * 0.03,
             rtol=1e-13,
         )
@@ -170,13 +170,13 @@ def test_coulomb_and_stribeck_friction_curves(record):
     )
     for speed in v:
         assert_allclose(
-            cylinder.friction_force(0.1, speed, 0.0, 0.0, 0.0, coulomb)[0],
+            rod_friction.friction_force(0.1, speed, 0.0, 0.0, 0.0, coulomb)[0],
             700 * np.tanh(speed / 0.5e-3),
             rtol=1e-13,
         )
         level = 300 + 400 * np.exp(-((speed / 0.004) ** 2))
         assert_allclose(
-            cylinder.friction_force(0.1, speed, 0.0, 0.0, 0.0, both)[0],
+            rod_friction.friction_force(0.1, speed, 0.0, 0.0, 0.0, both)[0],
             level * np.tanh(speed / 0.5e-3),
             rtol=1e-13,
         )
@@ -196,7 +196,7 @@ def test_further_friction_at_rest_fades_with_the_exponent_of_its_lubricant(recor
     for speed in (-0.05, -0.004, 0.0, 0.0007, 0.02):
         level = 400.0 * np.exp(-((abs(speed) / 0.004) ** exponent))
         assert_allclose(
-            cylinder.friction_force(0.1, speed, 0.0, 0.0, 0.0, joint)[0],
+            rod_friction.friction_force(0.1, speed, 0.0, 0.0, 0.0, joint)[0],
             level * np.tanh(speed / 0.5e-3),
             rtol=1e-12,
         )
@@ -210,9 +210,9 @@ def test_friction_asymmetry_is_half_the_difference_between_the_directions(record
             "cylinder.viscous_friction": 0.0,
         }
     )
-    out, back = (cylinder.friction_force(0.1, speed, 0.0, 0.0, 0.0, joint)[0] for speed in (0.05, -0.05))
+    out, back = (rod_friction.friction_force(0.1, speed, 0.0, 0.0, 0.0, joint)[0] for speed in (0.05, -0.05))
     assert_allclose((out, back), (650.0, -750.0), rtol=1e-13)
-    assert cylinder.friction_force(0.1, 0.0, 0.0, 0.0, 0.0, joint)[0] == 0.0
+    assert rod_friction.friction_force(0.1, 0.0, 0.0, 0.0, 0.0, joint)[0] == 0.0
 
 
 @pytest.mark.parametrize(
@@ -228,5 +228,5 @@ def test_cushion_brakes_only_the_last_part_of_retraction(record, stroke, velocit
         }
     )
     assert_allclose(
-        cylinder.friction_force(stroke, velocity, 0.0, 0.0, 0.0, joint)[0], expected, rtol=1e-12, atol=0
+        rod_friction.friction_force(stroke, velocity, 0.0, 0.0, 0.0, joint)[0], expected, rtol=1e-12, atol=0
     )

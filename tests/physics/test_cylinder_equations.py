@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from hydrolek_drake.physics import cylinder, end_stops
+from hydrolek_drake.physics import cylinder, end_stops, rod_friction
 from hydrolek_drake.rigs import load_rig
 
 A_A, A_B, V_0, B = 800e-6, 600e-6, 40e-6, 1e9
@@ -47,7 +47,7 @@ def test_pressures_do_not_fall_below_zero_but_rise_from_there(bench_joint):
 def test_rod_force_of_4_9(bench_joint):
     joint = bench_joint()
     assert_allclose(cylinder.pressure_force(7.3e6, 3.1e6, joint), A_A * 7.3e6 - A_B * 3.1e6, rtol=1e-14)
-    force, slope, _ = cylinder.friction_force(0.07, -0.031, 0.0, 0.0, 0.0, joint)
+    force, slope, _ = rod_friction.friction_force(0.07, -0.031, 0.0, 0.0, 0.0, joint)
     assert_allclose((force, slope), (3000 * -0.031, 3000), rtol=1e-14)
 
 
@@ -116,7 +116,7 @@ def test_a_piston_s_stops_push_back_beyond_its_stroke_and_never_pull(link_joint,
             "cylinder.viscous_friction": 0.0,
         }
     )
-    found, slope, _ = cylinder.friction_force(stroke, velocity, 0.0, 0.0, 0.0, joint)
+    found, slope, _ = rod_friction.friction_force(stroke, velocity, 0.0, 0.0, 0.0, joint)
     assert_allclose(found, force, rtol=1e-12, atol=1e-9)
     assert slope == 0.0
     if force:
@@ -134,13 +134,15 @@ def test_a_stop_that_hardens_is_hunt_and_crossley_s(link_joint, depth, speed):
         }
     )  # fmt: skip
     expected = 5e6 / 1e-3**0.5 * depth**1.5 * (1.0 + 6.0 * speed)
-    found, slope, _ = cylinder.friction_force(0.2 + depth, speed, 0.0, 0.0, 0.0, joint)
+    found, slope, _ = rod_friction.friction_force(0.2 + depth, speed, 0.0, 0.0, 0.0, joint)
     assert_allclose(found, expected, rtol=1e-12)
     damping, stiffness = end_stops.slopes(0.2 + depth, speed, 0.0, joint)
     assert_allclose(slope + damping, 5e6 / 1e-3**0.5 * depth**1.5 * 6.0, rtol=1e-12)
     if speed >= 0.0:  # outwards the stiffness of one that is still pressed, which is larger
         assert_allclose(stiffness, 1.5 * expected / depth, rtol=1e-9)
-    assert_allclose(cylinder.friction_force(-depth, -speed, 0.0, 0.0, 0.0, joint)[0], -expected, rtol=1e-12)
+    assert_allclose(
+        rod_friction.friction_force(-depth, -speed, 0.0, 0.0, 0.0, joint)[0], -expected, rtol=1e-12
+    )
 
 
 def test_what_hits_a_stop_of_hunt_and_crossley_loses_the_more_the_faster_it_comes(link_joint):
@@ -154,7 +156,7 @@ def test_what_hits_a_stop_of_hunt_and_crossley_loses_the_more_the_faster_it_come
     for came in (0.02, 0.05):
         x, v, h, mass = 0.0, came, 1e-6, 50.0
         while x >= 0.0:
-            force = cylinder.friction_force(0.2 + x, v, 0.0, 0.0, 0.0, joint)[0]
+            force = rod_friction.friction_force(0.2 + x, v, 0.0, 0.0, 0.0, joint)[0]
             v -= h * force / mass
             x += h * v
         assert_allclose(-v / came, 1.0 - came, atol=2.0 * came**2)

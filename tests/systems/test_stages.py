@@ -4,7 +4,17 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.physics import amplifier, command, cylinder, fluid, linkage, load, sensor, solenoid
+from hydrolek_drake.physics import (
+    amplifier,
+    command,
+    cylinder,
+    fluid,
+    linkage,
+    load,
+    rod_friction,
+    sensor,
+    solenoid,
+)
 from hydrolek_drake.physics.valves.openings import openings
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.systems.actuator import Actuator
@@ -173,8 +183,8 @@ def test_actuator_state_and_force():
             pressure[i], pressure[N + i], flow[i], flow[N + i], motion[i], motion[N + i], joint
         )
         assert (rates[i], rates[N + i]) == (a, b)
-        assert rates[2 * N + i] == cylinder.bent_rate(bent[i], motion[N + i], joint)
-        friction, _, _ = cylinder.friction_force(motion[i], motion[N + i], bent[i], 0.0, 0.0, joint)
+        assert rates[2 * N + i] == rod_friction.bent_rate(bent[i], motion[N + i], joint)
+        friction, _, _ = rod_friction.friction_force(motion[i], motion[N + i], bent[i], 0.0, 0.0, joint)
         p = joint["cylinder"]
         assert force[i] == pytest.approx(p["area_a"] * pressure[i] - p["area_b"] * pressure[N + i] - friction)
 
