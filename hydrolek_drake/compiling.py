@@ -13,5 +13,10 @@ def njit(*function: Any, **options: Any) -> Any:
 
     A rollout that divides by zero then leaves all bounds, which is a scored outcome, and a loop over machines in lanes
     has no exceptions that would keep it from vector instructions.
+
+    A function is part of those that call it, unless it is kept on disk for itself (`cache`): handing on two dozen
+    numbers costs a third of a rollout, and one call that is left keeps a loop over lanes from vector instructions.
+    Where that was left to the compiler's estimate, it depended on what the process had compiled before.
     """
-    return numba.njit(*function, **{**COMPILED, **options})
+    inlined = {"forceinline": not options.get("cache", False)}
+    return numba.njit(*function, **{**COMPILED, **inlined, **options})

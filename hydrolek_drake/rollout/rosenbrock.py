@@ -2,8 +2,6 @@
 
 k_1 = f(y) + GAMMA h J k_1, k_2 = f(y + h k_1) - 2 k_1 + GAMMA h J k_2, y' = y + h (3 k_1 + k_2)/2 (Verwer and others,
 see `physics.solenoid.GAMMA`): of second order whatever J is, and the more exact the more of the Jacobian it holds.
-
-What a step calls is inlined: to hand on two dozen numbers costs a twelfth of it.
 """
 
 from typing import Any
@@ -18,13 +16,13 @@ from hydrolek_drake.physics.solenoid import GAMMA
 from hydrolek_drake.rollout.rates import Slopes, State, Turned, rates
 
 
-@njit(forceinline=True)
+@njit
 def _lessening(part: float, slope: float) -> float:
     """By how much a stiff rate is lessened in a stage, GAMMA times a step long [s]; 1 for one that is not."""
     return 1.0 if slope == 0.0 else 1.0 / (1.0 - part * slope)
 
 
-@njit(forceinline=True)
+@njit
 def implicit(f: State, slope: Slopes, h: float, joint: Any) -> State:
     """Rates `k` of a stage of a step of `h` seconds, (I - GAMMA h J) k = f; what the supply remembers is apart.
 
@@ -97,7 +95,7 @@ def through_oil(slope: Slopes, h: float, inertia: float, joint: Any) -> tuple[fl
     return share * stiffness, share
 
 
-@njit(forceinline=True)
+@njit
 def pushed(f: State, slope: Slopes, h: float, joint: Any) -> float:
     """Rate of the pistons' force that a stage's rates `f` make while the joint is held [N/s], see `through_oil`."""
     part = GAMMA * h
@@ -108,7 +106,7 @@ def pushed(f: State, slope: Slopes, h: float, joint: Any) -> float:
     return force_a - force_b + part * _stiffness(part, slope, joint) * tilt_rate
 
 
-@njit(forceinline=True)
+@njit
 def _stiffness(part: float, slope: Slopes, joint: Any) -> float:
     """By how much an angle that the actuator turns lessens its force within a stage [N/rad]."""
     area_a, area_b = _areas(joint)
@@ -116,14 +114,14 @@ def _stiffness(part: float, slope: Slopes, joint: Any) -> float:
     return stiffness_a + area_b * _lessening(part, slope.p_b) * slope.rises_b
 
 
-@njit(forceinline=True)
+@njit
 def _areas(joint: Any) -> tuple[float, float]:
     """Areas on which the oil acts; none of an electric motor."""
     c = joint.cylinder
     return (0.0, 0.0) if cylinder.is_electric(joint) else (c.area_a, c.area_b)
 
 
-@njit(forceinline=True)
+@njit
 def _remembered(
     s: State, rate: float, relief_rate: float, slope: float, h: float, joint: Any
 ) -> tuple[float, float]:
@@ -133,13 +131,13 @@ def _remembered(
     return supply.advanced(s.supply, s.relief, rate, slope, h, joint)
 
 
-@njit(forceinline=True)
+@njit
 def _turned_by_rod(k: State, joint: Any) -> float:
     """Rate at which the rod turns the joint against the base [rad/s], of the rates of a stage."""
     return (k.lead_q if hooks.linkage_gap(joint) > 0.0 else k.q) - k.tilt
 
 
-@njit(forceinline=True)
+@njit
 def first_stage(s: State, k: State, slope: Slopes, h: float, joint: Any) -> State:
     """State after a step of `h` seconds with the rates `k` of its first stage, `implicit`."""
     remembered, relief = _remembered(s, k.supply, k.relief, slope.supply, h, joint)
@@ -158,7 +156,7 @@ def first_stage(s: State, k: State, slope: Slopes, h: float, joint: Any) -> Stat
     )
 
 
-@njit(forceinline=True)
+@njit
 def changed(m: State, k: State) -> State:
     """What the second stage begins with, f(y + h k) - 2 k, from rates `m` there and the first stage's `k`."""
     return State(
@@ -176,7 +174,7 @@ def changed(m: State, k: State) -> State:
     )
 
 
-@njit(forceinline=True)
+@njit
 def second_stage(s: State, k: State, m: State, slope: Slopes, h: float, joint: Any) -> State:
     """State after a step of `h` seconds: rates `k` of its first stage, `m` those where this ended."""
     n = implicit(changed(m, k), slope, h, joint)
@@ -199,7 +197,7 @@ def second_stage(s: State, k: State, m: State, slope: Slopes, h: float, joint: A
     )
 
 
-@njit(inline="always")  # as `driven_on`
+@njit
 def one_step(
     s: State,
     x: float,

@@ -1,5 +1,8 @@
 """Which loops of lanes are compiled, when, and by whom."""
 
+import os
+import subprocess
+import sys
 from collections import Counter
 
 import numpy as np
@@ -60,6 +63,38 @@ def test_the_process_compiles_the_loop_that_was_asked_for(tmp_path):
     mark.unlink(missing_ok=True)
     assert lane_compiling._begin(records, law, 1).wait(300) == 0
     assert mark.exists()
+
+
+@pytest.mark.long("three quarters of a minute: both loops are compiled")
+def test_a_loop_calls_nothing_whatever_was_compiled_before(tmp_path):
+    """A call keeps it from vector instructions; one was left where a machine alone had been compiled in the process."""
+    told = subprocess.run(
+        [sys.executable, "-c", _BOTH_COMPILED],
+        env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path), "HYDROLEK_CACHE_DIR": ""},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    calls = told.stdout.split()
+    assert "llvm.sqrt.v8f64" in calls
+    assert [name for name in calls if not name.startswith("llvm.")] == []
+
+
+_BOTH_COMPILED = """
+import re
+import numpy as np
+from hydrolek_drake.rigs import load_rig
+from hydrolek_drake.rollout import roll_out
+from hydrolek_drake.rollout.lanes import kernel
+from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes
+from hydrolek_drake.rollout.run import Run
+record, times = load_rig("hydrolek_right_j2").records()[:1], np.array([0.0, 1e-3])
+roll_out(record, times, np.zeros(2), times, longest_step=1e-3)
+roll_out_lanes(Run(record, times, np.zeros(2), times, 1e-3).of(np.repeat(record, 8)), at_once=True)
+(compiled,) = kernel._all_lanes.overloads.values()
+loop = re.search(r"^define[^\\n]*_all_lanes.*?^}", compiled.library.get_llvm_str(), re.M | re.S).group()
+print(*re.findall(r"call [^\\n]*?@([\\w.]+)", loop))
+"""
 
 
 class _Running:

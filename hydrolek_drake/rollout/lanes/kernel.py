@@ -54,16 +54,9 @@ from hydrolek_drake.rollout.rosenbrock import one_step
 _L = LANES
 
 
-@njit
+@njit(forceinline=False)  # it is optimised once, and not again with all that calls it
 def _all_lanes(kind: Any, b: np.ndarray) -> None:
     """One step of every machine, from the rows of `STATE` to those of `NEXT`."""
-    _loop(kind, b)  # inlined here alone, so that it is not optimised again with all that calls this
-
-
-@njit(
-    forceinline=True
-)  # and with it all that it calls: a call that is left keeps the loop from vector instructions
-def _loop(kind: Any, b: np.ndarray) -> None:
     for lane in range(_L):
         joint = lane_joint(kind, b, NUMBERS_OF_JOINT * _L + lane)
         s, d, play = state_in(b, STATE, lane), drive_in(b, STATE, lane), b[(STATE + 14) * _L + lane]

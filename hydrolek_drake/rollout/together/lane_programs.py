@@ -37,7 +37,7 @@ BLOCK = TERMS + MOST_TERMS * (LAW.itemsize // 8)
 switching on [s], the numbers of its record, and those of its law's terms."""
 
 
-@njit(forceinline=True)
+@njit
 def _begin(kind: Any, b: np.ndarray) -> None:
     for lane in range(_L):
         joint = lane_joint(kind, b, NUMBERS_OF_JOINT * _L + lane)
@@ -46,7 +46,7 @@ def _begin(kind: Any, b: np.ndarray) -> None:
         begins(r, 0, r[0, TIME], r[0, H], spool_steps_of(kind), early_of(kind), no_probe(), law, joint)
 
 
-@njit(forceinline=True)
+@njit
 def _go_on(kind: Any, b: np.ndarray) -> None:
     for lane in range(_L):
         joint = lane_joint(kind, b, NUMBERS_OF_JOINT * _L + lane)
@@ -57,7 +57,7 @@ def _go_on(kind: Any, b: np.ndarray) -> None:
         goes_on(r, 0, r[0, DRIVE + X], r[0, TIME] + h, h, no_probe(), law, joint)
 
 
-@njit(forceinline=True)
+@njit
 def _end(kind: Any, b: np.ndarray) -> None:
     for lane in range(_L):
         r = lane_rows(b, BLOCK, lane)
