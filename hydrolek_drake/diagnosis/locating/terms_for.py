@@ -163,11 +163,8 @@ def _periodic(unknown: Unknown, joint: str, span: Span) -> list[tuple[float, Law
     """Sines that promise most at an input."""
     length = float(np.ptp(unknown.times))
     frequencies = np.arange(LOCATING.lowest / length, LOCATING.highest_hz, 0.25 / length)
-    gains, pairs = np.zeros(frequencies.size), []
-    for k, frequency in enumerate(frequencies):
-        angle = 2.0 * np.pi * frequency * unknown.times
-        gains[k], multiples = unknown.gain_of_pair(np.sin(angle), np.cos(angle))
-        pairs.append(multiples)
+    angles = 2.0 * np.pi * np.outer(unknown.times, frequencies)
+    gains, pairs = unknown.gains_of_pairs(np.sin(angles), np.cos(angles))
     padded = np.concatenate([[-np.inf], gains, [-np.inf]])
     peaks = np.flatnonzero((padded[1:-1] > padded[:-2]) & (padded[1:-1] >= padded[2:]))
     best = sorted(peaks, key=lambda k: -gains[k])[: LOCATING.peaks]

@@ -58,12 +58,21 @@ class Unknown:
         along = -float(self.pull @ course)
         return (along * along / power, along / power) if power > 0.0 else (0.0, 0.0)
 
-    def gain_of_pair(self, first: np.ndarray, second: np.ndarray) -> tuple[float, np.ndarray]:
-        """The same of two courses at once, such as a sine and a cosine."""
-        both = np.stack([first, second], axis=1)
-        square, along = both.T @ self.information @ both, -both.T @ self.pull
-        multiples = np.linalg.lstsq(square, along, rcond=1e-10)[0]
-        return float(along @ multiples), multiples
+    def gains_of_pairs(self, first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The same of two courses at once, such as a sine and a cosine, for many such pairs.
+
+        Args:
+            first: one of each pair, at the knots. # (k, pairs)
+            second: the other one. # (k, pairs)
+
+        Returns:
+            Falls of the squares # (pairs,), and multiples of both # (pairs, 2).
+        """
+        both = np.stack([first, second])  # (2, k, pairs)
+        square = np.einsum("akp,bkp->pab", both, self.information @ both)
+        along = -np.einsum("akp,k->pa", both, self.pull)
+        multiples = np.einsum("pab,pb->pa", np.linalg.pinv(square, rcond=1e-10, hermitian=True), along)
+        return np.einsum("pa,pa->p", along, multiples), multiples
 
     def estimated(self) -> "Estimate":
         """The input's most likely course."""
