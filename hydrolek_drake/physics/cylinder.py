@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.compiling import njit
+from hydrolek_drake.physics import cavity
 from hydrolek_drake.physics.fluid import softened, stiffness
 from hydrolek_drake.physics.lines import hose
 from hydrolek_drake.physics.linkages import ball_screw, servo_screw
@@ -189,12 +190,12 @@ def pressure_rates(
 ) -> tuple[float, float, float, float]:
     """Rates of the chamber pressures [Pa/s] and the chambers' stiffness B/V [Pa/m^3], from continuity.
 
-    P_A' = B/V_A (Q_A - A_A v), P_B' = B/V_B (Q_B + A_B v); pressures do not fall below zero. A hose that widens
-    takes oil besides.
+    P_A' = B/V_A (Q_A - A_A v), P_B' = B/V_B (Q_B + A_B v); at zero see `cavity.rate`. A hose that widens takes oil
+    besides.
 
     Args:
-        p_a: pressure on side A [Pa].
-        p_b: pressure on side B [Pa].
+        p_a: pressure on side A, below zero a cavity [Pa].
+        p_b: the same on side B [Pa].
         flow_a: oil flowing into side A [m^3/s].
         flow_b: oil flowing into side B [m^3/s].
         stroke: rod position [m].
@@ -203,26 +204,16 @@ def pressure_rates(
     """
     p = joint.cylinder
     volume_a, volume_b = counted_volumes(stroke, joint)
-    stiffness_a = stiffness(volume_a, p_a, joint)
-    stiffness_b = stiffness(volume_b, p_b, joint)
+    pressed_a, pressed_b = cavity.pressures(p_a, p_b, joint)
+    stiffness_a = stiffness(volume_a, pressed_a, joint)
+    stiffness_b = stiffness(volume_b, pressed_b, joint)
     if rare(joint) and joint.hose.variant != hose.NONE:
         more_a, more_b = hose.gives_way(joint)
         _, stiffness_a = softened(more_a, 0.0, stiffness_a)
         _, stiffness_b = softened(more_b, 0.0, stiffness_b)
     rate_a = stiffness_a * (flow_a - p.area_a * velocity)
     rate_b = stiffness_b * (flow_b + p.area_b * velocity)
-    return _floored(p_a, rate_a, joint), _floored(p_b, rate_b, joint), stiffness_a, stiffness_b
-
-
-@njit
-def _floored(pressure: float, rate: float, joint: Any) -> float:
-    """The rate with which a pressure may fall: none at zero, and no faster towards it than its time constant."""
-    time_constant = joint.fluid.floor_time
-    if time_constant > 0.0:
-        return max(rate, -pressure / time_constant)
-    if pressure <= 0.0 and rate < 0.0:
-        return 0.0
-    return rate
+    return cavity.rate(p_a, rate_a, joint), cavity.rate(p_b, rate_b, joint), stiffness_a, stiffness_b
 
 
 @njit

@@ -26,6 +26,14 @@ STAGE = Stage(
         Parameter(
             "floor_time", "s", "time constant with which a pressure may fall to zero", neutral=0.0, lowest=0.0
         ),
+        Parameter(
+            "cavity_refilled",
+            "1",
+            "share of a cavity in a chamber that oil has to fill again before its pressure rises",
+            neutral=0.0,
+            lowest=0.0,
+            highest=1.0,
+        ),
     ),
     {
         "oil": (),

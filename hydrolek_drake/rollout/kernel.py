@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import command, cylinder, hooks, linkage, load, sensor
+from hydrolek_drake.physics import cavity, command, cylinder, hooks, linkage, load, sensor
 from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.driven import is_followed, pressure_told
 from hydrolek_drake.physics.lines.long_line import Lines, lines_in, put_lines
@@ -125,21 +125,23 @@ def written(
         fed = fed_now(lines, s, x, time, probe, now, joint)
     _, _, p_supply, force, drawn = rates(s, x, drive, time, inertia, probe, law, near, 0.0, None, fed, joint)
     out[0] = sensor.reading(play, time, joint) + now.sensor
-    out[1], out[2], out[3], out[4], out[5] = s.q, s.w, s.p_a, s.p_b, x
+    out[1], out[2], out[5] = s.q, s.w, x
+    out[3], out[4] = cavity.pressures(s.p_a, s.p_b, joint)
     out[6] = pressure_told(s.supply, p_supply, probe, now, joint)
     out[7], out[8] = force, current_read(s, drive, joint)
     return drawn
 
 
 @njit
-def pulled(s: State, share: float, reading: float, measured: np.ndarray) -> tuple[State, float]:
+def pulled(s: State, share: float, reading: float, measured: np.ndarray, joint: Any) -> tuple[State, float]:
     """The state with a share of what was measured beyond it, and by how much its position was moved."""
     by = share * (measured[0] - reading) if math.isfinite(measured[0]) else 0.0
-    p_a = s.p_a + share * (measured[1] - s.p_a) if math.isfinite(measured[1]) else s.p_a
-    p_b = s.p_b + share * (measured[2] - s.p_b) if math.isfinite(measured[2]) else s.p_b
+    p_a, p_b = cavity.pressures(s.p_a, s.p_b, joint)
+    p_a = s.p_a + share * (measured[1] - p_a) if math.isfinite(measured[1]) else s.p_a
+    p_b = s.p_b + share * (measured[2] - p_b) if math.isfinite(measured[2]) else s.p_b
     moved = State(
-        max(p_a, 0.0),
-        max(p_b, 0.0),
+        cavity.after_step(p_a, joint),
+        cavity.after_step(p_b, joint),
         s.q + by,
         s.w,
         s.supply,
@@ -277,7 +279,7 @@ def integrate(
         written(d, s, play, volts, t - on, inertia, probe, law, near, line, joint, out[row])
         if pull_time > 0.0 and row + 1 < len(times):
             share = 1.0 - math.exp((t - times[row + 1]) / pull_time)
-            s, by = pulled(s, share, out[row, 0], measured[row])
+            s, by = pulled(s, share, out[row, 0], measured[row], joint)
             s = supply_pulled(s, share, probe, joint)
             play += by
     if not playing:

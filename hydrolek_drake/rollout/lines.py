@@ -8,7 +8,7 @@ the rest of the step takes.
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import cylinder, fluid, linkage, valve
+from hydrolek_drake.physics import cavity, cylinder, fluid, linkage, valve
 from hydrolek_drake.physics.driven import is_followed, pressure_at_valves, pressure_told
 from hydrolek_drake.physics.lines.long_line import (
     Ended,
@@ -84,7 +84,8 @@ def lines_advanced(
     _, stiff_b = fluid.softened(probe.capacity_b, 0.0, stiff_b)
     of_a, of_b = pipes(joint)
     taken_a, taken_b = joint.cylinder.area_a * v, -joint.cylinder.area_b * v
-    a, b = Ended(lines.a, s.p_a), Ended(lines.b, s.p_b)
+    p_a, p_b = cavity.pressures(s.p_a, s.p_b, joint)
+    a, b = Ended(lines.a, p_a), Ended(lines.b, p_b)
     source_a, source_b, drawn = _sources(lines.a.p_0, lines.b.p_0, s, x, time, outside, probe, joint)
     part, open_a, open_b = GAMMA * h, source_a.conductance, source_b.conductance
     k_a = stage(lines.a, _rates(a, source_a, taken_a, stiff_a, of_a), open_a, 1.0 / stiff_a, part, of_a)
@@ -101,8 +102,8 @@ def lines_advanced(
     return (
         Lines(without_cavities(end_a.line), without_cavities(end_b.line)),
         Fed(
-            (end_a.p_end - s.p_a) / (h * stiff_a) + taken_a,
-            (end_b.p_end - s.p_b) / (h * stiff_b) + taken_b,
+            (end_a.p_end - p_a) / (h * stiff_a) + taken_a,
+            (end_b.p_end - p_b) / (h * stiff_b) + taken_b,
             0.5 * (drawn + later),
         ),
     )

@@ -174,7 +174,7 @@ class JointsOnwards:
         times, values = self._commands.add(self.time, volts)
         if pull is not None:
             spans = (until - self.time) / np.broadcast_to(pull[0], len(self.joints))
-            pull_all(self._rows, np.array(spans), self.signals, pull[1])
+            pull_all(self.joints, self._rows, np.array(spans), self.signals, pull[1])
         self._go(np.array([self.time, until]), times, values)
         self.time = until
 
@@ -237,10 +237,13 @@ def onwards(
 
 
 @njit(cache=True)
-def pull_all(rows: np.ndarray, spans: np.ndarray, told: np.ndarray, measured: np.ndarray) -> None:
+def pull_all(
+    joints: np.ndarray, rows: np.ndarray, spans: np.ndarray, told: np.ndarray, measured: np.ndarray
+) -> None:
     """Pull joints that move together to what was measured, as `kernel.integrate` does with one before it moves on.
 
     Args:
+        joints: their records, shape (n,).
         rows: of `joint_rows.room`, with `STATE` and `PLAY`.
         spans: how far the next move goes, in time constants of each joint's pull, shape (n,).
         told: their signals now, before the pull, shape (n, at least 1), the reading first.
@@ -248,6 +251,6 @@ def pull_all(rows: np.ndarray, spans: np.ndarray, told: np.ndarray, measured: np
     """
     for i in range(len(rows)):
         share = 1.0 - math.exp(-spans[i])
-        s, by = pulled(state_at(rows, i, STATE), share, told[i, 0], measured[i])
+        s, by = pulled(state_at(rows, i, STATE), share, told[i, 0], measured[i], joints[i])
         put_state(rows, i, STATE, s)
         rows[i, PLAY] += by

@@ -10,6 +10,7 @@ import numpy as np
 from hydrolek_drake.compiling import njit
 from hydrolek_drake.physics import (
     base,
+    cavity,
     cylinder,
     end_stops,
     fluid,
@@ -41,7 +42,7 @@ from hydrolek_drake.physics.valves.openings import openings, widened
 class State(NamedTuple):
     """What moves in one joint, spool apart."""
 
-    p_a: float  # pressure on side A [Pa]
+    p_a: float  # pressure on side A, below zero a cavity (`physics.cavity`) [Pa]
     p_b: float  # pressure on side B [Pa]
     q: float  # joint position [rad or m]
     w: float  # joint velocity
@@ -136,7 +137,8 @@ def felt_at(probe: Probe, law: np.ndarray | None, time: float, s: State, x: floa
     stroke = lever = 0.0
     if not cylinder.is_electric(joint):
         stroke, lever = linkage.stroke_and_lever(q, joint)
-    return felt(probe, law, lever, Seen(time, s.q, s.w, stroke, lever * w, s.p_a, s.p_b, x))[0]
+    p_a, p_b = cavity.pressures(s.p_a, s.p_b, joint)
+    return felt(probe, law, lever, Seen(time, s.q, s.w, stroke, lever * w, p_a, p_b, x))[0]
 
 
 @njit
@@ -181,7 +183,8 @@ def rates(
         linkage.stroke_and_lever_at(included, side_q, joint) if oil else (0.0, joint.linkage.direction)
     )
     v = lever * side_w
-    seen = Seen(time, s.q, s.w, stroke, v, s.p_a, s.p_b, x)
+    p_a, p_b = cavity.pressures(s.p_a, s.p_b, joint)
+    seen = Seen(time, s.q, s.w, stroke, v, p_a, p_b, x)
     probe, (braking, easing) = felt(outside, law, lever, seen)
 
     rate_a = rate_b = slope_a = slope_b = falls_a = rises_b = 0.0
@@ -200,13 +203,13 @@ def rates(
         if fed is None:
             opened = widened(openings(x, joint), probe.valve)
             flow_a, flow_b, drawn, settle_a, settle_b = valve.chamber_flows(
-                opened, p_supply, s.p_a, s.p_b, time, joint, probe.back_a, probe.back_b
+                opened, p_supply, p_a, p_b, time, joint, probe.back_a, probe.back_b
             )
             if is_followed(joint):
                 own = pressure_told(s.supply, p_supply, outside, probe, joint)
-                _, _, drawn, _, _ = valve.chamber_flows(opened, own, s.p_a, s.p_b, time, joint)
+                _, _, drawn, _, _ = valve.chamber_flows(opened, own, p_a, p_b, time, joint)
         else:
-            flow_a, flow_b, settle_a, settle_b = valve.beside_lines(fed.a, fed.b, s.p_a, s.p_b, joint)
+            flow_a, flow_b, settle_a, settle_b = valve.beside_lines(fed.a, fed.b, p_a, p_b, joint)
             drawn = fed.drawn
         rate_a, rate_b, stiff_a, stiff_b = cylinder.pressure_rates(
             s.p_a, s.p_b, flow_a, flow_b, stroke, v, joint
@@ -223,7 +226,7 @@ def rates(
         stop_damping, stop_stiffness = end_stops.slopes(stroke, v, h, joint)
         slope_f += stop_damping
         stop_stiffness += bristles
-        force = cylinder.pressure_force(s.p_a, s.p_b, joint) - friction
+        force = cylinder.pressure_force(p_a, p_b, joint) - friction
         supply_rate, slope_supply = supply.rate_of_change(s.supply, s.relief, drawn + probe.flow, joint)
 
     force += probe.cylinder

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import cylinder, hooks, rod_friction, supply
+from hydrolek_drake.physics import cavity, cylinder, hooks, rod_friction, supply
 from hydrolek_drake.physics.lines.long_line import Fed
 from hydrolek_drake.physics.probes import Probe
 from hydrolek_drake.physics.solenoid import GAMMA
@@ -183,8 +183,8 @@ def second_stage(s: State, k: State, m: State, slope: Slopes, h: float, joint: A
     half = 0.5 * h
     turning = 3.0 * _turned_by_rod(k, joint) + _turned_by_rod(n, joint)
     return State(
-        max(s.p_a + half * (3.0 * k.p_a + n.p_a), 0.0),
-        max(s.p_b + half * (3.0 * k.p_b + n.p_b), 0.0),
+        cavity.after_step(s.p_a + half * (3.0 * k.p_a + n.p_a), joint),
+        cavity.after_step(s.p_b + half * (3.0 * k.p_b + n.p_b), joint),
         s.q + half * (3.0 * k.q + n.q),
         s.w + half * (3.0 * k.w + n.w),
         remembered,

@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 from pydrake.systems.framework import BasicVector, Context, ContinuousState, LeafSystem
 
+from hydrolek_drake.physics.cavity import pressures
 from hydrolek_drake.physics.cylinder import pressure_force, pressure_rates
 from hydrolek_drake.physics.driven import INPUTS
 from hydrolek_drake.physics.fluid import softened
@@ -33,6 +34,13 @@ def _rates(
         )
         out[i], _ = softened(outside[i, CAPACITY_A], rate_a, stiff_a)
         out[n + i], _ = softened(outside[i, CAPACITY_B], rate_b, stiff_b)
+
+
+@njit(cache=True)
+def _told(joints: np.ndarray, state: np.ndarray, out: np.ndarray) -> None:
+    n = len(joints)
+    for i in range(n):
+        out[i], out[n + i] = pressures(state[i], state[n + i], joints[i])
 
 
 @njit(cache=True)
@@ -73,6 +81,7 @@ def _forces(
             )
             p_a += ahead * softened(outside[i, CAPACITY_A], rate_a, stiff_a)[0]
             p_b += ahead * softened(outside[i, CAPACITY_B], rate_b, stiff_b)[0]
+        p_a, p_b = pressures(p_a, p_b, joint)
         out[i] = pressure_force(p_a, p_b, joint) - friction + outside[i, CYLINDER]
 
 
@@ -83,8 +92,8 @@ class Actuator(LeafSystem):
         in `oil_flow` (3n) [m^3/s].
         in `rod_motion` (2n): strokes [m], then velocities [m/s]; angles for vane and motor.
         in `outside` (15 n): what a law adds, or open.
-        out `pressure` (2n): chambers A, then B [Pa]; the continuous state, and beside it for each joint the share of
-            its rod's dry friction that bristles hold.
+        out `pressure` (2n): chambers A, then B [Pa]; the continuous state, with none where it tells of
+            a cavity; beside it for each joint the share of its rod's dry friction that bristles hold.
         out `rod_force` (n): positive pushes out [N]; moments [N m] for vane and motor.
     """
 
@@ -168,7 +177,7 @@ class Actuator(LeafSystem):
         return pressure
 
     def _calc_pressure(self, context: Context, output: BasicVector) -> None:
-        output.SetFromVector(self._pressures(context, 0.0))
+        _told(self._joints, self._pressures(context, 0.0), output.get_mutable_value())
 
     def _calc_force(self, context: Context, output: BasicVector) -> None:
         pressure = self._pressures(context, self._ahead)

@@ -37,6 +37,7 @@ def rig_text(name: str, sheet: Sheet, step: float) -> str:
         f"  {asked(sheet, 'bulk_modulus')}",
         f"  {kept('laminar_transition')}",
         f"  {kept('atmospheric_pressure')}",
+        f"  {kept('cavity_refilled')}",
         f"  {kept('air_exponent')}",
         "",
         "joints:",

@@ -181,7 +181,7 @@ def write(
         written(d, s, play, volts, time, inertia, probe, law, near, None, joint, out[lane, row])
         if pull_time[lane] > 0.0 and row < last:
             share = 1.0 - math.exp((t - times[lane, row + 1]) / pull_time[lane])
-            s, by = pulled(s, share, out[lane, row, 0], measured[lane, row])
+            s, by = pulled(s, share, out[lane, row, 0], measured[lane, row], joint)
             s = supply_pulled(s, share, probe, joint)
             put(b, STATE, lane, s, d, play + by)
 
