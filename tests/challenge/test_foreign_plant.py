@@ -176,6 +176,16 @@ def test_a_play_lets_the_load_lag_by_its_gap() -> None:
     assert out - back == pytest.approx(gap, rel=0.1)
 
 
+@pytest.mark.parametrize("kind", ["boom", "wrist"])
+def test_a_load_that_hangs_in_its_play_begins_in_balance(kind: str) -> None:
+    """Its chambers carry the load at the stroke of the rod's side, from the first sample on."""
+    plant = machine(kind)
+    plant = plant._replace(gap=math.radians(0.5))
+    done = course(kind, plant, (0.0, 0.5))
+    assert np.ptp(done.pressure_a) < 1e-3 * done.pressure_a[0]
+    assert np.ptp(done.reading) < math.radians(1e-3)
+
+
 def test_half_of_the_step_changes_nothing_that_is_seen() -> None:
     """The noise is a hundred times larger, for every kind of machine and for a play."""
     own = numbers()

@@ -81,7 +81,9 @@ def test_two_hundred_resets_beside_a_client_in_control_do_not_disturb_it(server)
     assert server.command()[1]
     client.close()
     again = SetpointClient(server.port)
-    _until(lambda: _answered(lambda: again.send(home_posture())))  # once the server knows that the other has left
+    _until(
+        lambda: _answered(lambda: again.send(home_posture()))
+    )  # once the server knows that the other has left
     assert server.command()[1]
     again.close()
 

@@ -235,16 +235,16 @@ class Closed(NamedTuple):
 def at_rest(g: Plant, start: float) -> np.ndarray:
     """State in balance: B at half of the supply pressure, A carries the load."""
     y = np.zeros(SIZE)
-    stroke, lever = reach(g, start)
     hangs = g.payload if g.payload_s <= 0.0 else 0.0
     weighs = (g.weight_moment + hangs * GRAVITY * g.tip) * math.cos(start) if g.weight_moment > 0.0 else 0.0
+    pressed = (abs(weighs) / g.contact) ** (2.0 / 3.0)
+    y[4] = start
+    y[10] = start + (math.copysign(0.5 * g.gap + pressed, weighs) if weighs != 0.0 else 0.0)
+    stroke, lever = reach(g, y[10] if g.gap > 0.0 else start)
     p_b = 0.5 * g.setting
     p_a = (weighs / lever + g.area_b * p_b) / g.area_a
     y[2] = packed_at(g, p_a) * (g.dead_a + g.area_a * stroke)
     y[3] = packed_at(g, p_b) * (g.dead_b + g.area_b * (g.stroke - stroke))
-    y[4] = start
-    pressed = (abs(weighs) / g.contact) ** (2.0 / 3.0)
-    y[10] = start + (math.copysign(0.5 * g.gap + pressed, weighs) if weighs != 0.0 else 0.0)
     if g.pumped > 0.5:
         p = g.setting
         for _ in range(50):  # what the pump gives, the relief valve lets off
