@@ -174,7 +174,7 @@ class JointsOnwards:
         times, values = self._commands.add(self.time, volts)
         if pull is not None:
             spans = (until - self.time) / np.broadcast_to(pull[0], len(self.joints))
-            pull_all(self.joints, self._rows, np.array(spans), self.signals, pull[1])
+            pull_all(as_usual(self._run.records), self._rows, np.array(spans), self.signals, pull[1])
         self._go(np.array([self.time, until]), times, values)
         self.time = until
 

@@ -49,7 +49,7 @@ def play(sheet: Sheet) -> list[str]:
     force, of, inertia_unit = ("N m", "rad", "kg m^2") if sheet.turns else ("N", "m", "kg")
     moving = sheet["mass"] * sheet["length"] ** 2 / 3.0 if sheet.turns else sheet["mass"]
     behind, contact = fixed("behind_play"), fixed("play_contact")
-    spread, harder = fixed("behind_play_factor"), fixed("stop_depth_factor")
+    spread, harder = fixed("behind_play_factor"), fixed("play_contact_factor")
     inertia = behind["value"] * moving
     stiffness = inertia * (2.0 * math.pi * contact["value"]) ** 2
     damping = math.sqrt(stiffness * inertia)
@@ -67,5 +67,5 @@ def play(sheet: Sheet) -> list[str]:
             contact["source"],
             around(stiffness, harder["value"]),
         ),
-        entry("play_damping", damping, f"{force} s/{of}", closed, around(damping, spread["value"])),
+        entry("play_damping", damping, f"{force} s/{of}", closed, around(damping, harder["value"])),
     ]
