@@ -1,6 +1,7 @@
 """Windows in which commands got lost, completed: more beside those that were fitted, and none without need."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -26,6 +27,7 @@ from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.lockstep import descend
 from hydrolek_drake.identification.least_squares.place import Place
+from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
 
@@ -54,7 +56,7 @@ def with_windows(
         fitted = race(bench, begun, rungs)[0]
         if fitted.fit.over_noise > reached:
             break
-        fitted, needed = _needed(bench, fitted, now)
+        fitted, needed = _needed(bench, fitted, now, bench.training)
         fits.append(fitted)
         trace(f"    windows {list(map(len, needed.seen.values()))}: {fitted.fit.over_noise:.4f}")
         more = None
@@ -73,34 +75,64 @@ def _without_windows(structure: Hypothesis) -> dict[str, float]:
     return {path: value for path, value in structure.values.items() if ".lost." not in path}
 
 
-def _needed(bench: Workbench, best: Hypothesis, lost: LostWindows) -> tuple[Hypothesis, LostWindows]:
+def _needed(
+    bench: Workbench,
+    best: Hypothesis,
+    lost: LostWindows,
+    experiments: Sequence[Experiment],
+    *,
+    windows_alone: bool = False,
+) -> tuple[Hypothesis, LostWindows]:
     """A structure without windows that explain no more than chance does, and its windows as fitted.
 
     First those go that the rest as it stands can do without, then, the least needed first, those that it can do
     without once it is fitted again (backward elimination).
+
+    Args:
+        bench: data and problems.
+        best: the structure as fitted.
+        lost: its windows, as they were before the fit.
+        experiments: that it was fitted to.
+        windows_alone: whether nothing else may be fitted to these.
     """
-    now = replace(lost, seen=lost.windows(best.values))
-    rises, at = _rises(bench, best, now), 0
-    for recording, windows in lost.windows(best.values).items():
-        needed = rises[at : at + len(windows)] > _by_chance(best)
+    fitted = replace(lost, seen=lost.windows(best.values))
+    needed, at, kept = _rises(bench, best, fitted, experiments) > _by_chance(best), 0, {}
+    for recording, windows in fitted.seen.items():
+        kept[recording] = joined(windows[needed[at : at + len(windows)]])
         at += len(windows)
-        now = replace(now, seen={**now.seen, recording: joined(windows[needed])})
+    fewer = sum(map(len, kept.values())) < len(needed)
     most = best.fit.chi_squared + _by_chance(best)
-    while trials := [_exchanged(best, now.without(*which)) for which in _each(now)]:
-        problems = [problem_with(bench, effects, best.step, bench.training) for effects in trials]
+    offered = [replace(fitted, seen=kept)] if fewer else _without_one(fitted)
+    if windows_alone and not any(map(len, kept.values())):
+        return best, replace(fitted, seen=kept)
+    while offered := [each for each in offered if not windows_alone or _each(each)]:
+        trials = [_exchanged(best, windows) for windows in offered]
         values = _without_windows(best)
-        begun = [
-            Place(p, bench.movable(e, p.parameters), p.parameters.unit(values))
-            for p, e in zip(problems, trials, strict=True)
-        ]
+        begun = []
+        for additions in trials:
+            problem = problem_with(bench, additions, best.step, experiments)
+            moving = bench.movable(additions, problem.parameters)
+            moving = _of_windows(problem.parameters) if windows_alone else moving
+            begun.append(Place(problem, moving, problem.parameters.unit(values)))
         ended = descend(begun, bench.settings.again.rounds, bench.pool, bench.cores, stop=bench.alive)
         place, effects = min(zip(ended, trials, strict=True), key=lambda each: each[0].objective)
         if place.objective > most:
             break
         best = hypothesis_of(effects, place, best.step)
-        now = next(c for c in effects if isinstance(c, LostWindows))
-        now = replace(now, seen={r: joined(w) for r, w in now.windows(best.values).items()})
-    return best, now
+        fitted = next(c for c in effects if isinstance(c, LostWindows))
+        fitted = replace(fitted, seen={r: joined(w) for r, w in fitted.windows(best.values).items()})
+        offered = _without_one(fitted)
+    return best, fitted
+
+
+def _of_windows(parameters: ParameterSet) -> np.ndarray:
+    """Which parameters say when a command was lost. # (n,)."""
+    return np.array([".lost." in path for path in parameters.paths])
+
+
+def _without_one(lost: LostWindows) -> list[LostWindows]:
+    """The same without each of its windows."""
+    return [lost.without(*which) for which in _each(lost)]
 
 
 def _each(lost: LostWindows) -> list[tuple[str, int]]:
@@ -118,11 +150,13 @@ def _by_chance(structure: Hypothesis) -> float:
     return GAINS.certain**2 * max(structure.fit.chi_squared / max(structure.fit.counted, 1), 1.0)
 
 
-def _rises(bench: Workbench, best: Hypothesis, now: LostWindows) -> np.ndarray:
+def _rises(
+    bench: Workbench, best: Hypothesis, now: LostWindows, experiments: Sequence[Experiment]
+) -> np.ndarray:
     """By how much the squares rise without each window, with all else as it stands. # (k,)."""
     requests = []
     for which in _each(now):
-        problem = problem_with(bench, _exchanged(best, now.without(*which)), best.step, bench.training)
+        problem = problem_with(bench, _exchanged(best, now.without(*which)), best.step, experiments)
         requests.append(Request(problem, (problem.parameters.unit(_without_windows(best)),)))
     answers = residuals_at(requests, bench.pool, bench.cores)
     return np.array([float(r @ r) for (r,) in answers]) - best.fit.chi_squared
@@ -173,15 +207,12 @@ def windows_held_out(
             break
         effects: tuple[Addition, ...] = tuple(more if c is lost else c for c in structure.effects)
         problem = problem_with(bench, effects, step, [experiment])
-        moving = np.array([".lost." in path for path in problem.parameters.paths])
-        begun = Place(problem, moving, problem.parameters.unit(rest))
+        begun = Place(problem, _of_windows(problem.parameters), problem.parameters.unit(rest))
         [led] = descend([begun], 12, bench.pool, bench.cores)
         [runner] = tried_elsewhere(bench, [Runner(effects, led)])
-        place = runner.place
-        windows = more.windows(problem.parameters.values(place.unit))
-        now = replace(more, seen={which: joined(windows[which])})
-        left = place.objective / max(experiment.counted, 1)
-        trace(f"    windows ahead {now.seen[which].round(3).tolist()}: {left**0.5:.4f}")
-        if left**0.5 <= NOISE.at:
+        fitted = hypothesis_of(effects, runner.place, step)
+        fitted, now = _needed(bench, fitted, more, (experiment,), windows_alone=True)
+        trace(f"    windows held out {now.seen[which].round(3).tolist()}: {fitted.fit.over_noise:.4f}")
+        if fitted.fit.over_noise <= NOISE.at:
             break
     return now

@@ -9,27 +9,27 @@ from hydrolek_drake.diagnosis.report.words import law_sentence, where_sentence
 from hydrolek_drake.diagnosis.structures.lost_windows import joined, recording_of
 from hydrolek_drake.identification.experiments.experiment import Experiment
 
-LOST_S, AHEAD_S = ((3.27, 3.41), (8.14, 8.26)), ((8.08, 8.22),)
-BRIEF_S, BRIEF_AHEAD_S = ((3.297, 3.317), (8.143, 8.163)), ((6.896, 6.916),)
+LOST_S, HELD_OUT_S = ((3.27, 3.41), (8.14, 8.26)), ((8.08, 8.22),)
+BRIEF_S, BRIEF_HELD_OUT_S = ((3.297, 3.317), (8.143, 8.163)), ((6.896, 6.916),)
 FEW = ("cylinder.coulomb_friction", "sensor.drift")
 """Effects that are candidates too; a matter of time."""
 
 
 @pytest.mark.long("takes a third of a minute")
 @pytest.mark.parametrize(
-    ("lost_s", "ahead_s", "how", "close_s"),
+    ("lost_s", "held_out_s", "how", "close_s"),
     [
         # a valve passes a command on within 25 ms, and a joint moves by what both ends of a window are apart
-        (LOST_S, AHEAD_S, {"largest_V": 5.0, "pressure_noise_Pa": None}, 0.02),
+        (LOST_S, HELD_OUT_S, {"largest_V": 5.0, "pressure_noise_Pa": None}, 0.02),
         # lost samples of a controller, between two of the windows that are tried: the joint hardly stops, and the oil
         # rings; a fifth of the valve's time constant
-        (BRIEF_S, BRIEF_AHEAD_S, {"largest_V": 9.0, "pressure_noise_Pa": 2e4}, 0.005),
+        (BRIEF_S, BRIEF_HELD_OUT_S, {"largest_V": 9.0, "pressure_noise_Pa": 2e4}, 0.005),
     ],
 )
 def test_commands_that_got_lost_are_found_in_both_recordings(
-    bench, answer_of, lost_s, ahead_s, how, close_s
+    bench, answer_of, lost_s, held_out_s, how, close_s
 ) -> None:
-    answer = answer_of({}, FEW, own={}, trained={"lost_s": lost_s}, lost_s=ahead_s, **how)
+    answer = answer_of({}, FEW, own={}, trained={"lost_s": lost_s}, lost_s=held_out_s, **how)
     found, known = answer.law, answer.known
     assert known.found.baseline.fit.over_noise > 2.0
     assert answer.conclusion.verdict == "unlisted_physics" and found is not None
@@ -38,7 +38,7 @@ def test_commands_that_got_lost_are_found_in_both_recordings(
     )  # the deviation of 1200 samples of noise is known to 2 %; three times that
     assert found.held_out_over_noise < 1.1
     told = law_sentence(found) + where_sentence(found)
-    for experiment, lost in ((known.bench.training[0], lost_s), (known.held_out[0], ahead_s)):
+    for experiment, lost in ((known.bench.training[0], lost_s), (known.held_out[0], held_out_s)):
         windows = found.windows[recording_of(experiment)]
         np.testing.assert_allclose(windows, lost, atol=close_s)
         assert f"at {', '.join(f'{begin:.2f}' for begin in windows[:, 0])} s" in told
