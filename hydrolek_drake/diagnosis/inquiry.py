@@ -268,12 +268,14 @@ def _astray(known: Known) -> bool:
     (`Judged.explains_held_out`), but what lies behind its recorded pressure is.
     """
     best = with_behind_cut(known.judged[0], known.bench.training, known.held_out)
-    left, ahead = best.hypothesis.fit.over_noise, best.over_noise
+    left, predicted = best.hypothesis.fit.over_noise, best.over_noise
     if best.trained_behind_cut is not None and best.left_behind_cut is not None:
-        left, ahead = best.trained_behind_cut, best.left_behind_cut
+        left, predicted = best.trained_behind_cut, best.left_behind_cut
         if not best.explains_held_out:
             return True
-    return ahead > max(left, 1.0) * (NOISE.held_out if left <= NOISE.held_out else NOISE.explained_held_out)
+    return predicted > max(left, 1.0) * (
+        NOISE.held_out if left <= NOISE.held_out else NOISE.explained_held_out
+    )
 
 
 def _far_in_all(known: Known) -> bool:

@@ -64,11 +64,11 @@ def law_of(
         ]
     rest = [i for i in range(len(paths)) if i not in order]
     parameters = bench.parameters(h.effects)
-    ahead = []
+    held_out_values = []
     stands = with_stands(bench, judged, held_out).stands
     for effects, unit in (stands[recording_of(experiment)] for experiment in held_out):
         values = bench.parameters(effects).values(unit)
-        ahead.append(np.array([values[paths[i]] for i in order]))
+        held_out_values.append(np.array([values[paths[i]] for i in order]))
     experiment = next(e for e in bench.training if e.joint == first.joint)
     records = parameters.records(h.fit.unit)
     without = records.copy()
@@ -84,7 +84,9 @@ def law_of(
         held_out_over_noise=judged.over_noise,
         difference=with_law - plain,
         span=first.span,
-        held_out_values=tuple(own for own, e in zip(ahead, held_out, strict=True) if e.joint == first.joint),
+        held_out_values=tuple(
+            own for own, e in zip(held_out_values, held_out, strict=True) if e.joint == first.joint
+        ),
         joint=first.joint,
         rivals=tuple(rivals),
         intervals={
@@ -224,8 +226,8 @@ def lost_of(bench: Workbench, judged: Judged, held_out: Sequence[Experiment]) ->
     assert lost is not None
     every = {recording: joined(windows) for recording, windows in lost.windows(h.values).items()}
     for effects, unit in with_stands(bench, judged, held_out).stands.values():
-        ahead = next(c for c in effects if isinstance(c, LostWindows))
-        own = ahead.windows(bench.parameters(effects).values(unit))
+        windows_now = next(c for c in effects if isinstance(c, LostWindows))
+        own = windows_now.windows(bench.parameters(effects).values(unit))
         every |= {recording: joined(windows) for recording, windows in own.items()}
     parameters = bench.parameters(h.effects)
     records = parameters.records(h.fit.unit)

@@ -119,8 +119,8 @@ def _law_posterior(diagnosis: Diagnosis, law: FoundLaw) -> float:
     """Probability of the law beside the best known effects, by held-out likelihood made as flat as its misfit."""
     before, counted = left_at(law.joint, diagnosis.best.held_out, diagnosis.held_out)
     excess = max(1.0, law.held_out_over_noise**2 * counted - counted)
-    ahead = 0.5 * (before - law.held_out_over_noise**2 * counted)
-    return 1.0 / (1.0 + math.exp(-float(np.clip(ahead * len(law.fit.unit) / excess, -50.0, 50.0))))
+    log_odds = 0.5 * (before - law.held_out_over_noise**2 * counted)
+    return 1.0 / (1.0 + math.exp(-float(np.clip(log_odds * len(law.fit.unit) / excess, -50.0, 50.0))))
 
 
 def models_of(diagnosis: Diagnosis, fit: dict[str, Any]) -> list[tuple[str, dict[str, float]]]:
