@@ -22,6 +22,7 @@ HOOKS = {
     "supply_drop": "(flow, joint) -> Pa by which the supply falls",
     "pump_loss": "(joint) -> share of the pump's flow that is missing",
     "compressibility": "(pressure, joint) -> 1/Pa added to the oil's compressibility",
+    "cavity_refilled": "(joint) -> share of a cavity that oil has to fill again",
     "cross_conductance": "(joint) -> m^3/(s Pa) from chamber A to B",
     "rod_friction": "(friction.Sliding, joint) -> N against the rod, and its slope in N s/m",
     "rod_damping": "(velocity, stroke, joint) -> N against the rod, and its slope in N s/m",

@@ -11,13 +11,19 @@ air that came out of the oil takes its place.
 from typing import Any
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics.usual import rare
+from hydrolek_drake.physics import hooks
+
+
+@njit
+def refilled(joint: Any) -> float:
+    """Share of a cavity that oil has to fill again: as the rig has it, and an effect beside it; all of it at most."""
+    return min(joint.fluid.cavity_refilled + hooks.cavity_refilled(joint), 1.0)
 
 
 @njit
 def are_refilled(joint: Any) -> bool:
     """Whether cavities have to be filled again."""
-    return rare(joint) and joint.fluid.cavity_refilled > 0.0
+    return refilled(joint) > 0.0
 
 
 @njit
@@ -38,9 +44,10 @@ def rate(state: float, rising: float, joint: Any) -> float:
         rising: rate that the flows give it [Pa/s].
         joint: parameter record.
     """
-    if are_refilled(joint):
+    share = refilled(joint)
+    if share > 0.0:
         grows = state <= 0.0 and rising < 0.0
-        return joint.fluid.cavity_refilled * rising if grows else rising
+        return share * rising if grows else rising
     time_constant = joint.fluid.floor_time
     if time_constant > 0.0:
         return max(rising, -state / time_constant)

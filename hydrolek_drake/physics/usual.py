@@ -33,7 +33,6 @@ RARE_NUMBERS: tuple[tuple[str, str], ...] = (
     ("cylinder", "column_compliance"),
     ("cylinder", "bristle_deflection"),
     ("solenoid", "slew_rate"),
-    ("fluid", "cavity_refilled"),
 )
 """Stages and their parameters that stand behind it where they are above zero."""
 

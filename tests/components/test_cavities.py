@@ -17,9 +17,13 @@ TIMES = np.arange(0.0, 0.5, 5e-4)
 def swung():
     """What a joint does that begins to turn behind its closed valve, and its record."""
 
-    def swing(refilled, pull=None):
+    def swing(refilled, pull=None, effect=0.0):
         rig = load_rig("joint_bench").with_values(
-            {"fluid.cavity_refilled": refilled, "fluid.floor_time": 0.0}
+            {
+                "fluid.cavity_refilled": refilled,
+                "fluid.floor_time": 0.0,
+                "effects.cylinder.cavitation.refilled": effect,
+            }
         )
         record = rig.records()[:1]
         state = rest_state(record)
@@ -69,6 +73,17 @@ def test_a_share_of_the_first_cavity_is_filled_again(swung):
         gained[share] = oil_gained(signals, record, filled)
     for share in (0.3, 0.7):
         assert gained[share] == pytest.approx((1.0 - share) * gained[0.0], rel=0.03)
+
+
+@pytest.mark.parametrize(("rig", "effect"), [(0.0, 0.7), (0.3, 0.4), (0.7, 0.0)])
+def test_the_effect_is_what_the_rig_s_number_lacks(swung, rig, effect):
+    found, expected = swung(rig, effect=effect)[0], swung(0.7)[0]
+    np.testing.assert_allclose(found.position, expected.position, atol=1e-12)
+    np.testing.assert_allclose(found.pressure_a, expected.pressure_a, atol=1e-3)
+
+
+def test_no_more_than_a_whole_cavity_is_refilled(swung):
+    np.testing.assert_array_equal(swung(1.0, effect=1.0)[0].pressure_a, swung(1.0)[0].pressure_a)
 
 
 def test_pressures_are_never_told_below_zero(swung):

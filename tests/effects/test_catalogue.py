@@ -54,6 +54,7 @@ ON = {
     "fluid.entrained_air": {"air_fraction": 0.05},
     "fluid.warm_up": {"fraction": 0.2, "time_constant_s": 5.0},
     "cylinder.cross_port_leakage": {"conductance_m3_per_s_Pa": 1e-12},
+    "cylinder.cavitation": {"refilled": 1.0},
     "cylinder.coulomb_friction": {"coulomb_N": 500.0},
     "cylinder.stribeck_friction": {
         "coulomb_N": 300.0,

@@ -28,6 +28,7 @@ SIZES = {
     "fluid.entrained_air": {"air_fraction": 0.15},
     "fluid.warm_up": {"fraction": 0.3, "time_constant_s": 20.0},
     "cylinder.cross_port_leakage": {"conductance_m3_per_s_Pa": 1.5e-12},
+    "cylinder.cavitation": {"refilled": 1.0},
     "cylinder.coulomb_friction": {"coulomb_N": 1200.0},
     "cylinder.stribeck_friction": {
         "coulomb_N": 600.0,

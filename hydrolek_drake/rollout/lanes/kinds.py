@@ -25,7 +25,6 @@ SOMETIMES = (
     "cylinder.stop_stiffness",
     "cylinder.column_compliance",
     "cylinder.bristle_deflection",
-    "fluid.cavity_refilled",
 )
 """Parameters of the stages that most machines have at zero, and that cost as much."""
 
