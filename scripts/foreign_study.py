@@ -22,9 +22,6 @@ from hydrolek_drake.wizard.making import written_rig
 
 LABELS = "labels.json"
 SECONDS = "seconds.json"
-AT_MOST_S = 240.0
-"""Of processor time, recording included; a case that has not ended by then counts as wrong."""
-
 RIGHT_FRICTIONS = {
     "cylinder.coulomb_friction": {"load.coulomb_friction"},
     "cylinder.stribeck_friction": {"load.stribeck_friction"},
@@ -92,6 +89,13 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=10, help="machines, of four cases each")
     parser.add_argument("--cores", type=int, default=1)
     parser.add_argument("--part", default="1/1", help="1/2: every other case from the first")
+    parser.add_argument(
+        "--at-most",
+        type=float,
+        default=240.0,
+        help="seconds of processor time of each core, recording included; a case that has not ended by then counts "
+        "as wrong",
+    )
     parser.add_argument("--out", type=Path, required=True)
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
@@ -102,7 +106,7 @@ def main() -> None:
         folder = given.out / case.name
         if (folder / SECONDS).exists():
             continue
-        with ended_after(AT_MOST_S * given.cores, worked=True) as limit:
+        with ended_after(given.at_most * given.cores, worked=True) as limit:
             started = time.process_time()
             try:
                 run(case, folder, given.cores)
