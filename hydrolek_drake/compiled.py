@@ -32,10 +32,10 @@ def use_cache_for_this_source() -> None:
         return
     package = Path(__file__).parent
     digest = hashlib.sha256(version("numba").encode())
-    for part in _COMPILED_PARTS:
-        for file in sorted((package / part).rglob("*.py")):
-            digest.update(file.relative_to(package).as_posix().encode())
-            digest.update(file.read_bytes())
+    files = [file for part in _COMPILED_PARTS for file in sorted((package / part).rglob("*.py"))]
+    for file in (package / "compiling.py", *files):
+        digest.update(file.relative_to(package).as_posix().encode())
+        digest.update(file.read_bytes())
     home = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
     folder = home / "hydrolek_drake" / digest.hexdigest()[:16]
     try:

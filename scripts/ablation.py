@@ -23,7 +23,9 @@ from hydrolek_drake.challenge.cases import digest, labels_of, read_case, record
 from hydrolek_drake.challenge.diagnosed import REPORT, diagnosed
 from hydrolek_drake.challenge.drawing import draw_cases
 from hydrolek_drake.challenge.scoring import score, summary
-from hydrolek_drake.diagnosis.search import by_continuation, enlarging, nominal
+from hydrolek_drake.diagnosis.fitting import race
+from hydrolek_drake.diagnosis.fitting.entrants import Runner
+from hydrolek_drake.diagnosis.search import by_continuation, elimination, enlarging, nominal
 from hydrolek_drake.diagnosis.settings import Rung, Settings
 from hydrolek_drake.diagnosis.structures import cost, workbench
 from hydrolek_drake.errors import InputError
@@ -34,6 +36,7 @@ from hydrolek_drake.runs.time_limit import ended_after
 
 LABELS = "labels.json"
 SECONDS = "seconds.json"
+DRAWN = "drawn.json"
 ROWS = (
     ("healthy", "false_alarms"),
     ("visible singles", "visible_singles_right"),
@@ -53,7 +56,11 @@ def _with_settings(settings: Settings) -> list[Replaced]:
 def _all_kept(rungs: Sequence[Rung]) -> tuple[Rung, ...]:
     """Nobody is out, however far behind, and each takes as many steps as the last rung lets."""
     most = max(rung.rounds for rung in rungs)
-    return tuple(replace(rung, keep=10**6, rounds=most) for rung in rungs)
+    return tuple(replace(rung, keep=10**6, each=10**6, rounds=most, behind=0.0) for rung in rungs)
+
+
+def _everybody(runners: Sequence[Runner], *, few: bool) -> list[Runner]:
+    return list(runners)
 
 
 def _squares(fit: Fit) -> float:
@@ -68,20 +75,28 @@ WITHOUT: dict[str, list[Replaced]] = {
         (enlarging, "continued", lambda bench, opening, left: []),
         (nominal, "continued_nominal", lambda bench, direct, reach: None),
         (by_continuation, "continued_to_the_end", lambda bench, fits, best: []),
+        (elimination, "steps_for", lambda rungs, fine: ()),
     ],
     "starts": _with_settings(replace(USUAL, starts=1, scanned=1, doubled=0, to_the_end=1, drawn=0)),
-    "racing": _with_settings(
-        replace(
-            USUAL,
-            free=_all_kept(USUAL.free),
-            continued=_all_kept(USUAL.continued),
-            ended=_all_kept(USUAL.ended),
-        )
-    ),
+    "racing": [
+        *_with_settings(
+            replace(
+                USUAL,
+                free=_all_kept(USUAL.free),
+                continued=_all_kept(USUAL.continued),
+                ended=_all_kept(USUAL.ended),
+            )
+        ),
+        (race, "_in_reach", _everybody),
+    ],
     "discrepancy": [(cost, "misfit", _squares)],
     "exchange": [(enlarging, "without_each", lambda bench, found, candidates: None)],
 }
-"""Part of the method that is left out -> what stands in its place."""
+"""Part of the method that is left out -> what stands in its place.
+
+Without continuation observers still tell what additions promise; without racing the nominal model and the best
+structures are still continued as they are.
+"""
 
 
 @contextmanager
@@ -95,11 +110,16 @@ def left_out(part: str) -> Iterator[None]:
 
 def drawn(out: Path, machines: Sequence[str], count: int, seed: int) -> list[dict[str, Any]]:
     """Labels of the cases, from an earlier run or drawn now."""
-    path = out / LABELS
-    if not path.exists():
+    path, asked = out / LABELS, {"machines": list(machines), "count": count, "seed": seed}
+    if path.exists():
+        before = json.loads((out / DRAWN).read_text())
+        if before != asked:
+            raise SystemExit(f"{out} holds the cases of {before}, not of {asked}: give another --out")
+    else:
         rigs = [load_rig(name, {}) for name in machines]
         with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
             cases = draw_cases(rigs, count, seed, pool=pool)
+        write_whole(out / DRAWN, json.dumps(asked))
         write_whole(path, labels_of(cases))
     labels = path.read_text()
     print(f"labels {digest(labels)}", flush=True)

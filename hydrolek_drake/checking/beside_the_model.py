@@ -87,7 +87,7 @@ def against_the_model(
         found.append(
             Complaint(
                 "integration.longest_step",
-                f"{1e3 * step:g} ms is too long: finer steps differ by {off:.2g} times what may be",
+                f"{1e3 * step:g} ms is too long: finer steps change the motion by {off:.2g} times what is allowed",
                 "",
             )
         )

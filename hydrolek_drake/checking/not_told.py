@@ -34,7 +34,8 @@ def not_told(
         found.append(
             Complaint(
                 position_key(rig, joint),
-                f"reverses {turns} times: friction, play and leakage are not told apart; record {REVERSALS} reversals",
+                f"reverses {turns} times: friction, play and leakage cannot be told apart; record "
+                f"{REVERSALS} reversals",
                 "",
                 wrong=False,
             )
@@ -43,7 +44,8 @@ def not_told(
         found.append(
             Complaint(
                 f"{joint}.command",
-                f"stays below {100 * SHARE_OF_COMMAND:g} % of its limit: full openings and the pump are not told",
+                f"stays below {100 * SHARE_OF_COMMAND:g} % of its limit: full openings of the valve and the pump "
+                "cannot be determined",
                 "",
                 wrong=False,
             )
@@ -54,7 +56,8 @@ def not_told(
         found.append(
             Complaint(
                 position_key(rig, joint),
-                f"moves over {100 * moved / way:.2g} % of the way between the stops: geometry and stops are not told",
+                f"moves over {100 * moved / way:.2g} % of the way between the stops: geometry and stops cannot be "
+                "determined",
                 "",
                 wrong=False,
             )
@@ -64,7 +67,7 @@ def not_told(
         found.append(
             Complaint(
                 f"{joint}.pressure_a",
-                "was not recorded: friction and load are told from motion alone",
+                "was not recorded: friction and load can be estimated from the motion alone, less surely",
                 "",
                 wrong=False,
             )

@@ -157,7 +157,7 @@ def _step(rig: Rig, joint: str) -> list[Complaint]:
     return [
         Complaint(
             "integration.longest_step",
-            f"{1e3 * stated:g} ms is too long for this machine: with finer steps it moves otherwise",
+            f"{1e3 * stated:g} ms is too long for this machine: with finer steps the motion is different",
             f"longest_step: {{value: {1e3 * needed:g}, unit: ms, ...}}" if needed else "",
         )
     ]

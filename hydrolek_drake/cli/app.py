@@ -61,7 +61,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "identify": CommandEntry(
         "hydrolek_drake.cli.identification.identify",
         "identify",
-        "identify sdp: SDP models from open-loop step tests",
+        "models from recordings: sdp, two-step, force",
     ),
     "challenge": CommandEntry(
         "hydrolek_drake.cli.diagnosis.challenge",
@@ -117,7 +117,7 @@ COMMANDS: dict[str, CommandEntry] = {
     "control": CommandEntry(
         "hydrolek_drake.cli.operation.control",
         "control",
-        "compare controllers (bench), or design one (design)",
+        "compare controllers (bench, judge), design (design) or tune one (tune)",
     ),
     "benchmark": CommandEntry(
         "hydrolek_drake.cli.diagnosis.benchmark", "benchmark", "speed and exactness of the executions"
@@ -221,7 +221,7 @@ def _overview() -> str:
             "commands:",
             *(f"  {name:<{width}}  {entry.line}" for name, entry in COMMANDS.items()),
             "",
-            "hydrolek COMMAND --help tells more; exit status 0 is success, 2 bad input, 3 an alarm.",
+            "hydrolek COMMAND --help tells more; exit status: 0 success, 1 something looks wrong (rig check), 2 bad input, 3 an alarm, 130 interrupted.",
         ]
     )
 

@@ -172,7 +172,7 @@ def _diagnosed(
     try:
         # where more than noise is left, what every model leaves out bends numbers by more than the last squares tell
         if best.effects and law is None and best.fit.over_noise <= NOISE.explained:
-            say("fitting the numbers to the last square")
+            say("refining the fitted parameters")
             last, intervals, held_out = with_last_numbers(bench, conclusion.best, held_out)
             judged = tuple(last if j is conclusion.best else j for j in judged)
             conclusion, best = replace(conclusion, best=last), last.hypothesis

@@ -34,20 +34,22 @@ BY_BOTH = (
 )
 
 ASKED_FOR = (
-    "the blocks of the held-out data that report ask for numbers that the others do not tell: as predicted they are "
-    "missed by {predicted:.3g} times the noise, fitted too by {fitted:.3g} times"
+    "the half of the held-out data that only reports tells parameters that the other data do not tell: the model "
+    "leaves {predicted:.3g} times the noise there as a prediction, and {fitted:.3g} times once it is fitted to these "
+    "data too"
 )
 
 AT_THE_CUT = (
-    "the recorded supply pressure drives what lies behind it, of which {behind:.3g} times the noise of the held-out "
-    "data are left, and the supply is held against it under the flow that this draws; with the supply's own pressure "
-    "in its place, where every error of a line that rings stays, all signals together leave {uncut:.3g} times"
+    "the recorded supply pressure is an input of the model, which with it leaves {behind:.3g} times the noise of the "
+    "held-out data behind the supply; the supply is simulated under the flow that the valves draw, and compared with "
+    "the recorded pressure. With the simulated supply pressure in its place, where errors of the ringing line stay, "
+    "all signals together leave {uncut:.3g} times the noise"
 )
 
 AT_BEST = (
-    "what is left, {trained:.3g} times the noise of the fitted and {left:.3g} times that of the held-out data, is "
-    "taken for what the rig says that its equations leave at best: integration.model_error, {share:.3g} % of each "
-    "signal's range, which is {least:.3g} times the noise; what is missing below that is not looked for"
+    "the model leaves {trained:.3g} times the noise of the fitted and {left:.3g} times that of the held-out data. The "
+    "rig says that its equations leave {share:.3g} % of each signal's range at best (integration.model_error), which "
+    "is {least:.3g} times the noise: nothing below that is looked for"
 )
 
 SIGNALS_APART = (
@@ -188,7 +190,7 @@ class Inquiry:
                 raise
             interrupted = True
             bench.resume()
-        self.say("holding the structures against data that none of them was fitted to")
+        self.say("comparing the models on held-out data")
         weighted = tuple(held_out)
         try:
             bench.training = tuple(weighted_by(bench, found.best, bench.training))

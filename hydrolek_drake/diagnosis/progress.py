@@ -63,8 +63,8 @@ class Progress:
                 most_s = (self._clock() - begun) / done * (most - done)
                 left = f", at most about {math.ceil(most_s)} s more"
             done += 1
-            heat = f"heat {number + 1} of {len(rungs)}, " if len(rungs) > 1 else ""
-            self._more(f"{what}, {heat}round {min(done, most)} of at most {most}{left}{self._so_far()}")
+            turn = f"pass {number + 1} of {len(rungs)}, " if len(rungs) > 1 else ""
+            self._more(f"{what}, {turn}iteration {min(done, most)} of at most {most}{left}{self._so_far()}")
 
         return before_round
 

@@ -190,8 +190,8 @@ def pressure_rates(
 ) -> tuple[float, float, float, float]:
     """Rates of the chamber pressures [Pa/s] and the chambers' stiffness B/V [Pa/m^3], from continuity.
 
-    P_A' = B/V_A (Q_A - A_A v), P_B' = B/V_B (Q_B + A_B v); at zero see `cavity.rate`. A hose that widens takes oil
-    besides.
+    P_A' = B/V_A (Q_A - A_A v), P_B' = B/V_B (Q_B + A_B v); at zero and below see `cavity.rate`. A hose that widens
+    takes oil besides.
 
     Args:
         p_a: pressure on side A, below zero a cavity [Pa].
@@ -213,7 +213,13 @@ def pressure_rates(
         _, stiffness_b = softened(more_b, 0.0, stiffness_b)
     rate_a = stiffness_a * (flow_a - p.area_a * velocity)
     rate_b = stiffness_b * (flow_b + p.area_b * velocity)
-    return cavity.rate(p_a, rate_a, joint), cavity.rate(p_b, rate_b, joint), stiffness_a, stiffness_b
+    widening_a, widening_b = p.area_a * velocity / volume_a, -p.area_b * velocity / volume_b
+    return (
+        cavity.rate(p_a, rate_a, widening_a, joint),
+        cavity.rate(p_b, rate_b, widening_b, joint),
+        stiffness_a,
+        stiffness_b,
+    )
 
 
 @njit

@@ -59,7 +59,7 @@ def _remarks(replay: Replay) -> str:
 
 
 def _table(comparisons: tuple[Comparison, ...]) -> str:
-    titles = ("signal", "rms", "noise", "rms / noise", "mean", "largest")
+    titles = ("signal", "rms", "noise", "times the noise", "mean", "largest")
     head = "".join(f"<th>{title}</th>" for title in titles)
     rows = [f"<tr>{head}<th class='text'>worst stretches (share of the squared error)</th></tr>"]
     for c in comparisons:

@@ -10,7 +10,7 @@ def signal_table(comparisons: tuple[Comparison, ...]) -> Table:
     """One row per signal: how far apart, against the noise, and where it is worst."""
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
     table.add_column("signal", no_wrap=True)
-    for title in ("rms", "noise", "x noise", "mean", "largest"):
+    for title in ("rms", "noise", "rms/noise", "mean", "largest"):
         table.add_column(title, justify="right", no_wrap=True)
     table.add_column("worst stretch", no_wrap=True)
     for c in comparisons:

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hydrolek_drake.compiling import njit
-from hydrolek_drake.physics import amplifier, command, solenoid, valve
+from hydrolek_drake.physics import amplifier, cavity, command, solenoid, valve
 from hydrolek_drake.physics.amplifier import Currents
 from hydrolek_drake.physics.driven import chamber_pressures, pressure_at_valves
 from hydrolek_drake.physics.law import up_to_the_spool
@@ -80,7 +80,8 @@ def _beside_the_spool(
 ) -> tuple[float, float]:
     """Pressures at the valve's ports A and B [Pa]: of the chambers, unless long lines lead on to these."""
     if ports is None:
-        return chamber_pressures(s.p_a, s.p_b, probe, joint)
+        p_a, p_b = cavity.pressures(s.p_a, s.p_b, joint)
+        return chamber_pressures(p_a, p_b, probe, joint)
     return ports
 
 

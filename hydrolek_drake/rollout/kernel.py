@@ -136,12 +136,9 @@ def written(
 def pulled(s: State, share: float, reading: float, measured: np.ndarray, joint: Any) -> tuple[State, float]:
     """The state with a share of what was measured beyond it, and by how much its position was moved."""
     by = share * (measured[0] - reading) if math.isfinite(measured[0]) else 0.0
-    p_a, p_b = cavity.pressures(s.p_a, s.p_b, joint)
-    p_a = s.p_a + share * (measured[1] - p_a) if math.isfinite(measured[1]) else s.p_a
-    p_b = s.p_b + share * (measured[2] - p_b) if math.isfinite(measured[2]) else s.p_b
     moved = State(
-        cavity.after_step(p_a, joint),
-        cavity.after_step(p_b, joint),
+        cavity.pulled(s.p_a, share, measured[1]),
+        cavity.pulled(s.p_b, share, measured[2]),
         s.q + by,
         s.w,
         s.supply,

@@ -183,8 +183,8 @@ def second_stage(s: State, k: State, m: State, slope: Slopes, h: float, joint: A
     half = 0.5 * h
     turning = 3.0 * _turned_by_rod(k, joint) + _turned_by_rod(n, joint)
     return State(
-        cavity.after_step(s.p_a + half * (3.0 * k.p_a + n.p_a), joint),
-        cavity.after_step(s.p_b + half * (3.0 * k.p_b + n.p_b), joint),
+        cavity.after_step(s.p_a, s.p_a + half * (3.0 * k.p_a + n.p_a), joint),
+        cavity.after_step(s.p_b, s.p_b + half * (3.0 * k.p_b + n.p_b), joint),
         s.q + half * (3.0 * k.q + n.q),
         s.w + half * (3.0 * k.w + n.w),
         remembered,

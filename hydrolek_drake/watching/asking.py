@@ -234,7 +234,7 @@ def _told(
         size=size,
         low=low,
         high=high,
-        unit=unit_at(session.rig, candidate.joint, unit),
+        unit=unit_at(session.rig, candidate, unit),
         gain=0.0 - profile.least,
         parameters=len(candidate.free),
         left=left,

@@ -119,9 +119,10 @@ def sentence(told: ReferenceTold, answers: Sequence[Told]) -> str:
         rest = ", ".join(name[each.path] for each in still[:NAMED])
         need += f", with those of the later recordings for {rest}"
     return (
-        f"The reference ({told.seconds:.3g} s) tells less of the machine than one later recording. Standard deviations "
-        f"by it (by one later recording), as shares of ranges: {', '.join(named)}. {need}. What its error may bring "
-        f"about counts as no evidence, so that small faults are seen later."
+        f"The reference ({told.seconds:.3g} s) determines these parameters less well than one later recording does. "
+        f"Standard deviations from the reference (from one later recording), as shares of the parameter's range: "
+        f"{', '.join(named)}. {need}. Changes that this uncertainty could explain count as no evidence, so that small "
+        f"faults are seen later."
     )
 
 

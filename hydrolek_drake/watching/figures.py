@@ -200,7 +200,7 @@ def left_figure(watched: Watched) -> Any:
         )
     )
     figure.update_yaxes(type="log" if max((a.left for _, a in asked), default=1.0) > 3.0 else "linear")
-    _dress(figure, "left / noise", 260)
+    _dress(figure, "times the noise", 260)
     return figure
 
 

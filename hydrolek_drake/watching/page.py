@@ -43,7 +43,7 @@ _RECORDING_HEAD = (
     ("time", "text name"),
     ("from", "text"),
     ("recording", "text name"),
-    ("left / noise", ""),
+    ("times the noise", ""),
     ("best effect", "text"),
     ("gain", ""),
     ("beyond", "text"),
@@ -204,7 +204,7 @@ def _broken(watched: Watched) -> str:
     rows = "".join(
         f"<li>{html.escape(each.recording)}: {html.escape(each.problem)}</li>" for each in watched.broken
     )
-    return f"<h2>Recordings that could not be asked</h2><ul>{rows}</ul>"
+    return f"<h2>Recordings that could not be evaluated</h2><ul>{rows}</ul>"
 
 
 def _rule(watched: Watched) -> str:
@@ -213,15 +213,15 @@ def _rule(watched: Watched) -> str:
         " With one reference recording it is not known how much a healthy machine varies between recordings; the rate "
         "holds only where the model with its stated drift is right."
         if len(watched.reference) < 2
-        else " Gains of the reference recordings, each held against the others, are at most "
+        else " Gains of the reference recordings, each compared with a fit to the others, are at most "
         f"{ratio(healthy.inflation)} times what chance gives, by which thresholds are raised."
     )
     return (
-        f"<p class='other'>The likelihood ratios of recordings with and without an effect add up; the alarm is raised "
-        f"where they exceed what leaves a healthy machine's series any alarm with a probability of "
-        f"{watched.rule.false_alarms:g} at most. One recording alone is no alarm, and one that tells nothing changes "
-        f"nothing. By itself a recording is beyond its threshold where its gain, the fall of the squares against the "
-        f"reference, is more than chance brings in all tests of all recordings."
+        f"<p class='other'>The log-likelihood ratios of the recordings with and without an effect are added up. The "
+        f"threshold is set so that the whole series of a healthy machine raises any alarm with a probability of at most "
+        f"{watched.rule.false_alarms:g}. One recording alone raises no alarm, and one that tells nothing changes "
+        f"nothing. A single recording is marked as beyond its threshold where its gain, by which it lowers the squared "
+        f"residuals against the reference, is more than chance brings in all tests of all recordings."
         f"{lone}</p>"
     )
 

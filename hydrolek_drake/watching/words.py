@@ -31,7 +31,7 @@ def day(seconds: float) -> str:
 def title_of(effect: str) -> str:
     """What an effect is, in a few words."""
     if effect == OWN_NUMBERS:
-        return "the machine's own numbers changed by more than they drift"
+        return "the machine's own parameters changed by more than the stated drift"
     if effect == UNLISTED:
         return "something that no single listed effect explains"
     return EFFECTS[effect].title
@@ -71,7 +71,7 @@ def headline(watched: Watched) -> str:
     """The outcome in one sentence."""
     count = len(watched.answers)
     if not count:
-        return "No later recording could be asked."
+        return "No later recording could be evaluated."
     alarm = watched.alarm
     if alarm is None:
         beyond = [i for i, j in enumerate(watched.judgements) if j.beyond]
@@ -143,7 +143,7 @@ def sentences(watched: Watched, limits: Sequence[Limit]) -> list[str]:
         told.append(f"{name}: {size_text(last)}. {growth_sentence(trend, last.unit)}")
         told += [f"  {limit_sentence(limit, trend, last.unit)}" for limit in limits if limit.effect == name]
     told += [each for each in [sentence(watched.told, watched.answers)] if each]
-    told += [f"not asked: {each.recording}: {each.problem}" for each in watched.broken]
+    told += [f"not evaluated: {each.recording}: {each.problem}" for each in watched.broken]
     return told
 
 
@@ -161,7 +161,7 @@ def _joints_of(watched: Watched, limits: Sequence[Limit]) -> Mapping[str, str]:
     for limit in limits:
         if limit.effect not in joints:
             raise InputError(
-                f"--limit {limit.effect}={limit.size:g}: this rig is not asked for it; "
-                f"it is for {', '.join(n for n in joints if n != OWN_NUMBERS)}"
+                f"--limit {limit.effect}={limit.size:g}: it is not evaluated on this rig; "
+                f"evaluated are {', '.join(n for n in joints if n != OWN_NUMBERS)}"
             )
     return {limit.effect: joints[limit.effect] for limit in limits}

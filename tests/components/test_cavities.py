@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
-from hydrolek_drake.physics import linkage
+from hydrolek_drake.identification.experiments.channel import Channel
+from hydrolek_drake.physics import cavity, cylinder, linkage
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
 from hydrolek_drake.rollout.kernel import PULLED
@@ -17,7 +19,7 @@ TIMES = np.arange(0.0, 0.5, 5e-4)
 def swung():
     """What a joint does that begins to turn behind its closed valve, and its record."""
 
-    def swing(refilled, pull=None, effect=0.0):
+    def swing(refilled, pull=None, effect=0.0, step=1e-4):
         rig = load_rig("joint_bench").with_values(
             {
                 "fluid.cavity_refilled": refilled,
@@ -30,7 +32,7 @@ def swung():
         state[5] = state[10] = SPEED
         volts = np.zeros_like(TIMES)
         return roll_out(
-            record, TIMES, volts, TIMES, longest_step=1e-4, state=state, pull=pull
+            record, TIMES, volts, TIMES, longest_step=step, state=state, pull=pull
         ).signals, record
 
     return swing
@@ -61,6 +63,39 @@ def test_pressures_that_are_only_held_at_zero_gain_oil(swung):
     """So that the next swing is stopped earlier, and another way."""
     signals, record = swung(0.0)
     assert oil_gained(signals, record).max() > 1e7
+
+
+def test_a_cavity_takes_as_much_oil_as_it_is_large():
+    """The piston leaves a closed chamber of 40 ml three times as large; then oil flows in until it has pressure."""
+    joint = load_rig("joint_bench").with_values({"fluid.cavity_refilled": 1.0}).records().view(np.recarray)[0]
+    c, flow, speed = joint.cylinder, 1e-4, 0.05
+    begin = (40e-6 - c.dead_volume_a) / c.area_a
+    way = 80e-6 / c.area_a
+
+    def emptied(t, p):
+        return cylinder.pressure_rates(p[0], 1e6, 0.0, 0.0, begin + speed * t, speed, joint)[0]
+
+    def filled(t, p):
+        return cylinder.pressure_rates(p[0], 1e6, flow, 0.0, begin + way, 0.0, joint)[0]
+
+    def full(t, p):
+        return p[0]
+
+    full.terminal = True
+    exact = {"rtol": 1e-9, "atol": 1.0}
+    empty = solve_ivp(emptied, (0.0, way / speed), [0.0], **exact).y[0, -1]
+    assert empty == pytest.approx(-2.0 / 3.0 * joint.fluid.bulk_modulus, rel=1e-6)
+    taken = flow * solve_ivp(filled, (0.0, 2.0), [empty], events=full, **exact).t_events[0][0]
+    assert taken == pytest.approx(80e-6, rel=1e-6)
+
+
+@pytest.mark.parametrize("step", [1e-4, 8e-4])
+def test_hardly_any_of_a_cavity_is_hardly_anything(swung, step):
+    """What the pressure falls below zero within a step is no cavity: 20 kPa are a gauge's noise."""
+    none, _ = swung(0.0, step=step)
+    some, _ = swung(1e-9, step=step)
+    np.testing.assert_allclose(some.pressure_a, none.pressure_a, atol=20e3)
+    np.testing.assert_allclose(some.pressure_b, none.pressure_b, atol=20e3)
 
 
 def test_a_share_of_the_first_cavity_is_filled_again(swung):
@@ -99,6 +134,28 @@ def test_an_observer_of_the_right_model_changes_nothing(swung):
     pulled, _ = swung(1.0, (0.05, measured))
     np.testing.assert_allclose(pulled.position, free.position, atol=1e-9)
     np.testing.assert_allclose(pulled.pressure_a, free.pressure_a, atol=10.0)
+
+
+@pytest.mark.parametrize("state", [-1e6, -200e6])
+def test_a_gauge_that_shows_pressure_says_that_there_is_no_cavity(state):
+    """What was wrongly thought a cavity is forgotten as any error of an observer: to 1/e in a time constant."""
+    measured, share, now = 5e6, 1.0 - np.exp(-0.1), state
+    for _ in range(30 + int(np.ceil(10 * np.log(1.0 - state / measured)))):
+        now = cavity.pulled(now, share, measured)
+    assert now == pytest.approx(measured, rel=0.05)
+
+
+@pytest.mark.parametrize("measured", [0.0, -0.05e6, np.nan])
+def test_a_gauge_that_shows_none_says_nothing_of_a_cavity(measured):
+    assert cavity.pulled(-3e6, 0.3, measured) == -3e6
+    assert cavity.pulled(0.01e6, 1.0, measured) >= 0.0
+
+
+def test_a_pressure_that_noise_does_not_tell_from_zero_is_none():
+    gauge = Channel(
+        "joint.pressure_a", "Pa", "pressure_a", np.array([0.05e6, -0.05e6, 0.07e6, np.nan]), 0.02e6
+    )
+    np.testing.assert_array_equal(gauge.measured_beyond_noise, [0.0, 0.0, 0.07e6, np.nan])
 
 
 def test_where_no_pressure_comes_to_zero_nothing_changes():

@@ -23,7 +23,7 @@ PAGE_PORT = 6351
 
 
 def _cluster(address: str | None) -> "contextlib.AbstractContextManager[ClusterJobs | None]":
-    """A cluster that asks recordings, if one is named."""
+    """A cluster that evaluates recordings, if one is named."""
     if address is None:
         return contextlib.nullcontext()
     from hydrolek_drake.identification.search.cluster_jobs import ClusterJobs
@@ -100,7 +100,7 @@ def watch(
         str | None,
         typer.Option(
             metavar="ADDRESS",
-            help="ask recordings on an existing Dask cluster, one on each worker, such as tcp://host:8786",
+            help="evaluate recordings on an existing Dask cluster, one on each worker, such as tcp://host:8786",
         ),
     ] = None,
     set_: SetOption = None,
@@ -113,7 +113,7 @@ def watch(
 ) -> None:
     """Ask every recording what differs from the healthy machine; exit status 3 is an alarm.
 
-    The same command goes on where an earlier one ended: what was seen is not asked again.
+    The same command goes on where an earlier one ended: what was evaluated is not evaluated again.
     """
     from hydrolek_drake.cli.output import console, progress
 

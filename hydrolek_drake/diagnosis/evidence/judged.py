@@ -1,4 +1,4 @@
-"""Structures held against data that nothing was fitted to: how probable that makes each, how surely, and the verdict.
+"""Structures compared on data that nothing was fitted to: how probable that makes each, how surely, and the verdict.
 
 Residuals that lie close together err alike, so that the difference of two log-densities is summed over blocks of the
 recordings, and its standard error is told by how these differ (Vehtari, Gelman, Gabry, Practical Bayesian model

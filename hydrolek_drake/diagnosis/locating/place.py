@@ -59,8 +59,8 @@ def conditions_for(rig: Rig, experiment: Experiment, signals: Signals) -> dict[s
     holds["at high flow demand"] = speed > HIGH_FLOW * fastest
     if rig.is_hydraulic(experiment.joint):
         bound = LOW_PRESSURE * rig.value("supply.pressure")
-        holds["at low pressure on the bore side"] = signals.pressure_a < bound
-        holds["at low pressure on the rod side"] = signals.pressure_b < bound
+        holds["at low pressure on side A"] = signals.pressure_a < bound
+        holds["at low pressure on side B"] = signals.pressure_b < bound
     begin, end = experiment.time[0], experiment.time[-1]
     holds["late in the recording"] = experiment.time > begin + LATE * (end - begin)
     return holds
@@ -73,7 +73,10 @@ def told_condition(time: np.ndarray, difference: np.ndarray, holds: dict[str, np
     if not found or found[0].excess < 0.1:
         return "all the time, in no particular condition"
     first = found[0]
-    return f"{first.name} ({100 * first.of_error:.0f} % of its growth in {100 * first.of_time:.0f} % of the time)"
+    return (
+        f"{first.name} (where {100 * first.of_error:.0f} % of the change in the error arises, in "
+        f"{100 * first.of_time:.0f} % of the time)"
+    )
 
 
 def growing_spans(time: np.ndarray, difference: np.ndarray, noise: float) -> tuple[tuple[float, float], ...]:

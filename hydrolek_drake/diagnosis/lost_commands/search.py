@@ -85,8 +85,9 @@ def _needed(
 ) -> tuple[Hypothesis, LostWindows]:
     """A structure without windows that explain no more than chance does, and its windows as fitted.
 
-    First those go that the rest as it stands can do without, then, the least needed first, those that it can do
-    without once it is fitted again (backward elimination).
+    First those go that the rest as it stands can do without, if it can do without all of them, then, the least needed
+    first, those that it can do without once it is fitted again (backward elimination). Each must explain more than
+    chance does.
 
     Args:
         bench: data and problems.
@@ -101,7 +102,6 @@ def _needed(
         kept[recording] = joined(windows[needed[at : at + len(windows)]])
         at += len(windows)
     fewer = sum(map(len, kept.values())) < len(needed)
-    most = best.fit.chi_squared + _by_chance(best)
     offered = [replace(fitted, seen=kept)] if fewer else _without_one(fitted)
     if windows_alone and not any(map(len, kept.values())):
         return best, replace(fitted, seen=kept)
@@ -116,13 +116,22 @@ def _needed(
             begun.append(Place(problem, moving, problem.parameters.unit(values)))
         ended = descend(begun, bench.settings.again.rounds, bench.pool, bench.cores, stop=bench.alive)
         place, effects = min(zip(ended, trials, strict=True), key=lambda each: each[0].objective)
-        if place.objective > most:
-            break
+        less = _counted(fitted) - _counted(next(c for c in effects if isinstance(c, LostWindows)))
+        if place.objective > best.fit.objective + less * _by_chance(best):
+            if not fewer:
+                break
+            fewer, offered = False, _without_one(fitted)  # not all of them at once
+            continue
         best = hypothesis_of(effects, place, best.step)
         fitted = next(c for c in effects if isinstance(c, LostWindows))
         fitted = replace(fitted, seen={r: joined(w) for r, w in fitted.windows(best.values).items()})
-        offered = _without_one(fitted)
+        fewer, offered = False, _without_one(fitted)
     return best, fitted
+
+
+def _counted(lost: LostWindows) -> int:
+    """How many windows there are."""
+    return len(_each(lost))
 
 
 def _of_windows(parameters: ParameterSet) -> np.ndarray:

@@ -141,7 +141,7 @@ def detectable(diagnosis: Diagnosis) -> dict[str, str]:
     for visible in diagnosis.visible:
         effect = visible.candidate.effect
         size = next(p for p in effect.parameters if p.name == effect.size)
-        unit = unit_at(diagnosis.rig, visible.candidate.joint, size.unit)
+        unit = unit_at(diagnosis.rig, visible.candidate, size.unit)
         bound = "at most" if effect.weakens else "at least"
         found[effect.id] = f"{size.meaning}: {bound} {quantity(visible.size, unit)}"
     return found

@@ -37,7 +37,7 @@ def equation_of(candidate: Candidate, diagnosis: Diagnosis) -> str:
         if known is None:
             rows.append(f"<dt>{letter}</dt><dd>{meaning}</dd>")
             continue
-        value, low, high = with_interval(known, unit_at(diagnosis.rig, candidate.joint, parameter.unit))
+        value, low, high = with_interval(known, unit_at(diagnosis.rig, candidate, parameter.unit))
         usual = in_engineers_units(diagnosis.rig, candidate, parameter, known)
         also = f"<br>= {html.escape(usual)}" if usual else ""
         rows.append(

@@ -50,7 +50,7 @@ def page(diagnosis: Diagnosis, confirmed: Sequence[Confirmation] = ()) -> str:
         "<h2>Where and when</h2>",
         sections.locations(diagnosis),
         sections.unknown(diagnosis),
-        "<h2>What was held against the held-out data</h2>",
+        "<h2>Models compared on the held-out data</h2>",
         sections.candidates(diagnosis),
         "<h2>Parameters</h2>",
         sections.parameters(diagnosis),

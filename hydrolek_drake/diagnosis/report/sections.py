@@ -224,7 +224,7 @@ def method(diagnosis: Diagnosis) -> str:
     return (
         f"<p class='other'>{_thinned(diagnosis)}The nominal model was refitted first, by bounded least squares "
         "within the rig's ranges. "
-        "Every effect that can act on this machine was then held against what was left, alone and, where one was "
+        "Every effect that can act on this machine was then tried on what was left, alone and, where one was "
         "not enough, together with others; each model was fitted to the training data only. Models are compared "
         "by the likelihood of the held-out data less a cost for every effect and parameter. "
         f"{_intervals(diagnosis)}"
@@ -252,7 +252,8 @@ def _intervals(diagnosis: Diagnosis) -> str:
     if not diagnosis.best.hypothesis.effects or diagnosis.law is not None:
         return "Intervals come from the curvature of the last fit. "
     return (
-        "The numbers of the model that is named were then fitted until no step promises a tenth of a square, and the "
-        "interval of each of its effects' reaches to where the likelihood, all others fitted anew, has fallen by what "
-        f"chance lets it fall in {100 * EVIDENCE.confidence:g} % of repetitions. "
+        "The parameters of the named model were then fitted until no step would lower the squared residuals, in units "
+        f"of the noise, by more than {EVIDENCE.worth:g}. The interval of each effect's parameter reaches to where the "
+        "profile likelihood, with all other parameters fitted anew, has fallen by what chance explains in "
+        f"{100 * EVIDENCE.confidence:g} % of repetitions. "
     )

@@ -14,11 +14,17 @@ from hydrolek_drake.replay.display import display_factor, display_unit, ratio, s
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.machine.rig import declaration
 
+TURNING = {"N": "N m", "N s/m": "N m s/rad", "m/s": "rad/s", "m": "rad"}
+"""Units at a rod or a slide -> the same at a shaft."""
 
-def unit_at(rig: Rig, joint: str, unit: str) -> str:
-    """The unit of an effect's parameter at a joint: what is an angle elsewhere is a length where the load slides."""
-    sliding = rig.variant(joint, "load") == "sliding"
-    return unit.replace("rad", "m") if sliding else unit
+
+def unit_at(rig: Rig, candidate: Candidate, unit: str) -> str:
+    """The unit of an effect's parameter at its joint: of a length where the load slides, of an angle where it turns."""
+    if rig.variant(candidate.joint, "load") == "sliding":
+        return unit.replace("rad", "m")
+    stage = candidate.effect.stage
+    shaft = stage == "cylinder" and rig.variant(candidate.joint, "cylinder") in ("vane", "hydraulic_motor")
+    return TURNING.get(unit, unit) if shaft or stage == "load" else unit
 
 
 def sizes(candidate: Candidate, diagnosis: Diagnosis) -> str:
@@ -28,7 +34,7 @@ def sizes(candidate: Candidate, diagnosis: Diagnosis) -> str:
         known = diagnosis.intervals.get(path_of(candidate, parameter))
         if known is None:
             continue
-        unit = unit_at(diagnosis.rig, candidate.joint, parameter.unit)
+        unit = unit_at(diagnosis.rig, candidate, parameter.unit)
         value, low, high = with_interval(known, unit)
         told.append(f"{parameter.meaning} {value} (95 %: {low} to {high.partition(' ')[0]})")
     return ", ".join(told)
@@ -59,7 +65,7 @@ def _at_an_end(candidate: Candidate, diagnosis: Diagnosis) -> str:
     for parameter in candidate.effect.parameters:
         free = ends.get(path_of(candidate, parameter))
         if free is not None:
-            unit = unit_at(diagnosis.rig, candidate.joint, parameter.unit)
+            unit = unit_at(diagnosis.rig, candidate, parameter.unit)
             told.append(f"{parameter.meaning} ({quantity(free.lower, unit)} to {quantity(free.upper, unit)})")
     if not told:
         return ""
@@ -98,9 +104,9 @@ def headline(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "none":
         if best.fitted_too is not None:
             return (
-                f"Nothing is missing that these data show: held-out parts that the nominal model, with its own "
-                f"parameters fitted, predicts to {after} the noise it explains to {_ratio(best.fitted_too)} once "
-                f"fitted to them too."
+                f"These data show nothing missing. The nominal model, with its own parameters fitted, leaves {after} "
+                f"the noise where it predicts the held-out data, and {_ratio(best.fitted_too)} the noise once it is "
+                f"fitted to these data too."
             )
         return (
             f"Nothing is missing: the nominal model, with its own parameters fitted, predicts the held-out data "

@@ -177,6 +177,11 @@ def _acts(effect: Effect, rig: Rig, joint: str) -> bool:
     searched = [rig.variant(joint, section) in names for section, names in effect.searched_on.items()]
     if searched and not any(searched):
         return False
+    if (
+        "cavity_refilled" in effect.hooks
+    ):  # beside a number of the rig that is fitted, or says that all of it is
+        own = rig.entries["fluid.cavity_refilled"]
+        return own.range is None and own.value < 1.0
     if "linkage_gap" in effect.hooks:  # play needs something that moves within it
         return rig.value(f"joints.{joint}.linkage.play_inertia") > 0.0
     return True

@@ -11,6 +11,9 @@ FAITHFUL = 3e-4
 """A model follows a machine to this share of a signal's range at best, however fine the sensor: a noise below it
 would only give weight to what no model holds (a tenth of the best published fits of real machines)."""
 
+SURELY = 3.0
+"""Standard deviations beyond which a gauge shows more than its noise."""
+
 
 @dataclass(frozen=True)
 class Channel:
@@ -43,6 +46,13 @@ class Channel:
     timing: np.ndarray | None = None
     discrepancy: float = 1.0
     least_error: float = 0.0
+
+    @property
+    def measured_beyond_noise(self) -> np.ndarray:
+        """What was measured; of a pressure that its noise does not tell from zero, zero. # (n,)."""
+        if self.unit != "Pa":
+            return self.measured
+        return np.where(np.abs(self.measured) < SURELY * self.noise, 0.0, self.measured)
 
     @property
     def deviation(self) -> np.ndarray | float:

@@ -139,9 +139,12 @@ class Experiment:
         return spacing, rows + rows_at(self.others, spacing, len(rows))
 
     def _to_follow(self) -> np.ndarray:
-        """What was measured of `PULLED`; NaN where nothing was. # (n, 3)."""
+        """What was measured of `PULLED`, a pressure that its noise does not tell from zero as zero. # (n, 3).
+
+        NaN where nothing was.
+        """
         nothing = np.full(self.time.size, np.nan)
-        by_model = {channel.model: channel.measured for channel in self.channels}
+        by_model = {channel.model: channel.measured_beyond_noise for channel in self.channels}
         return np.stack([by_model.get(name, nothing) for name in PULLED], axis=1)
 
     def residuals(self, signals: Signals) -> np.ndarray:

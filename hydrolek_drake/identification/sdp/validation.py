@@ -37,7 +37,7 @@ def random_voltage(kind: str, model: SdpModel, rng: np.random.Generator) -> np.n
     """Random levels, each held for a random time, that keep the joint out of saturation [V]. # (n,).
 
     Args:
-        kind: the second of `KINDS` has no level within the dead band of section 6.1.4.
+        kind: the second of `KINDS` has no level within the dead-zone of section 6.1.4.
         model: says where saturation begins.
         rng: draws levels and times.
     """

@@ -36,10 +36,10 @@ def test_the_time_a_rung_may_take_is_what_its_rounds_took_times_those_left() -> 
     progress.reached("a", 3.21)
     progress.reached("b", 9.0)
     before_round()
-    assert told[0] == "2 models (a first), heat 2 of 2, round 1 of at most 3"
+    assert told[0] == "2 models (a first), pass 2 of 2, iteration 1 of at most 3"
     # one of three rounds took 4 s
     assert told[1] == (
-        "2 models (a first), heat 2 of 2, round 2 of at most 3, at most about 8 s more; "
+        "2 models (a first), pass 2 of 2, iteration 2 of at most 3, at most about 8 s more; "
         "best so far: a, 3.21 times the noise"
     )
     progress.anew()
@@ -64,8 +64,8 @@ def test_a_race_tells_every_round_and_what_is_best(bench, recorded) -> None:
     with ThreadPoolExecutor(1) as pool:
         workbench = Workbench(bench, free_parameters(bench), training, pool, progress=Progress(told.append))
         race(workbench, [Entrant((), {"supply.pressure": 1.05 * bench.value("supply.pressure")})], RUNGS)
-    assert told and all(re.match(r"nominal model, heat [12] of 2, round \d of at most [23]", t) for t in told)
-    assert "best so far: nominal model" in told[-1] and "heat 2" in told[-1]
+    assert told and all(re.match(r"nominal model, pass [12] of 2, iteration \d of at most [23]", t) for t in told)
+    assert "best so far: nominal model" in told[-1] and "pass 2" in told[-1]
 
 
 def test_a_search_with_a_budget_tells_how_long_the_rest_may_take_and_another_what_ends_it() -> None:

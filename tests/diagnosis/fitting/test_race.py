@@ -1,4 +1,4 @@
-"""A race goes on with what may be right: what a heat does not tell apart ranks by what it promised."""
+"""A race goes on with what may be right: what a rung does not tell apart ranks by what it promised."""
 
 import math
 from concurrent.futures import ThreadPoolExecutor

@@ -7,6 +7,7 @@ import pytest
 
 from hydrolek_drake.diagnosis.intervals.curvature import Interval
 from hydrolek_drake.diagnosis.report.engineers_units import converted, in_engineers_units
+from hydrolek_drake.diagnosis.report.words import unit_at
 from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.rigs import load_rig
 
@@ -50,3 +51,23 @@ def test_a_leak_is_told_as_a_flow_at_the_supply_pressure_and_a_friction_as_a_pre
     assert float(bar) == pytest.approx(1200.0 / rig.value("joints.joint.cylinder.area_a") / 1e5, rel=5e-3)
     assert _size("amplifier.gain_fade", 0.1) == "10 %"
     assert _size("command.delay", 0.05) == "50 ms"
+
+
+@pytest.mark.parametrize(
+    ("rig", "joint", "effect_id", "units"),
+    [
+        ("hopsan_link", "link", "load.stribeck_friction", ["N m", "N m", "rad/s", "1"]),
+        ("hopsan_link", "link", "cylinder.stribeck_friction", ["N", "N", "m/s", "1"]),
+        ("hopsan_link", "link", "sensor.drift", ["rad/min"]),
+        ("hydrolek_left_j4", "left_j4", "cylinder.coulomb_friction", ["N m"]),
+        ("hydrolek_left_j4", "left_j4", "cylinder.end_cushion", ["N m s/rad", "rad"]),
+        ("emps", "axis", "load.coulomb_friction", ["N"]),
+        ("emps", "axis", "sensor.drift", ["m/min"]),
+    ],
+)
+def test_what_acts_at_a_shaft_is_told_as_a_moment_and_at_a_rod_or_slide_as_a_force(
+    rig, joint, effect_id, units
+) -> None:
+    effect = EFFECTS[effect_id]
+    candidate = SimpleNamespace(effect=effect, joint=joint)
+    assert [unit_at(load_rig(rig, {}), candidate, p.unit) for p in effect.parameters] == units

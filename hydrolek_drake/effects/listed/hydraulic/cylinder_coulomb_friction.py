@@ -11,11 +11,7 @@ EFFECT = Effect(
     id="cylinder.coulomb_friction",
     title="seal friction",
     equation="coulomb tanh(v / friction_velocity) against the rod, or as the rig's bristles hold it",
-    parameters=(
-        Parameter(
-            "coulomb_N", "N", "Coulomb friction of the seals (N m for a vane)", neutral=0.0, lowest=0.0
-        ),
-    ),
+    parameters=(Parameter("coulomb_N", "N", "Coulomb friction of the seals", neutral=0.0, lowest=0.0),),
     formula=Formula(
         r"F = F_C \tanh \left( \frac{v}{v_0} \right)",
         {"coulomb_N": "F_C"},

@@ -30,7 +30,7 @@ EFFECT = Effect(
     },
     source="cushioning spears of differential cylinders (Merritt 1967, ch. 6)",
     confused_with={
-        "sensor.nonlinearity": "a bow of the sensor shows at both ends and at rest",
+        "sensor.nonlinearity": "a bow of the sensor is largest in the middle of the travel, and shows at rest too",
     },
     needs={"cylinder": ("cylinder", "vane")},
 )

@@ -11,7 +11,7 @@ EFFECT = Effect(
     id="load.coulomb_friction",
     title="dry friction of the guides or of the joint's bearing",
     equation="force tanh(v / friction_velocity) against the load",
-    parameters=(Parameter("force_N", "N", "Coulomb friction (N m for a joint)", neutral=0.0, lowest=0.0),),
+    parameters=(Parameter("force_N", "N", "Coulomb friction", neutral=0.0, lowest=0.0),),
     formula=Formula(
         r"F = F_C \tanh \left( \frac{v}{v_0} \right)",
         {"force_N": "F_C"},

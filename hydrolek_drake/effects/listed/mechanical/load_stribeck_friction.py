@@ -12,14 +12,12 @@ EFFECT = Effect(
     title="Coulomb and Stribeck friction of the joint's bearing",
     equation="(force + stribeck e^(-|w/w_s|^n)) tanh(w / friction_velocity) against the load",
     parameters=(
-        Parameter("force_N", "N", "Coulomb friction (N m for a joint)", neutral=0.0, lowest=0.0),
-        Parameter(
-            "stribeck_N", "N", "further friction near zero speed (N m for a joint)", neutral=0.0, lowest=0.0
-        ),
+        Parameter("force_N", "N", "Coulomb friction", neutral=0.0, lowest=0.0),
+        Parameter("stribeck_N", "N", "further friction near zero speed", neutral=0.0, lowest=0.0),
         Parameter(
             "stribeck_velocity_m_per_s",
             "m/s",
-            "speed over which it fades (rad/s for a joint)",
+            "speed over which it fades",
             neutral=1.0,
             lowest=0.0,
             positive=True,
