@@ -221,7 +221,8 @@ def _overview() -> str:
             "commands:",
             *(f"  {name:<{width}}  {entry.line}" for name, entry in COMMANDS.items()),
             "",
-            "hydrolek COMMAND --help tells more; exit status: 0 success, 1 something looks wrong (rig check), 2 bad input, 3 an alarm, 130 interrupted.",
+            "hydrolek COMMAND --help tells more.",
+            "exit status: 0 success, 1 something looks wrong (rig check), 2 bad input, 3 an alarm, 130 interrupted",
         ]
     )
 

@@ -44,7 +44,7 @@ class Diagnosis:
         reasons: why the data are bad, if they are; or that the search was interrupted.
         conclusion: what the data say; None for bad data.
         search: all that was tried; None for bad data.
-        judged: hypotheses held against held-out data, the most probable first.
+        judged: hypotheses compared on held-out data, the most probable first.
         also_tried: hypotheses that were not fitted to the end, the best first.
         bench: data and fits; None for bad data.
         held_out: data that nothing was fitted to.

@@ -66,7 +66,7 @@ class Known:
         bench: data and problems.
         found: all that was tried.
         held_out: data that nothing was fitted to, weighted by the best structure.
-        judged: structures held against them, the most probable first.
+        judged: structures compared on them, the most probable first.
         conclusion: what both say.
         interrupted: whether the search was ended by the user.
     """

@@ -218,8 +218,8 @@ def _rule(watched: Watched) -> str:
     )
     return (
         f"<p class='other'>The log-likelihood ratios of the recordings with and without an effect are added up. The "
-        f"threshold is set so that the whole series of a healthy machine raises any alarm with a probability of at most "
-        f"{watched.rule.false_alarms:g}. One recording alone raises no alarm, and one that tells nothing changes "
+        f"threshold is set so that the whole series of a healthy machine raises any alarm with a probability of at "
+        f"most {watched.rule.false_alarms:g}. One recording alone raises no alarm, and one that tells nothing changes "
         f"nothing. A single recording is marked as beyond its threshold where its gain, by which it lowers the squared "
         f"residuals against the reference, is more than chance brings in all tests of all recordings."
         f"{lone}</p>"

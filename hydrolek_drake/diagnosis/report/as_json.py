@@ -214,7 +214,7 @@ def _finite(value: float) -> float | None:
 
 
 def candidates_json(diagnosis: Diagnosis) -> list[dict[str, Any]]:
-    """The hypotheses that were held against held-out data, the most probable first."""
+    """The hypotheses that were compared on held-out data, the most probable first."""
     return [
         {
             "effects": [c.id for c in judged.hypothesis.effects],

@@ -143,7 +143,7 @@ def report_schema() -> dict[str, Any]:
             "candidates": {
                 "type": "array",
                 "items": candidate,
-                "description": "structures that were held against the held-out data",
+                "description": "structures that were compared on the held-out data",
             },
             "reasons": _texts("remarks on data and verdict"),
             "seconds": _number("duration [s]"),

@@ -147,7 +147,7 @@ def unknown(diagnosis: Diagnosis) -> str:
 
 
 def candidates(diagnosis: Diagnosis) -> str:
-    """The models that were held against the held-out data."""
+    """The models that were compared on the held-out data."""
     listed = [*diagnosis.judged[:MOST_LISTED], *diagnosis.also_tried[:MOST_LISTED]]
     worst = max(j.over_noise for j in listed)
     rows = []

@@ -101,7 +101,7 @@ GAINS = Gains()
 
 @dataclass(frozen=True)
 class Evidence:
-    """How structures are held against data that none was fitted to, and how far numbers are known."""
+    """How structures are compared on data that none was fitted to, and how far numbers are known."""
 
     significance: float = 0.05
     """Share of repetitions in which an interval may miss the true value. A structure at least this probable belongs

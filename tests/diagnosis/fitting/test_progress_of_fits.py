@@ -64,7 +64,9 @@ def test_a_race_tells_every_round_and_what_is_best(bench, recorded) -> None:
     with ThreadPoolExecutor(1) as pool:
         workbench = Workbench(bench, free_parameters(bench), training, pool, progress=Progress(told.append))
         race(workbench, [Entrant((), {"supply.pressure": 1.05 * bench.value("supply.pressure")})], RUNGS)
-    assert told and all(re.match(r"nominal model, pass [12] of 2, iteration \d of at most [23]", t) for t in told)
+    assert told and all(
+        re.match(r"nominal model, pass [12] of 2, iteration \d of at most [23]", t) for t in told
+    )
     assert "best so far: nominal model" in told[-1] and "pass 2" in told[-1]
 
 
