@@ -22,7 +22,8 @@ EFFECT = Effect(
         ),
     ),
     formula=Formula(
-        r"\dot{V}_c = \sigma \max \left( A v - Q, 0 \right) - \max \left( Q - A v, 0 \right), \quad p V_c = 0",
+        r"\dot{V}_c = \sigma \left( A v - Q \right) \; \left( Q < A v \right), \quad \dot{V}_c = A v - Q \; "
+        r"\left( Q > A v \right), \quad p V_c = 0",
         {"refilled": r"\sigma"},
         {
             "V_c": "volume of a chamber's cavity",
