@@ -56,9 +56,9 @@ def test_a_leak_is_told_as_a_flow_at_the_supply_pressure_and_a_friction_as_a_pre
 @pytest.mark.parametrize(
     ("rig", "joint", "effect_id", "units"),
     [
-        ("hopsan_link", "link", "load.stribeck_friction", ["N m", "N m", "rad/s", "1"]),
-        ("hopsan_link", "link", "cylinder.stribeck_friction", ["N", "N", "m/s", "1"]),
-        ("hopsan_link", "link", "sensor.drift", ["rad/min"]),
+        ("hopsan_link", "joint", "load.stribeck_friction", ["N m", "N m", "rad/s", "1"]),
+        ("hopsan_link", "joint", "cylinder.stribeck_friction", ["N", "N", "m/s", "1"]),
+        ("hopsan_link", "joint", "sensor.drift", ["rad/min"]),
         ("hydrolek_left_j4", "left_j4", "cylinder.coulomb_friction", ["N m"]),
         ("hydrolek_left_j4", "left_j4", "cylinder.end_cushion", ["N m s/rad", "rad"]),
         ("emps", "axis", "load.coulomb_friction", ["N"]),
