@@ -90,6 +90,7 @@ WITHOUT: dict[str, list[Replaced]] = {
         (race, "_in_reach", _everybody),
     ],
     "discrepancy": [(cost, "misfit", _squares)],
+    "local search": [(by_continuation, "has_other_minima", lambda best, ended: False)],
     "exchange": [(enlarging, "without_each", lambda bench, found, candidates: None)],
 }
 """Part of the method that is left out -> what stands in its place.
