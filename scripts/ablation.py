@@ -214,6 +214,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--cases", type=int, default=100)
     parser.add_argument("--first", type=int, help="diagnose only so many of them, a fair sample")
+    parser.add_argument("--but", nargs="*", default=[], help="cases that are left out, such as case_001")
     parser.add_argument("--rig", default="all", help="as of hydrolek challenge")
     parser.add_argument("--without", nargs="+", choices=list(WITHOUT), default=list(WITHOUT))
     parser.add_argument("--part", default="1/1", help="1/2: every other case from the first")
@@ -223,6 +224,7 @@ def main() -> None:
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
     told = drawn(given.out, rig_names(given.rig), given.cases, given.seed)[: given.first]
+    told = [label for label in told if label["name"] not in given.but]
     first, parts = (int(each) for each in given.part.split("/"))
     for part in () if given.table else given.without:
         for label in told[first - 1 :: parts]:
