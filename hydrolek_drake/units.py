@@ -15,6 +15,12 @@ _TOKEN = re.compile(
 )
 """What units are written with. Pint would also calculate: it works at `m^(9^9^9)` until the memory is full."""
 
+_OF_AN_ANGLE = re.compile(
+    r"(?<![A-Za-z])(m?rad|radians?|deg|degrees?|rev|revolutions?|turns?|rpm|°)(?![A-Za-z])|°"
+)
+_ANGULAR = {"rad": "deg or rad", "rad/s": "rpm, deg/s or rad/s", "m^3/rad": "cm^3/rev or m^3/rad"}
+_NOT_ANGULAR = ("m", "m/s", "m^3", "m^3/s")
+
 
 @cache
 def _registry() -> Any:
@@ -41,6 +47,11 @@ def si_factor(unit: str, si_unit: str) -> float:
         raise InputError(f"a unit is missing; {wanted}")
     if not _is_plain(unit):
         raise InputError(f"unit '{unit[:_LONGEST]}' is not known; {wanted}")
+    of_an_angle = _OF_AN_ANGLE.search(_spelled(unit)) is not None
+    if si_unit in _ANGULAR and not of_an_angle:  # Pint takes 1 for a radian: 1/min for rad/min
+        raise InputError(f"unit '{unit}' does not say of which angle; use {_ANGULAR[si_unit]}")
+    if si_unit in _NOT_ANGULAR and of_an_angle:
+        raise InputError(f"unit '{unit}' is per angle; {wanted}")
     known = remembered(unit, si_unit)
     if known is not None:
         return known

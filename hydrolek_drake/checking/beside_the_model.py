@@ -29,6 +29,9 @@ CHANGED = 0.01
 MOST_S = 1.0
 """Clocks may be apart by so much, either way [s]."""
 
+LAG_S = 0.005
+"""Lags between them are tried so far apart at least [s]: half a sample of most recordings."""
+
 FALLEN = 0.85
 """A supply below this share of its relief valve's setting gives all that it can."""
 
@@ -114,7 +117,9 @@ def _about_changes(times: np.ndarray, volts: np.ndarray) -> np.ndarray:
 
 def _late(rig: Rig, joint: str, times: np.ndarray, seen: np.ndarray, own: np.ndarray) -> list[Complaint]:
     """Whether the joint answers earlier than any machine could."""
-    spacing = float(np.median(np.diff(times)))
+    spacing = max(float(np.median(np.diff(times))), LAG_S)
+    even = np.arange(times[0], times[-1], spacing)
+    seen, own = np.interp(even, times, seen), np.interp(even, times, own)
     most = min(round(MOST_S / spacing), seen.size // 3)
     lags = list(range(-most, most + 1))
     corr = [correlation(seen[most + k : seen.size - most + k], own[most : own.size - most]) for k in lags]

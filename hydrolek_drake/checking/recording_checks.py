@@ -9,7 +9,7 @@ from hydrolek_drake.checking.clock import refuse_other_clock
 from hydrolek_drake.checking.complaint import Complaint
 from hydrolek_drake.checking.not_told import not_told
 from hydrolek_drake.checking.slips import UNITS, column
-from hydrolek_drake.recordings import Recording
+from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.replay.noise import noise_level
 from hydrolek_drake.replay.readings import SUPPLY_KEY, driven_joints, measured_position, position_key
 from hydrolek_drake.rigs import Rig
@@ -36,6 +36,8 @@ def check_recording(rig: Rig, recording: Recording) -> list[Complaint]:
 
 def _joint(rig: Rig, joint: str, recording: Recording) -> list[Complaint]:
     key = position_key(rig, joint)
+    if rig.needs_command(joint):
+        require(recording, [], units={f"{joint}.command": "V"})
     volts = np.asarray(recording.signal(f"{joint}.command"), dtype=float)
     position = np.asarray(measured_position(rig, joint, recording), dtype=float)
     found = _command(rig, joint, volts) if rig.needs_command(joint) else []

@@ -66,12 +66,33 @@ def _that_mends(value: float, limits: tuple[float, float]) -> float:
     return 0.0
 
 
+def _outside_their_ranges(rig: Rig) -> list[Complaint]:
+    """Values that a fit could not begin at: it begins at the nearest end of the range."""
+    found = []
+    for path, entry in rig.entries.items():
+        if entry.range is None or entry.same_as is not None or ".effects." in path:
+            continue
+        value, (low, high) = rig.value(path), entry.range
+        if value < low or value > high:
+            found.append(
+                Complaint(
+                    path,
+                    f"{value:.4g} lies outside its range of {low:.4g} to {high:.4g} {entry.unit}, in which alone a fit "
+                    "looks",
+                    f"{path.rpartition('.')[2]}: {{value: {value:.4g}, range: [{min(value, low):.4g}, "
+                    f"{max(value, high):.4g}], unit: {entry.unit}, ...}}",
+                )
+            )
+    return found
+
+
 def check_rig(rig: Rig) -> list[Complaint]:
     """All that is implausible about a rig; nothing if it looks right."""
     rig = rig.by_itself()
     found = implausible(rig)
     if found:  # what follows would only repeat it
         return found
+    found += _outside_their_ranges(rig)
     for joint in rig.joints:
         found += _pump_and_valve(rig, joint)
         found += _stroke_and_stops(rig, joint)

@@ -1,4 +1,4 @@
-"""`--set path=value`, which every command that reads a rig takes."""
+"""Options that many commands take, such as `--set path=value`."""
 
 from collections.abc import Iterable
 from typing import Annotated
@@ -14,6 +14,10 @@ SetOption = Annotated[
         metavar="PATH=VALUE",
         help="a parameter of the rig, in SI or with a unit: 'supply.pressure=12 MPa'",
     ),
+]
+
+SeedOption = Annotated[
+    int | None, typer.Option(help="taken by all commands; this one draws no random numbers")
 ]
 
 ConfirmOption = Annotated[

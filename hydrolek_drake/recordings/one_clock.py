@@ -10,7 +10,7 @@ from hydrolek_drake.recordings.clock import usual_interval
 from hydrolek_drake.recordings.columns import HELD_QUANTITIES, quantity_of
 from hydrolek_drake.recordings.finding import Finding
 from hydrolek_drake.recordings.offset import Offset, offset_from_data, overlap
-from hydrolek_drake.recordings.resampling import averaged, held, linear
+from hydrolek_drake.recordings.resampling import averaged, averaged_held, held, linear
 
 MOTIONS = frozenset({"angle", "position", "pot", "rate", "velocity"})
 """Quantities by which a motion is compared: the clock of one of them is everybody's."""
@@ -77,7 +77,7 @@ def on_one_clock(
                 if is_held
                 else np.append(time - step / 2, time[-1] + step / 2)
             )
-            on_it[key] = averaged(own, one.values, edges)
+            on_it[key] = (averaged_held if is_held else averaged)(own, one.values, edges)
             way = "averaged over its steps"
         else:
             on_it[key] = (

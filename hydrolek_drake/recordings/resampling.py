@@ -44,6 +44,26 @@ def linear(time: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
     return np.where(on_sample, values[left], np.where(measured, between, np.nan))
 
 
+def averaged_held(time: np.ndarray, values: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Mean over time of what is held between its samples; NaN where it is not known throughout.
+
+    Args:
+        time: Strictly increasing sample times [s]. # (n,)
+        values: Samples, each held until the next, the last for good. # (n,)
+        edges: Strictly increasing times [s]. # (m + 1,)
+
+    Returns:
+        Means. # (m,)
+    """
+    knots = np.append(time, max(edges[-1], time[-1]) + 1.0)
+    lasts, known = np.diff(knots), np.isfinite(values)
+    area = np.concatenate([[0.0], np.cumsum(np.where(known, values, 0.0) * lasts)])
+    unknown = np.concatenate([[0.0], np.cumsum(np.where(known, 0.0, lasts))])
+    mean = np.diff(np.interp(edges, knots, area)) / np.diff(edges)
+    lost = np.diff(np.interp(edges, knots, unknown)) > 0.0
+    return np.where(lost | (edges[:-1] < time[0]), np.nan, mean)
+
+
 def averaged(time: np.ndarray, values: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """Mean of the samples between each two neighbouring times; NaN where there is none with a value.
 

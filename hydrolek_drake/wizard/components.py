@@ -19,10 +19,6 @@ def accumulator(sheet: Sheet) -> list[str]:
     """Gas on the pump's line."""
     if "accumulator_volume" not in sheet.answers:
         return []
-    if not sheet.pump:
-        raise InputError(
-            "rig new: --accumulator-volume: a constant pressure has no use of it; it needs --supply pump"
-        )
     return [
         "accumulator:",
         "  variant: gas",

@@ -131,6 +131,8 @@ def answer(question: Question, text: str) -> Any:
         wanted = " or ".join(map(str, question.numbers))
         raise InputError(f"{where}: {len(numbers)} numbers, where {wanted} belong: {question.asks}")
     unit = (found["unit"] or "").strip() if found else ""
+    if question.key == "lead":
+        unit = unit.removesuffix("/rev")  # a lead is a way a turn
     if unit == "%" and "percent_of" in question.what:
         return Share(numbers[0] / 100.0)
     try:
@@ -149,14 +151,14 @@ def answer(question: Question, text: str) -> Any:
 
 
 def _factor(unit: str, si: str) -> float:
-    if unit == "Hz" and si == "rad/s":
-        return 2.0 * math.pi  # cycles a second
+    if si == "rad/s" and unit.endswith("Hz"):
+        return 2.0 * math.pi * si_factor(unit, "Hz")  # cycles a second
     return si_factor(unit, si)
 
 
 def _example(question: Question) -> str:
     number = {1: "40", 2: "0.1, -0.3", 4: "1, 1, 0.8, 0.8"}[question.numbers[-1]]
-    return f"{number} {question.unit}".replace(" 1", "") if question.unit != "1" else number
+    return number if question.unit == "1" else f"{number} {question.unit}"
 
 
 def read_answers(given: Mapping[str, str]) -> dict[str, Any]:

@@ -30,6 +30,11 @@ class Sheet:
         if left:
             told = "; ".join(f"{q.option} ({q.asks}{f' [{q.unit}]' if q.unit else ''})" for q in left)
             raise InputError(f"rig new: not answered: {told}")
+        strange = [q.option for q in questions().values() if q.key in answers and not q.applies(answers)]
+        if strange:
+            keys = ("moves",) if self["moves"] == SCREW else ("moves", "supply", "holding")
+            machine = " ".join(f"--{key} {self[key]}" for key in keys)
+            raise InputError(f"rig new: {', '.join(strange)}: not of a machine with {machine}")
         if self["moves"] == SCREW:
             self._read_screw()
             return
@@ -50,11 +55,6 @@ class Sheet:
         """Newtons for each ampere, largest force [N], mass with the rotor's [kg], and a speed [m/s]."""
         if self["efficiency"] > 1.0:
             raise InputError(f"rig new: --efficiency {self['efficiency']:g} is more than 1")
-        strange = [
-            q.option for q in questions().values() if q.key in self.answers and not q.applies(self.answers)
-        ]
-        if strange:
-            raise InputError(f"rig new: {', '.join(strange)}: not of a machine with --moves {SCREW}")
         turn = 2.0 * math.pi / self["lead"]
         self.per_amp = turn * self["efficiency"] * self["torque_constant"]
         self.force = self.per_amp * self["peak_current"]
@@ -173,6 +173,11 @@ class Sheet:
 
     def _gradients(self) -> dict[str, float]:
         """Area gradient of each edge [m]."""
+        if self["overlap"] >= self["spool_travel"]:
+            raise InputError(
+                f"rig new: --overlap {1e3 * self['overlap']:g} mm: the spool travels {1e3 * self['spool_travel']:g} mm "
+                "(--spool-travel), so that no edge would open"
+            )
         if "rated_flow" in self.answers:
             flows = self.rated_flows
             speed = self["flow_coefficient"] * math.sqrt(2.0 * self["rated_drop"] / self["oil_density"])
@@ -188,7 +193,12 @@ class Sheet:
         if self["compensated"] == "yes":
             flow = min(flow, self.rated_flows[0])
         if self.pump:
-            flow = min(flow, self["displacement"] * self["pump_speed"])
+            given = self["displacement"] * self["pump_speed"]
+            if self["pump_leakage"] >= given:
+                raise InputError(
+                    "rig new: --pump-leakage is no less than what the pump gives (--displacement, --pump-speed)"
+                )
+            flow = min(flow, given)
         if not flow > 0.0:
             raise InputError("rig new: no oil flows: check openings, overlap, supply pressure and pump")
         return float(flow / self.area_a)

@@ -218,16 +218,22 @@ def _link(sheet: Sheet) -> list[str]:
 
 
 def _carried(sheet: Sheet) -> list[str]:
-    """What a kilogram does that is picked up, at the end of the link; how far that is, its weight tells beside it."""
+    """What a kilogram does that is picked up, at the end of the link beyond its centre of mass.
+
+    How far that is, its weight tells beside it.
+    """
     where = "assumed: what is picked up hangs at the end of the link"
     length = sheet["length"]
     weight = 0.0 if sheet["upright"] == "yes" else fixed("gravity")["value"] * length
+    x, y = sheet.answers.get("centre", (1.0, 0.0))
+    away = math.hypot(x, y) or 1.0
     spread = fixed("payload_place_factor")
     inertia, unit = length**2, "kg m^2/kg"
     limits = (inertia / spread["value"], inertia * spread["value"]) if weight else None
     return [
         entry("payload_inertia", inertia, unit, f"{where}; {spread['source']}" if limits else where, limits),
-        entry("payload_gravity_cos", weight, "N m/kg", where),
+        entry("payload_gravity_cos", weight * x / away, "N m/kg", where),
+        *([entry("payload_gravity_sin", -weight * y / away, "N m/kg", where)] if y else []),
     ]
 
 

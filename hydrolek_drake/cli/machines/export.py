@@ -5,13 +5,15 @@ from typing import Annotated
 
 import typer
 
-from hydrolek_drake.cli.settings import SetOption, parse_settings
+from hydrolek_drake.cli.settings import SeedOption, SetOption, parse_settings
 from hydrolek_drake.errors import InputError
 
 
 def export(
     rig: Annotated[str, typer.Argument(metavar="RIG", help="name of a built-in rig, or a rig file")],
-    out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="the unit, such as model.fmu")],
+    out: Annotated[
+        Path, typer.Option("--out", "-o", "--fmu", metavar="FILE", help="the unit, such as model.fmu")
+    ],
     joint: Annotated[
         list[str] | None,
         typer.Option(help="a joint that is commanded, again for more; all of the rig by default"),
@@ -22,6 +24,7 @@ def export(
     ] = 0.01,
     stop: Annotated[float, typer.Option(help="when simulators end unless told otherwise [s]")] = 10.0,
     set_: SetOption = None,
+    seed: SeedOption = None,
 ) -> None:
     """Write a rig's model as an FMU for co-simulation: commands in, position and pressures out.
 

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from hydrolek_drake.cli.inputs import refuse_twice, rig_and_recordings, tell_what_looks_wrong
-from hydrolek_drake.cli.settings import SetOption
+from hydrolek_drake.cli.settings import SeedOption, SetOption
 
 
 def replay(
@@ -23,9 +23,7 @@ def replay(
         Path | None,
         typer.Option(metavar="DIR", help="folder for page, picture, numbers and signals"),
     ] = None,
-    seed: Annotated[
-        int | None, typer.Option(help="taken by all commands; a replay draws no random numbers")
-    ] = None,
+    seed: SeedOption = None,
 ) -> None:
     """Drive a rig's model with a recorded command and compare it with what was measured."""
     from rich.console import Console

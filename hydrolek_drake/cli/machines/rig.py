@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrolek_drake.cli.inputs import tell_of_clocks
-from hydrolek_drake.cli.settings import SetOption, parse_settings
+from hydrolek_drake.cli.settings import SeedOption, SetOption, parse_settings
 from hydrolek_drake.errors import InputError
 
 if TYPE_CHECKING:  # the commands load what they need
@@ -22,14 +22,21 @@ WRONG = 1
 """Exit status of a check that found something wrong."""
 
 
-@rig.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+@rig.command(
+    context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
+    options_metavar="FILE [OPTIONS]",
+)
 def new(
     context: typer.Context,
-    file: Annotated[
-        Path | None, typer.Argument(metavar="FILE", help="rig file to be written, such as my_axis.yaml")
+    out_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", metavar="FILE", help="rig file to be written, such as my_axis.yaml; or FILE alone"
+        ),
     ] = None,
     questions: Annotated[bool, typer.Option("--questions", help="list all questions and end")] = False,
     force: Annotated[bool, typer.Option("--force", help="write over a file that is there")] = False,
+    seed: SeedOption = None,
 ) -> None:
     """Write a commented rig from what a data sheet says.
 
@@ -47,13 +54,22 @@ def new(
             told = "needed" if each.needed else "optional"
             out.print(f"{each.option:<{width}} {each.asks}{kind}, {told}", markup=False, soft_wrap=True)
         return
-    if file is None:
+    given, files = _pairs(context.args)
+    files += [str(out_file)] if out_file else []
+    if len(files) > 1:
+        raise InputError(
+            f"rig new: {' and '.join(files)}: one FILE is written; an option's value stands behind it in quotes, "
+            "such as --bore '40 mm'"
+        )
+    if not files:
         raise InputError("rig new: no FILE to write, such as my_axis.yaml")
+    file = Path(files[0])
     if file.suffix not in (".yaml", ".yml"):
         raise InputError(f"rig new: {file} is no YAML file; name it {file.with_suffix('.yaml')}")
     if file.exists() and not force:
         raise InputError(f"rig new: {file} is there already; --force writes over it")
-    given = _pairs(context.args)
+    if not file.parent.is_dir():
+        raise InputError(f"rig new: {file}: there is no folder {file.parent}")
     if sys.stdin.isatty():
         _ask(given)
 
@@ -76,6 +92,7 @@ def check(
         list[Path] | None, typer.Argument(metavar="[RECORDING]...", help="recordings of the machine")
     ] = None,
     set_: SetOption = None,
+    seed: SeedOption = None,
 ) -> int:
     """Say what looks wrong about a rig and its recordings, with the line that mends it.
 
@@ -119,14 +136,16 @@ def _say(loaded: "Rig", recording: "Recording | None") -> int:
     return sum(each.wrong for each in found)
 
 
-def _pairs(arguments: list[str]) -> dict[str, str]:
-    """`--name value` and `--name=value` as pairs."""
+def _pairs(arguments: list[str]) -> tuple[dict[str, str], list[str]]:
+    """`--name value` and `--name=value` as pairs, and what stands behind no option."""
     given: dict[str, str] = {}
+    files: list[str] = []
     left = list(arguments)
     while left:
         name = left.pop(0)
         if not name.startswith("--"):
-            raise InputError(f"rig new: '{name}' stands behind no option; write --bore '40 mm', in quotes")
+            files.append(name)
+            continue
         name, equals, value = name.partition("=")
         if not equals:
             if not left:
@@ -135,7 +154,7 @@ def _pairs(arguments: list[str]) -> dict[str, str]:
         if name in given:
             raise InputError(f"rig new: {name} is given twice")
         given[name] = value
-    return given
+    return given, files
 
 
 def _ask(given: dict[str, str]) -> None:

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from hydrolek_drake.cli.operation.control_study import judge, tune
-from hydrolek_drake.cli.settings import SetOption, parse_settings
+from hydrolek_drake.cli.settings import SeedOption, SetOption, parse_settings
 from hydrolek_drake.errors import InputError
 
 control = typer.Typer(
@@ -108,9 +108,7 @@ def design(
     ] = None,
     out: Annotated[Path | None, typer.Option(metavar="FILE", help="YAML file for the controller")] = None,
     set_: SetOption = None,
-    seed: Annotated[
-        int | None, typer.Option(help="taken by all commands; a design draws no random numbers")
-    ] = None,
+    seed: SeedOption = None,
 ) -> None:
     """PIP controller with inverse dead-zone for one joint: from a rig's step tests, or from an SDP model."""
     import yaml

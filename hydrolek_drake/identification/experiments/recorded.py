@@ -69,6 +69,10 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
     position = np.asarray(measured_position(rig, joint, recording), dtype=float)
     if not np.isfinite(position).any():
         raise UninformativeError(f"{recording.source}: {place} has no value at all")
+    if not _changes(position):
+        raise UninformativeError(
+            f"{recording.source}: {place} is constant, so nothing can be identified; is the sensor connected?"
+        )
     if "position" in wanted:
         unit = "m" if place.endswith(".position") else "rad"
         noise = _noise(position, rig, joint, "noise")
@@ -78,19 +82,21 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
             name = f"{joint}.{quantity}"
             if quantity in wanted and name in recording.signals and name not in rig.driven_by:
                 measured = np.asarray(recording.signal(name), dtype=float)
-                noise = _noise(measured, rig, joint, "pressure_noise")
-                channels.append(Channel(name, "Pa", quantity, measured, noise))
+                if _changes(measured):
+                    noise = _noise(measured, rig, joint, "pressure_noise")
+                    channels.append(Channel(name, "Pa", quantity, measured, noise))
         followed = "supply.pressure" in recording.signals and "supply.pressure" not in rig.driven_by
         if "supply_pressure" in wanted and followed and len(rig.joints) == 1:
             measured = np.asarray(recording.signal("supply.pressure"), dtype=float)
-            noise = _noise(measured, rig, joint, "pressure_noise")
-            channels.append(Channel("supply.pressure", "Pa", "supply_pressure", measured, noise))
+            if _changes(measured):
+                noise = _noise(measured, rig, joint, "pressure_noise")
+                channels.append(Channel("supply.pressure", "Pa", "supply_pressure", measured, noise))
     name = f"{joint}.current"
     if rig.tells_current(joint) and "current" in wanted and name in recording.signals:
         measured = np.asarray(recording.signal(name), dtype=float)
-        channels.append(
-            Channel(name, "A", "current", measured, _noise(measured, rig, joint, "current_noise"))
-        )
+        if _changes(measured):
+            noise = _noise(measured, rig, joint, "current_noise")
+            channels.append(Channel(name, "A", "current", measured, noise))
     share = rig.value("integration.model_error")
     start, start_error = None, 0.0
     if rig.initial_position == "recording":
@@ -115,6 +121,12 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
         used=np.ones(recording.time.size, dtype=bool),
         recorded=recorded_inputs(rig, joint, recording),
     )
+
+
+def _changes(measured: np.ndarray) -> bool:
+    """Whether a signal shows anything: one that is constant has no noise that would weigh it, and is not followed."""
+    told = measured[np.isfinite(measured)]
+    return told.size > 0 and float(np.ptp(told)) > 0.0
 
 
 def _least_error(channel: Channel, share: float) -> float:

@@ -52,6 +52,8 @@ def recorded_joints(
         sample = float(campaign_data()["sample"]["value"])
         own = [recording for recording in recordings if f"{joint}.command" in recording.signals]
         tests = [test for recording in own for test in step_tests_of(recording, joint, sample)]
+        if not tests:
+            raise InputError(f"identify sdp: {joint}: no step to a held voltage other than 0 V")
         if rig is not None and joint in rig.joints:
             low, high = Machine(rig, joint).range_deg
             limit = rig.value(f"joints.{joint}.command.limit")

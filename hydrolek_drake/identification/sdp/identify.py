@@ -116,8 +116,8 @@ def _estimate(test: StepTest, longest: int) -> StepEstimate:
     """Dead time from the beginning of the motion, and with it the mean rate over the range."""
     plan = campaign_data()
     start = float(np.median(test.angle_deg[: test.step]))
-    moved = np.flatnonzero(np.abs(test.angle_deg - start) > float(plan["early_motion"]["value"]))
-    early = int(moved[0]) if moved.size else len(test.angle_deg)
+    moved = np.flatnonzero(np.abs(test.angle_deg[test.step :] - start) > float(plan["early_motion"]["value"]))
+    early = test.step + int(moved[0]) if moved.size else len(test.angle_deg)
     delay = dead_time_samples(test.angle_deg[:early], test.voltage_V[:early], min(longest, early - test.step))
     whole = max(round(delay), 0)
     found = integrator_estimate(test.angle_deg, test.voltage_V, whole)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from hydrolek_drake.errors import InputError
-from hydrolek_drake.recordings import Recording
+from hydrolek_drake.recordings import Recording, require
 from hydrolek_drake.yaml_files import package_yaml
 
 
@@ -71,6 +71,7 @@ def step_tests_of(recording: Recording, joint: str, sample: float) -> list[StepT
     for key in (command, angle):
         if key not in recording.signals:
             raise InputError(f"{recording.source}: no signal {key}; a step test needs command and angle")
+    require(recording, [], complete=[command, angle], units={command: "V"})
     time = np.arange(recording.time[0], recording.time[-1] + 0.5 * sample, sample)
     held = np.searchsorted(recording.time, time + 1e-6 * sample, side="right") - 1
     voltage = recording.signals[command][np.clip(held, 0, None)]

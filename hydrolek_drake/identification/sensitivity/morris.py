@@ -63,7 +63,12 @@ def elementary_effects(
         ordered[which] = change
         effects.append(ordered)
         progress(number + 1)
-    all_effects = np.nan_to_num(np.array(effects))  # (r, parameters, n)
-    about_mean = all_effects - all_effects.mean(axis=0)
-    squares = (about_mean**2).sum(axis=0) / max(trajectories - 1, 1)
-    return ElementaryEffects(mean_size=summary(all_effects).mean(axis=0), deviation=summary(np.sqrt(squares)))
+    all_effects = np.array(effects)  # (r, parameters, n)
+    told = np.isfinite(all_effects).all(axis=2, keepdims=True)  # what diverged counts neither way
+    counted = np.maximum(told.sum(axis=0), 1)
+    all_effects = np.where(told, all_effects, 0.0)
+    about_mean = np.where(told, all_effects - all_effects.sum(axis=0) / counted, 0.0)
+    squares = (about_mean**2).sum(axis=0) / np.maximum(counted - 1, 1)
+    return ElementaryEffects(
+        mean_size=summary(all_effects).sum(axis=0) / counted, deviation=summary(np.sqrt(squares))
+    )

@@ -46,5 +46,8 @@ def one_at_a_time(
         outputs[i] = response.of_all(list(units))
         given[i] = [free.from_unit(float(u)) for u in steps]
         progress(i + 1)
-    centred = np.nan_to_num(outputs - outputs.mean(axis=1, keepdims=True))
-    return OneAtATime(given, outputs, response.per_segment(np.sqrt((centred**2).mean(axis=1))))
+    with np.errstate(invalid="ignore", divide="ignore"):  # what diverged counts neither way
+        counted = np.isfinite(outputs).sum(axis=1, keepdims=True)
+        centred = outputs - np.nansum(outputs, axis=1, keepdims=True) / counted
+        spread = np.sqrt(np.nansum(centred**2, axis=1) / counted[:, 0])
+    return OneAtATime(given, outputs, response.per_segment(spread))

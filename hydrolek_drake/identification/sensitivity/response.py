@@ -7,12 +7,16 @@ from itertools import pairwise
 import numpy as np
 
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.identification.experiments.start import resting_position
 from hydrolek_drake.identification.objective.norms import segment_edges
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.recordings import Recording, require
+from hydrolek_drake.replay.noise import noise_level
+from hydrolek_drake.replay.readings import measured_position, position_key
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.machine.recorded_inputs import recorded_inputs, with_commands
 from hydrolek_drake.rollout.lanes.lanes import roll_out_lanes
+from hydrolek_drake.rollout.rest import rest_state_at_reading
 from hydrolek_drake.rollout.run import Run
 
 DURATION = 40.0
@@ -38,6 +42,7 @@ class Response:
         command: [V]. # (n,)
         segments: equal parts of the time.
         recorded: what is recorded in place of a part of the model; None for nothing.
+        start: position at which the joint rests at first [rad or m]; None for the rig's own.
     """
 
     parameters: ParameterSet
@@ -48,6 +53,7 @@ class Response:
     command: np.ndarray
     segments: int
     recorded: tuple[float, np.ndarray] | None = None
+    start: float | None = None
 
     def __call__(self, unit: np.ndarray) -> np.ndarray:
         """Reading, NaN after a divergence. # (n,)."""
@@ -66,6 +72,7 @@ class Response:
                 longest_step=rig.value("integration.longest_step"),
                 spool_steps=int(rig.value("integration.spool_steps")),
                 probes=self.recorded,
+                state=None if self.start is None else rest_state_at_reading(record, self.start),
             )
             for record in records
         ]
@@ -92,7 +99,7 @@ def response_of(
     Raises:
         InputError: no command in the recording, a constant one, or too many segments.
     """
-    recorded = None
+    recorded = start = None
     if recording is None:
         time = np.arange(round(DURATION / SAMPLE)) * SAMPLE
         limit, neutral = (rig.value(f"joints.{joint}.command.{name}") for name in ("limit", "neutral"))
@@ -111,6 +118,9 @@ def response_of(
         recorded = recorded_inputs(rig, joint, recording)
         if np.ptp(command) == 0.0 and rig.needs_command(joint):
             raise InputError(f"{recording.source}: {key} is constant, so no parameter shows")
+        if rig.initial_position == "recording" and position_key(rig, joint) in recording.signals:
+            position = np.asarray(measured_position(rig, joint, recording), dtype=float)
+            start, _ = resting_position(position, command, noise_level(position))
     if not 1 <= segments <= time.size:
         raise InputError(f"--segments {segments}: choose 1 to {time.size}")
     sliding = rig.variant(joint, "load") == "sliding"
@@ -123,4 +133,5 @@ def response_of(
         command=np.ascontiguousarray(command),
         segments=segments,
         recorded=recorded,
+        start=start,
     )
