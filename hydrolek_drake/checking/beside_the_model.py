@@ -117,9 +117,9 @@ def _about_changes(times: np.ndarray, volts: np.ndarray) -> np.ndarray:
 
 def _late(rig: Rig, joint: str, times: np.ndarray, seen: np.ndarray, own: np.ndarray) -> list[Complaint]:
     """Whether the joint answers earlier than any machine could."""
-    spacing = max(float(np.median(np.diff(times))), LAG_S)
-    even = np.arange(times[0], times[-1], spacing)
-    seen, own = np.interp(even, times, seen), np.interp(even, times, own)
+    spacing = float(np.median(np.diff(times)))
+    every = max(round(LAG_S / spacing), 1)
+    seen, own, spacing = seen[::every], own[::every], every * spacing
     most = min(round(MOST_S / spacing), seen.size // 3)
     lags = list(range(-most, most + 1))
     corr = [correlation(seen[most + k : seen.size - most + k], own[most : own.size - most]) for k in lags]

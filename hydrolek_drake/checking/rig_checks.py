@@ -92,13 +92,13 @@ def check_rig(rig: Rig) -> list[Complaint]:
     found = implausible(rig)
     if found:  # what follows would only repeat it
         return found
-    found += _outside_their_ranges(rig)
     for joint in rig.joints:
         found += _pump_and_valve(rig, joint)
         found += _stroke_and_stops(rig, joint)
     if len(rig.joints) == 1:
         found += _step(rig, rig.joints[0])
-    return found
+    told = {complaint.about for complaint in found}
+    return found + [each for each in _outside_their_ranges(rig) if each.about not in told]
 
 
 def _pump_and_valve(rig: Rig, joint: str) -> list[Complaint]:

@@ -40,6 +40,12 @@ class CameraThread:
                 return reading.result(timeout=patience)
             except TookTooLong:
                 self._mute = reading
+            except InputError:
+                raise
+            except Exception as error:
+                raise InputError(
+                    f"the camera failed ({type(error).__name__}: {error}); check its cable and power"
+                ) from error
         raise InputError(f"the camera has not answered for {patience:g} s; check its cable and power")
 
     def close(self) -> None:

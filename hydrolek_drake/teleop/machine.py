@@ -214,7 +214,7 @@ class Machine:
                 self._link.wait()
             following += self._period
             time.sleep(max(0.0, following - time.monotonic()))
-            following = max(following, time.monotonic() - 1.0)  # after a pause, do not run to catch up
+            following = max(following, time.monotonic())  # after a pause, do not run to catch up
 
     def _behind(self) -> bool:
         """Whether the plant has not simulated another period yet: on a slow computer the task waits for it."""
@@ -257,7 +257,11 @@ class Machine:
 
     def _advance(self, context: Any, order: Order) -> None:
         self._sequencer.order_input.FixValue(context, [float(order)])
-        self._simulator.AdvanceTo(self._sequencer.one_update_on(context))
+        try:
+            self._simulator.AdvanceTo(self._sequencer.one_update_on(context))
+        except Exception:
+            self._simulator.Initialize()  # without it Drake's simulator does nothing more
+            raise
 
     def _lose(self, reason: str) -> None:
         """The link is lost: the task stops, and goes on only if the operator says so."""

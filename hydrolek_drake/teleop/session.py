@@ -219,6 +219,7 @@ class OperatorSession:
     def lose_operator(self) -> None:
         """The browser in control is gone: nothing is held any more, and a task stops; who takes over may resume."""
         self._machine.let_go()
+        self._undertaking.withdraw()
         if self._stage in (Stage.PLANNING, Stage.MOVING):  # without the lock, which a click may hold for long
             self.order(Order.STOP)
 

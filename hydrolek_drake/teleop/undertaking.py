@@ -80,7 +80,8 @@ class Undertaking:
             unforeseen = None if planning.cancelled() else planning.exception()
             if isinstance(unforeseen, Exception):
                 with self._lock:
-                    failed(unforeseen)
+                    if self._asked is asked:
+                        failed(unforeseen)
 
         self._planner.submit(plan_and_go).add_done_callback(after)
 

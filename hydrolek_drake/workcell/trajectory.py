@@ -14,6 +14,7 @@ Array = NDArray[np.float64]
 _PEAK_SPEED = 1.5  # of the cubic 3 s^2 - 2 s^3 that starts and ends at rest, over its mean
 _SAMPLED = 1.01  # a peak between two of the samples lies this little higher at most
 _PEAK_ACCELERATION = 6.0  # of the same, over length / duration^2
+_AT_REST = 0.05  # of a path on which nothing moves [s]: a period of the sequencer
 
 
 def time_parametrised(path: ArrayLike) -> Any:
@@ -46,8 +47,8 @@ def time_parametrised(path: ArrayLike) -> Any:
         )
         times.append(times[-1] + duration)
         kept.append(posture)
-    if len(kept) == 1:
-        return PiecewisePolynomial(kept[0][:, np.newaxis])
+    if len(kept) == 1:  # a constant of Drake's has no end, for which a step would wait
+        times, kept = [0.0, _AT_REST], [kept[0], kept[0]]
     knots = np.array(kept).T
     return PiecewisePolynomial.CubicHermite(times, knots, np.zeros_like(knots))
 

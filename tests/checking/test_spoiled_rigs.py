@@ -39,3 +39,9 @@ def test_a_displacement_per_turn_that_stands_per_radian_is_asked_about():
     rig = load_rig("hopsan_link", {"supply.displacement": "3e-5 m^3/rad"})
     [told] = check_rig(rig)
     assert "meant per turn" in told.says and "cm^3/rev" in told.line and not told.wrong
+
+
+def test_a_value_outside_its_range_is_told_since_a_fit_begins_at_the_end_of_it():
+    rig = load_rig("hopsan_link", {"load.mass": "500 kg"})
+    [told] = [complaint for complaint in check_rig(rig) if complaint.about.endswith("load.mass")]
+    assert "500 lies outside its range" in told.says and "500]" in told.line

@@ -114,3 +114,16 @@ def test_after_closing_nothing_opens_any_more(authority):
         authority.lead(console, angles=_THERE)
     authority.leave(console, "gone")
     assert authority.order().valves_open is False and authority.order().reason == "the link was closed"
+
+
+def test_a_stop_while_nobody_is_in_control_is_known_before_anybody_moves(authority, clock):
+    first, stranger = Client(), Client(trusted=False)
+    authority.lead(first, angles=_THERE)
+    clock.now += 2.1  # it has lost control
+    authority.stop(stranger)
+    with pytest.raises(BusyError, match="send CONTROL"):
+        authority.lead(first, angles=_THERE)
+    assert not authority.order().valves_open
+    authority.take(first)
+    authority.lead(first, angles=_THERE)
+    assert authority.order().valves_open

@@ -286,3 +286,40 @@ def test_an_unsure_object_is_shown_as_such_until_the_grasp(machine):
     session.back()
     assert session.state()["unsure"] and session.state()["message"] != ""
     session.close()
+
+
+@pytest.mark.parametrize("failure", [OSError("unplugged"), ValueError("odd frame")])
+def test_a_camera_that_fails_in_any_way_stops_what_moves(machine, failure):
+    class Failing(_Losable):
+        broken = False
+
+        def read(self):
+            if self.broken:
+                raise failure
+            return super().read()
+
+    camera = Failing()
+    session = OperatorSession(lambda: camera, machine, seed=1)
+    session.refresh()
+    assert _moving_by_hand(session)
+    camera.broken = True
+    session.refresh()
+    assert not session.state()["valves_open"] and str(failure) in session.state()["error"]
+    session.close()
+
+
+def test_a_planning_that_was_withdrawn_and_fails_later_changes_nothing(session, machine):
+    go_on = threading.Event()
+    failed = []
+
+    def fails():
+        go_on.wait(5.0)
+        raise RuntimeError("unforeseen")
+
+    undertaking = session._undertaking
+    undertaking.begin(fails, started=lambda plan: None, failed=failed.append)
+    undertaking.withdraw()
+    go_on.set()
+    undertaking._planner.submit(lambda: None).result()
+    time.sleep(0.1)
+    assert failed == []

@@ -64,6 +64,9 @@ def serve(
 
         machine_rig = load_rig(rig, parsed)
 
+    for each in (signal.SIGTERM, signal.SIGINT):  # a service manager's stop closes the valves, too
+        signal.signal(each, _interrupt)
+
     from hydrolek_drake.teleop.controllers.adapter import load_adapter
     from hydrolek_drake.teleop.controllers.serving import Clock, Pacer, serve_arms
     from hydrolek_drake.teleop.link.server import SetpointServer
@@ -85,7 +88,6 @@ def serve(
     if token is not None:
         output().print(f"its clients send TOKEN {token}", markup=False, soft_wrap=True)
     pacer = None if adapter is not None else Pacer(server, arms.period, 1.0)
-    signal.signal(signal.SIGTERM, _interrupt)  # a service manager's stop closes the valves, too
     serve_arms(
         arms,
         server,
@@ -96,6 +98,11 @@ def serve(
 
 
 def _interrupt(*_: object) -> None:
+    """End it, once: a second signal must not keep the valves from being closed."""
+    import signal
+
+    for each in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(each, signal.SIG_IGN)
     raise KeyboardInterrupt
 
 

@@ -22,7 +22,7 @@ class Socket(tornado.websocket.WebSocketHandler):
     def initialize(self, console: Desk) -> None:
         """What the application hands to each request."""
         self.console, self.trusted = console, False
-        self._waiting: asyncio.Queue[messages.AnyMessage] = asyncio.Queue(_WAITING)
+        self._waiting: asyncio.Queue[tuple[int, messages.AnyMessage]] = asyncio.Queue(_WAITING)
         self._worker: asyncio.Task[None] | None = None
         self._stopping: asyncio.Task[None] | None = None
         self._sent: asyncio.Future[None] | None = None
@@ -33,8 +33,14 @@ class Socket(tornado.websocket.WebSocketHandler):
         reason = gate.refused_host(headers.get("Host", ""))
         if not reason and "Origin" in headers:
             reason = gate.refused_origin(headers["Origin"], headers["Host"])
-        if not reason and len(self.console.seats.browsers) >= self.console.most:
-            reason = "too many browsers watch; close one"
+        browsers = self.console.seats.browsers
+        if not reason and len(browsers) >= self.console.most:
+            stranger = next((each for each in browsers if not each.trusted), None)
+            if stranger is None:
+                reason = "too many browsers watch; close one"
+            else:  # strangers must not keep an operator from STOP
+                self.console.seats.leave(stranger)
+                stranger.close()
         if reason:
             self.set_status(403)
             self.finish(reason + "\n")
@@ -61,6 +67,7 @@ class Socket(tornado.websocket.WebSocketHandler):
             self.console.seats.heard(self)
             match asked:
                 case messages.Stop():
+                    self.console.stops += 1
                     self._stopping = asyncio.ensure_future(self._stop())
                 case messages.Here():
                     pass
@@ -68,7 +75,7 @@ class Socket(tornado.websocket.WebSocketHandler):
                     self._show(token)
                 case _:
                     self._refuse_unless_in_control()
-                    self._waiting.put_nowait(asked)
+                    self._waiting.put_nowait((self.console.stops, asked))
         except InputError as error:
             self.tell({"error": str(error)})
         except asyncio.QueueFull:
@@ -119,7 +126,10 @@ class Socket(tornado.websocket.WebSocketHandler):
     async def _carry_out(self) -> None:
         loop = asyncio.get_running_loop()
         while True:
-            asked = await self._waiting.get()
+            stops, asked = await self._waiting.get()
+            if stops != self.console.stops:
+                self.tell({"error": "not done: STOP came after it"})
+                continue
             try:
                 self._refuse_unless_in_control()
                 await loop.run_in_executor(self.console.workers, self.console.act, asked)

@@ -34,6 +34,7 @@ class Desk:
         view_port: Of Drake's browser view, or None.
         most: Browsers at once.
         seats: Who is in control.
+        stops: How many STOPs have come; what was asked for before one is not done after it.
         workers: Threads for all but STOP.
     """
 
@@ -42,6 +43,7 @@ class Desk:
         limits = teleop_entries("console")
         self.most = int(limits["browsers"])
         self.seats: Seats[Browser] = Seats(limits["mute"], self._control_lost)
+        self.stops = 0
         self.workers = ThreadPoolExecutor(2, thread_name_prefix="console")
         # never waits for a camera or a planner
         self._stopper = ThreadPoolExecutor(1, thread_name_prefix="stop")

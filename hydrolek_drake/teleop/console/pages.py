@@ -1,5 +1,7 @@
 """What the console serves over HTTP: its page, scripts and pictures."""
 
+import asyncio
+
 from hydrolek_drake.teleop.console.desk import Desk
 from hydrolek_drake.teleop.console.guarded import Guarded
 
@@ -60,15 +62,16 @@ class Icon(Handler):
 class Picture(Handler):
     """Camera and edges, as JPEG; over a network with the token alone."""
 
-    def get(self, name: str) -> None:
-        """Answer."""
+    async def get(self, name: str) -> None:
+        """Answer; what a click holds is waited for in a thread, so that STOP is heard meanwhile."""
         gate = self.gate
         if not gate.watching_is_free:
             scheme, _, token = self.request.headers.get("Authorization", "").partition(" ")
             if scheme != "Bearer" or not gate.trusts(token):
                 self.refuse(401, "watching needs the token of the address that the console has printed")
                 return
-        picture = self.console.session.picture(name)
+        loop, console = asyncio.get_running_loop(), self.console
+        picture = await loop.run_in_executor(console.workers, console.session.picture, name)
         if not picture:
             self.set_status(204)  # there is none yet
             return

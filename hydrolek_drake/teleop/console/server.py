@@ -1,6 +1,7 @@
 """The operator's console: one page, two pictures, one web socket; for this machine only unless told otherwise."""
 
 import asyncio
+import contextlib
 import logging
 from collections.abc import Awaitable, Callable
 from typing import Any
@@ -111,7 +112,11 @@ class Console(Desk):
         )
 
     def close(self) -> None:
-        """Stop serving; open pages say that the console is gone."""
+        """Stop the arms and then serving; open pages say that the console is gone."""
+        with contextlib.suppress(
+            Exception
+        ):  # whatever ends it: valves before threads, which may take their time
+            self.session.halt()
         self._server.stop()
         for browser in list(self.seats.browsers):
             browser.close()

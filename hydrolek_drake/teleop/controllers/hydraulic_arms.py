@@ -141,6 +141,10 @@ class HydraulicArms:
         self._inner.SetContinuousState(rest.get_continuous_state_vector().CopyToVector())
         for group in range(rest.num_discrete_state_groups()):
             self._inner.SetDiscreteState(group, rest.get_discrete_state(group).get_value())
+        plant_context = self._station.plant.GetMyMutableContextFromRoot(context)
+        self._to_pick_up = [payload for payload in self._station.payloads if payload.time > 0.0]
+        for payload in self._to_pick_up:
+            payload.body.SetMass(plant_context, 0.0)
         self._places = [self.rig.joints.index(joint) for joint in JOINTS]
         self._fix(context, None, None, None)
         self._diagram.GetInputPort("pressure_available").FixValue(context, [1.0])
@@ -182,12 +186,19 @@ class HydraulicArms:
         """
         context = self._simulator.get_mutable_context()
         self._fix(context, set_point, deflection, grip)
+        self._pick_up(context)
         self._samples += 1
         self._simulator.AdvanceTo(self._samples * sample_s())
         if self._samples % round(teleop_entries("plant")["forget_after"] / sample_s()) == 0:
             for log in self._station.logs.values():  # they would grow as long as the session lasts
                 log.FindMutableLog(context).Clear()
         return self.measured()
+
+    def _pick_up(self, context: Context) -> None:
+        """Payloads whose time has come hang at the tool from this sample on."""
+        for payload in [each for each in self._to_pick_up if each.time <= context.get_time()]:
+            payload.body.SetMass(self._station.plant.GetMyMutableContextFromRoot(context), payload.mass)
+            self._to_pick_up.remove(payload)
 
     def measured(self) -> Array:
         """Joints as their sensors read them, in rad, shape (14,)."""

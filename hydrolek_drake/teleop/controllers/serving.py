@@ -116,5 +116,7 @@ def serve_arms(
             raise
         raise InputError(f"serve: {reason} ({type(error).__name__}); the valves are closed") from error
     finally:
-        server.close(reason)
-        arms.close()
+        try:
+            arms.close()  # valves before sockets
+        finally:
+            server.close(reason)

@@ -131,6 +131,8 @@ class Authority:
             if other is not None and other is not client:
                 self._displace(other, "stopped by another client")
             else:
+                if other is None:  # who comes next must know of it
+                    self._stops += 1
                 self._shut("stopped by the operator")
                 if client.trusted:
                     self._holder, self._last = client, self._clock()

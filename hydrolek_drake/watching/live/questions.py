@@ -8,6 +8,7 @@ import multiprocessing
 import signal
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from multiprocessing.connection import Connection
 from pathlib import Path
 
@@ -130,7 +131,10 @@ def _serve(
             except (EOFError, OSError):
                 return
             seen = answer(session, window, folder, joints)
-            store.keep(seen)
+            try:
+                store.keep(seen)
+            except (InputError, OSError) as error:
+                seen = replace(seen, problem=f"{seen.problem} (not kept: {error})".strip())
             pipe.send(seen)
 
 
@@ -143,15 +147,17 @@ def answer(session: Session, window: Window, folder: Path, joints: Sequence[str]
         folder: of the watch.
         joints: in the order of the window's rows.
     """
-    path = window.write(folder, session.rig, joints)
-    stamp = Stamp(window.ended, "clock")
-    digest = digest_of(path)
+    stamp, path, digest = Stamp(window.ended, "clock"), folder, ""
     try:
+        path = window.write(folder, session.rig, joints)
+        digest = digest_of(path)
         recording = read_recording(path)
         experiments = window.experiments(session.rig, recording, joints)
         reasons = reasons_against(recording, experiments)
         if reasons:
             raise InputError(f"{path}: {reasons[0]}")
         return Seen(str(path), digest, stamp, asked(session, experiments))
-    except (InputError, ValueError, ArithmeticError) as error:  # one window stops no watch
+    except InputError as error:  # one window stops no watch
         return Seen(str(path), digest, stamp, None, str(error))
+    except Exception as error:
+        return Seen(str(path), digest, stamp, None, f"{type(error).__name__}: {error}")

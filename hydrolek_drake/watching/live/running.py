@@ -191,6 +191,7 @@ class _Loop:
     ) -> None:
         self._rig, self._source, self._follower = rig, source, follower
         self._questions, self._series, self._server = questions, series, server
+        self._told_failed = False
         self._options, self._tell = options, tell
         self._told_events = 0
         self._link_state = "waiting"
@@ -232,6 +233,9 @@ class _Loop:
         """Take what was answered, and tell the page where it is time."""
         for seen in self._questions.answers():
             self._series.add(seen)
+        if self._questions.failed and not self._told_failed:
+            self._told_failed = True
+            self._follower.note("refused", f"windows: {self._questions.failed}", time.time())
         if time.monotonic() - self._told >= STATE_S:
             self._told = time.monotonic()
             self._show(page)

@@ -20,6 +20,12 @@ from hydrolek_drake.watching.live.settings import BAD_IN_A_ROW, LONGEST_LINE, WA
 from hydrolek_drake.watching.live.sources import Link
 
 _TOKEN = "TOKEN"
+_TOKEN_S = 5.0
+"""A sender shows its token within so long, or makes room for the next one."""
+
+_KEPT_ALIVE = {"TCP_KEEPIDLE": 5, "TCP_KEEPINTVL": 2, "TCP_KEEPCNT": 3}
+"""After so many seconds of silence it is asked whether it is there, so often, and then so many times."""
+
 _TOLD_S = 0.5
 """A sender that is refused has so long to hear why."""
 
@@ -119,6 +125,7 @@ class TcpSource:
         """
         reader = LineReader(self._rig.columns, "stream")
         trusted, named, rest = self._token is None, False, b""
+        connection.settimeout(None if trusted else _TOKEN_S)
         while received := connection.recv(1 << 16):
             *lines, rest = (rest + received).split(b"\n")
             if len(rest) > LONGEST_LINE:
@@ -129,6 +136,7 @@ class TcpSource:
                 if word != _TOKEN or not same_token(shown, self._token or ""):
                     raise InputError(f"this stream needs {_TOKEN} and its token first")
                 trusted = True
+                connection.settimeout(None)
                 connection.sendall(b"OK\n")
             before = reader.bad
             found = reader.read(text)
@@ -182,6 +190,7 @@ class _Connection(socketserver.BaseRequestHandler):
 
     def handle(self) -> None:
         source, connection = self.server.source, self.request
+        _kept_alive(connection)
         if not source.enter(connection):
             _tell(connection, "BUSY another sender is connected")
             return
@@ -191,10 +200,21 @@ class _Connection(socketserver.BaseRequestHandler):
         except InputError as error:
             reason = str(error)
             _tell(connection, f"ERROR {reason}")
+        except TimeoutError:
+            reason = f"no token within {_TOKEN_S:g} s"
+            _tell(connection, f"ERROR {reason}")
         except OSError:
             reason = "the connection was lost"
         finally:
             source.leave(reason)
+
+
+def _kept_alive(connection: socket.socket) -> None:
+    """Have the system ask a silent sender whether it is still there, so that one whose cable was pulled leaves."""
+    connection.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    for name, value in _KEPT_ALIVE.items():
+        if hasattr(socket, name):  # not on every system
+            connection.setsockopt(socket.IPPROTO_TCP, getattr(socket, name), value)
 
 
 def _tell(connection: socket.socket, text: str) -> None:

@@ -190,3 +190,13 @@ def test_the_page_lies_in_no_frame_of_another_site():
         assert console.token not in answer.body.decode()
 
     served(work)
+
+
+def test_strangers_do_not_keep_an_operator_out():
+    async def work(console, machine):
+        strangers = [await connect(console, token=False) for _ in range(console.most)]
+        operator = await connect(console)
+        assert await ask(operator, TO_THE_RIGHT) == ""
+        assert len(console.seats.browsers) <= console.most and len(strangers) == console.most
+
+    served(work)

@@ -97,3 +97,24 @@ def test_what_fails_while_states_are_sent_ends_nothing(caplog):
 
     served(work)
     assert "states failed" in caplog.text
+
+
+def test_what_was_asked_for_before_a_stop_is_not_done_after_it():
+    """Clicks that take their time hold the rest up; a joystick that is let go among them must not open anything."""
+
+    class Slow(Black):
+        seconds = 1.0
+
+    async def work(console, machine):
+        operator, watcher = await connect(console), await connect(console)
+        assert await ask(operator, TO_THE_RIGHT) == ""
+        await operator.write_message('{"do": "snapshot"}')
+        await asyncio.sleep(0.1)
+        await operator.write_message('{"do": "let_go"}')
+        await operator.write_message(TO_THE_RIGHT)
+        await watcher.write_message('{"do": "stop"}')
+        await _until_error(operator, "STOP came after it")
+        await asyncio.sleep(0.3)
+        assert machine._hand._blocked and not machine.state().valves_open
+
+    served(work, source=Slow)
