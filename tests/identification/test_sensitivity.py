@@ -126,3 +126,18 @@ def test_a_performance_surface_needs_two_parameters():
         performance_surface(
             rig, "right_j2", ("valve.discharge", "valve.flow_force"), np.random.default_rng(1)
         )
+
+
+def test_a_rollout_that_ran_away_counts_neither_way():
+    """Of a linear function the slopes are found from the trajectories that are left."""
+    slopes = np.array([3.0, -0.5])
+
+    def outputs(points):
+        return [np.full(4, np.nan if point[0] > 0.9 else float(slopes @ point)) for point in points]
+
+    def size(signal):
+        return np.sqrt((np.nan_to_num(signal) ** 2).mean(axis=-1, keepdims=True))
+
+    found = elementary_effects(outputs, size, 2, 60, np.random.default_rng(2))
+    np.testing.assert_allclose(found.mean_size[:, 0], np.abs(slopes), rtol=1e-9)
+    np.testing.assert_allclose(found.deviation, 0.0, atol=1e-9)

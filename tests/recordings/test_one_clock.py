@@ -5,7 +5,7 @@ import pytest
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.recordings.one_clock import Sampled, on_one_clock
-from hydrolek_drake.recordings.resampling import averaged
+from hydrolek_drake.recordings.resampling import averaged, averaged_held
 
 
 def moving_valve(rng, duration=60.0, dead_time=0.0):
@@ -117,3 +117,23 @@ def test_means_between_times():
     time = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
     values = np.array([1.0, 3.0, np.nan, 5.0, 7.0])
     np.testing.assert_array_equal(averaged(time, values, np.array([0.0, 2.0, 3.0, 5.0])), [2.0, np.nan, 6.0])
+
+
+def test_a_command_that_is_published_on_change_is_known_everywhere():
+    """What is held between bursts is averaged over time, not over samples."""
+    bursts = np.concatenate([np.arange(10) * 0.01 + start for start in (0.0, 3.0, 6.0)])
+    values = np.repeat([1.0, -2.0, 4.0], 10)
+    edges = np.arange(0.0, 8.01, 0.02)
+    found = averaged_held(bursts, values, edges)
+    np.testing.assert_allclose(
+        found, np.where(edges[:-1] < 2.999, 1.0, np.where(edges[:-1] < 5.999, -2.0, 4.0))
+    )
+    uneven = averaged_held(np.array([0.0, 0.9]), np.array([0.0, 10.0]), np.array([0.0, 1.0]))
+    np.testing.assert_allclose(uneven, 1.0)
+    assert np.isnan(averaged_held(np.array([0.5]), np.array([1.0]), np.array([0.0, 1.0]))).all()
+
+
+def test_an_even_clock_s_means_are_those_of_its_samples():
+    time, rng = np.arange(1000) * 1e-3, np.random.default_rng(1)
+    values, edges = rng.normal(size=1000), np.arange(0.0, 1.0001, 0.01)
+    np.testing.assert_allclose(averaged_held(time, values, edges), averaged(time, values, edges), atol=1e-9)

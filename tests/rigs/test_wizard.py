@@ -153,7 +153,7 @@ def test_the_built_in_link_is_what_the_wizard_writes_from_its_data_sheet():
         ({"boar": "40"}, "did you mean --bore"),
         ({"mass": ""}, "--mass ''"),
         ({"mass": "1e999"}, "--mass"),
-        ({"overlap": "1 mm"}, "no oil flows"),
+        ({"overlap": "1 mm"}, "no edge would open"),
     ],
 )
 def test_a_bad_answer_is_refused_in_one_line(change, says):
@@ -182,6 +182,26 @@ def test_the_command_writes_once_and_says_so(tmp_path, capsys):
     assert "is there already" in capsys.readouterr().err
     assert run(["rig", "check", str(path)]) == 0
     assert "nothing looks wrong" in capsys.readouterr().out
+
+
+def test_the_file_may_be_an_option_or_stand_behind_the_answers(tmp_path, capsys):
+    arguments = [part for key, text in SLIDE.items() for part in (f"--{key.replace('_', '-')}", text)]
+    assert run(["rig", "new", *arguments, "--out", str(tmp_path / "a.yaml"), "--seed", "1"]) == 0
+    assert run(["rig", "new", *arguments, str(tmp_path / "b.yaml")]) == 0
+    first, second = (
+        (tmp_path / name).read_text().replace("name: b", "name: a") for name in ("a.yaml", "b.yaml")
+    )
+    assert first.count("\n") == second.count("\n")
+    assert run(["rig", "new", str(tmp_path / "no" / "c.yaml"), *arguments]) == 2
+    assert "there is no folder" in capsys.readouterr().err
+    assert run(["rig", "new", "a.yaml", "b.yaml", *arguments]) == 2
+    assert "one FILE is written" in capsys.readouterr().err
+
+
+def test_answers_that_are_not_of_the_machine_are_refused(tmp_path):
+    for change in ({"lead": "5 mm"}, {"line_volume": "1 l"}, {"holding_ratio": "4"}):
+        with pytest.raises(InputError, match="not of a machine with --moves slide"):
+            written_rig("slide", SLIDE | change)
 
 
 def test_every_question_is_listed(tmp_path, capsys):
@@ -270,7 +290,7 @@ def test_a_pilot_check_valve_is_at_port_a_unless_something_else_is_said():
 @pytest.mark.parametrize(
     ("sheet", "change", "says"),
     [
-        (SLIDE, {"accumulator_volume": "1 l"}, "needs --supply pump"),
+        (SLIDE, {"accumulator_volume": "1 l"}, "not of a machine with --moves slide --supply constant"),
         (LINK, {"hose_length": "3 m"}, "give --hose-bore too"),
         (LINK, {"hose_bore": "12 mm"}, "give --hose-length too"),
         (LINK, {"holding": "check"}, "choose none or counterbalance or pilot_check"),

@@ -33,3 +33,13 @@ def test_how_far_from_the_axis_a_payload_hangs_is_open_where_its_weight_shows():
     assert lowest < 0.5**2 < highest
     _, upright = written_rig("upright", LINK | {"upright": "yes"})
     assert upright.entries["joints.joint.load.payload_inertia"].range is None
+
+
+@pytest.mark.parametrize(
+    ("centre", "along", "across"), [("0.25, 0 m", 1, 0), ("-0.25, 0 m", -1, 0), ("0, 0.25 m", 0, -1)]
+)
+def test_what_is_picked_up_hangs_beyond_the_centre_of_mass(centre, along, across):
+    """M = m g (x cos q - y sin q), at the end of the link of half a metre."""
+    _, rig = written_rig("link", LINK | {"centre": centre})
+    assert rig.value("load.payload_gravity_cos") == pytest.approx(along * 9.81 * 0.5)
+    assert rig.value("load.payload_gravity_sin") == pytest.approx(across * 9.81 * 0.5)
