@@ -141,3 +141,9 @@ def test_a_rollout_that_ran_away_counts_neither_way():
     found = elementary_effects(outputs, size, 2, 60, np.random.default_rng(2))
     np.testing.assert_allclose(found.mean_size[:, 0], np.abs(slopes), rtol=1e-9)
     np.testing.assert_allclose(found.deviation, 0.0, atol=1e-9)
+
+
+def test_fewer_values_than_parameters_leave_some_of_them_open():
+    found = identifiability(("a", "b", "c"), np.array([[1.0, 0.0, 1.0]]))
+    assert found.deviation[0] > 1e6 and found.deviation[2] > 1e6 and np.isinf(found.deviation[1])
+    assert len(found.blurred()) == 2

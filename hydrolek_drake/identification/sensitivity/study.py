@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hydrolek_drake.identification.experiments.channel import faithful
 from hydrolek_drake.identification.identifiability import Identifiability, identifiability
 from hydrolek_drake.identification.parameter_set import ParameterSet
 from hydrolek_drake.identification.sensitivity.morris import ElementaryEffects, elementary_effects
@@ -13,6 +14,8 @@ from hydrolek_drake.identification.sensitivity.response import Response, respons
 from hydrolek_drake.identification.sensitivity.sobol import SobolIndices, sobol_of
 from hydrolek_drake.identification.sensitivity.varied import Varied, varied_parameters
 from hydrolek_drake.recordings import Recording
+from hydrolek_drake.replay.noise import noise_level
+from hydrolek_drake.replay.readings import measured_position, position_key
 from hydrolek_drake.rigs import Rig
 
 DIFFERENCE = 1e-2
@@ -97,8 +100,7 @@ def study_sensitivity(
         lambda done: say(f"elementary effects: trajectory {done} of {trajectories}"),
     )
     say("Jacobian")
-    noise = response.factor * rig.value(f"joints.{joint}.sensor.noise")
-    jacobian = _jacobian(response) / (noise if noise > 0.0 else 1.0)
+    jacobian = _jacobian(response) / _noise(rig, joint, response, recording)
     sobol = None
     if sobol_points is not None:
         cost = sobol_points * (count + 2)
@@ -113,6 +115,16 @@ def study_sensitivity(
     return SensitivityStudy(
         joint, varied, response, single, effects, identifiability(parameters.paths, jacobian), sobol
     )
+
+
+def _noise(rig: Rig, joint: str, response: Response, recording: Recording | None) -> float:
+    """Of the reading, in its unit: the rig's, the recording's, or as little as any model leaves."""
+    told = rig.value(f"joints.{joint}.sensor.noise")
+    if not told and recording is not None and position_key(rig, joint) in recording.signals:
+        told = noise_level(np.asarray(measured_position(rig, joint, recording), dtype=float))
+    if told:
+        return response.factor * told
+    return max(faithful(response(response.parameters.unit())), np.finfo(float).tiny)
 
 
 def _jacobian(response: Response) -> np.ndarray:
