@@ -4,11 +4,14 @@ from typing import Annotated
 
 import typer
 
+from hydrolek_drake.cli.settings import SeedOption
+
 
 def effects(
     effect_id: Annotated[
         str | None, typer.Argument(metavar="[ID]", help="such as cylinder.cross_port_leakage")
     ] = None,
+    seed: SeedOption = None,
 ) -> None:
     """List the known effects, or show one in full."""
     from hydrolek_drake.cli.output import console

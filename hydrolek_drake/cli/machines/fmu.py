@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from hydrolek_drake.cli.settings import SeedOption
 from hydrolek_drake.errors import InputError
 
 fmu = typer.Typer(add_completion=False, rich_markup_mode=None, no_args_is_help=True)
@@ -15,6 +16,7 @@ fmu = typer.Typer(add_completion=False, rich_markup_mode=None, no_args_is_help=T
 @fmu.command()
 def show(
     file: Annotated[Path, typer.Argument(metavar="FMU", help="the unit")],
+    seed: SeedOption = None,
 ) -> None:
     """List the variables of a unit, and which of them are signals by their own name; nothing of it runs."""
     from rich.table import Table

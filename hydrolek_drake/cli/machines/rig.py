@@ -115,7 +115,7 @@ def check(
 
 
 @rig.command()
-def schema() -> None:
+def schema(seed: SeedOption = None) -> None:
     """Print the JSON schema of rig files, for completion and checks in editors."""
     from hydrolek_drake.rigs.reading.json_schema import rig_schema
 

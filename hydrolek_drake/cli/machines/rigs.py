@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hydrolek_drake.cli.settings import SetOption, parse_settings
+from hydrolek_drake.cli.settings import SeedOption, SetOption, parse_settings
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -19,6 +19,7 @@ def rigs(
         str | None, typer.Argument(metavar="[NAME]", help="a built-in rig, or a rig file")
     ] = None,
     set_: SetOption = None,
+    seed: SeedOption = None,
 ) -> None:
     """List the built-in rigs, or one rig's parameters with value, unit, range and source."""
     from hydrolek_drake.cli.output import console

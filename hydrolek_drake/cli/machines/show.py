@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from hydrolek_drake.cli.settings import SeedOption
 from hydrolek_drake.errors import InputError
 
 
@@ -19,6 +20,7 @@ def show(
         Path | None,
         typer.Option(metavar="FILE", help="write a stand-alone page instead of opening a view"),
     ] = None,
+    seed: SeedOption = None,
 ) -> None:
     """Show a saved run of the arms as a 3-D animation with a time slider."""
     from hydrolek_drake.cli.output import console

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hydrolek_drake.cli.settings import SeedOption
 from hydrolek_drake.errors import InputError
 
 if TYPE_CHECKING:
@@ -43,6 +44,7 @@ def ik(
     tolerance_mm: Annotated[float, typer.Option(help="of the Jacobian transpose")] = 1.0,
     most_iterations: Annotated[int, typer.Option(min=1, help="of the Jacobian transpose")] = 10_000,
     as_json: Annotated[bool, typer.Option("--json", help="print JSON instead of a table")] = False,
+    seed: SeedOption = None,
 ) -> None:
     """Find the joint angles that put one arm's tool at a target; exit status 2 says what makes that impossible."""
     import numpy as np
