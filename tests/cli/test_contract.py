@@ -18,6 +18,8 @@ def _functions():
                 yield f"{name} {command.name or command.callback.__name__}", command.callback
 
 
-@pytest.mark.parametrize(("name", "function"), _functions(), ids=lambda each: each if isinstance(each, str) else "")
+@pytest.mark.parametrize(
+    ("name", "function"), _functions(), ids=lambda each: each if isinstance(each, str) else ""
+)
 def test_every_command_takes_a_seed(name, function):
     assert "seed" in inspect.signature(function).parameters, name
