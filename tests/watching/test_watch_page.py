@@ -85,7 +85,7 @@ def test_the_page_fits_a_phone_and_keeps_to_its_scheme(chromium_page, address, s
     assert bright == ([True, False] if scheme == "light" else [False, True])
     told = chromium_page.inner_text("body")
     assert "run_11.csv" in chromium_page.inner_text("#recording") and "ALARM" in told
-    assert "The reference (4 s) tells less of the machine" in told
+    assert "The reference (4 s) determines these parameters less well" in told
     assert not errors
 
 

@@ -36,7 +36,7 @@ def test_a_healthy_machine_gives_no_alarm_and_the_reference_is_told_to_be_short(
     assert lacks and all(each.deviation > each.later and each.longer > 1.0 for each in lacks)
     [told] = [line for line in sentences(watched, []) if line.startswith("The reference (")]
     assert lacks[0].path.removeprefix("joints.joint.") in told and "would tell them as surely" in told
-    assert "tells less of the machine than one later recording" in page(watched)
+    assert "determines these parameters less well than one later recording" in page(watched)
 
 
 def test_a_leakage_is_alarmed_all_the_same(machine_days, short_reference, kept):
