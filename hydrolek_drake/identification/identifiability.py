@@ -54,9 +54,8 @@ class Identifiability:
 
 def identifiability(paths: tuple[str, ...], jacobian: np.ndarray) -> Identifiability:
     """Analyse d residuals / d place in the unit cube, residuals in units of the noise. # (values, n)."""
-    lacking = max(
-        jacobian.shape[1] - jacobian.shape[0], 0
-    )  # fewer values than parameters leave directions free
+    # fewer values than parameters leave directions free
+    lacking = max(jacobian.shape[1] - jacobian.shape[0], 0)
     _, values, directions = np.linalg.svd(np.pad(jacobian, ((0, lacking), (0, 0))), full_matrices=False)
     silent = np.finfo(float).eps * max(jacobian.shape) * max(float(values[0]), 1e-300)
     spread = directions.T / np.maximum(values, silent)

@@ -6,13 +6,12 @@ from typing import Annotated
 import typer
 
 import hydrolek_drake
+from hydrolek_drake.cli.settings import SeedOption
 
 
 def demo(
     out: Annotated[Path, typer.Option(metavar="DIR", help="folder for the report")] = Path("out/demo"),
-    seed: Annotated[
-        int | None, typer.Option(help="taken by all commands; a diagnosis draws no random numbers")
-    ] = None,
+    seed: SeedOption = None,
 ) -> None:
     """Diagnose a machine whose piston leaks, with a model that knows nothing of it."""
     from hydrolek_drake.cli.diagnosis.diagnose import diagnose

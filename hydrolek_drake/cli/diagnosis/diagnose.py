@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrolek_drake.cli.inputs import refuse_twice, rig_and_recordings, tell_what_looks_wrong
-from hydrolek_drake.cli.settings import ConfirmOption, SetOption
+from hydrolek_drake.cli.settings import ConfirmOption, SeedOption, SetOption
 from hydrolek_drake.errors import InputError
 
 if TYPE_CHECKING:
@@ -49,9 +49,7 @@ def diagnose(
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="folder for report, fitted rig and residuals")
     ] = None,
-    seed: Annotated[
-        int | None, typer.Option(help="taken by all commands; a diagnosis draws no random numbers")
-    ] = None,
+    seed: SeedOption = None,
 ) -> None:
     """Find out what physics a rig's model leaves out, from recordings of the machine."""
     from hydrolek_drake.cli.output import console, progress

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hydrolek_drake.cli.inputs import refuse_twice
-from hydrolek_drake.cli.settings import SetOption, parse_settings
+from hydrolek_drake.cli.settings import SeedOption, SetOption, parse_settings
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.watching.listing import listed
 
@@ -107,11 +107,9 @@ def watch(
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="folder for table and page, and to go on from")
     ] = None,
-    seed: Annotated[
-        int | None, typer.Option(help="taken by all commands; a watch draws no random numbers")
-    ] = None,
+    seed: SeedOption = None,
 ) -> None:
-    """Ask every recording what differs from the healthy machine; exit status 3 is an alarm.
+    """Evaluate what differs from the healthy machine in each recording; exit status 3 is an alarm.
 
     The same command goes on where an earlier one ended: what was evaluated is not evaluated again.
     """

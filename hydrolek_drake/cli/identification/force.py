@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from hydrolek_drake.cli.inputs import refuse_twice, rig_and_recordings
-from hydrolek_drake.cli.settings import SetOption
+from hydrolek_drake.cli.settings import SeedOption, SetOption
 
 
 def force(
@@ -20,9 +20,7 @@ def force(
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="folder for rig_fitted.yaml, force.json and picture")
     ] = None,
-    seed: Annotated[
-        int | None, typer.Option(help="taken by all commands; a regression draws no random numbers")
-    ] = None,
+    seed: SeedOption = None,
 ) -> None:
     """Mass, friction and constant force (or gravity) by regressing the motor's force on the measured motion."""
     from rich.table import Table

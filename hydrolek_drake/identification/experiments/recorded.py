@@ -82,21 +82,18 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
             name = f"{joint}.{quantity}"
             if quantity in wanted and name in recording.signals and name not in rig.driven_by:
                 measured = np.asarray(recording.signal(name), dtype=float)
-                if _changes(measured):
-                    noise = _noise(measured, rig, joint, "pressure_noise")
-                    channels.append(Channel(name, "Pa", quantity, measured, noise))
+                noise = _noise(measured, rig, joint, "pressure_noise")
+                channels.append(Channel(name, "Pa", quantity, measured, noise))
         followed = "supply.pressure" in recording.signals and "supply.pressure" not in rig.driven_by
         if "supply_pressure" in wanted and followed and len(rig.joints) == 1:
             measured = np.asarray(recording.signal("supply.pressure"), dtype=float)
-            if _changes(measured):
-                noise = _noise(measured, rig, joint, "pressure_noise")
-                channels.append(Channel("supply.pressure", "Pa", "supply_pressure", measured, noise))
+            noise = _noise(measured, rig, joint, "pressure_noise")
+            channels.append(Channel("supply.pressure", "Pa", "supply_pressure", measured, noise))
     name = f"{joint}.current"
     if rig.tells_current(joint) and "current" in wanted and name in recording.signals:
         measured = np.asarray(recording.signal(name), dtype=float)
-        if _changes(measured):
-            noise = _noise(measured, rig, joint, "current_noise")
-            channels.append(Channel(name, "A", "current", measured, noise))
+        noise = _noise(measured, rig, joint, "current_noise")
+        channels.append(Channel(name, "A", "current", measured, noise))
     share = rig.value("integration.model_error")
     start, start_error = None, 0.0
     if rig.initial_position == "recording":
@@ -113,6 +110,7 @@ def _experiment(rig: Rig, joint: str, recording: Recording, wanted: tuple[str, .
                 recording.time, rig.value("integration.time_error")
             )
             for c in channels
+            if _changes(c.measured)
         ),
         start=start,
         start_error=start_error,

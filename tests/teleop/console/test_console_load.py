@@ -100,7 +100,7 @@ def test_what_fails_while_states_are_sent_ends_nothing(caplog):
 
 
 def test_what_was_asked_for_before_a_stop_is_not_done_after_it():
-    """Clicks that take their time hold the rest up; a joystick that is let go among them must not open anything."""
+    """Clicks that take their time hold the rest up; a joystick that is released among them must not open anything."""
 
     class Slow(Black):
         seconds = 1.0
