@@ -136,15 +136,13 @@ class DiagnosisResult(Result):
 
     def to_pandas(self) -> "pandas.DataFrame":
         """One row a parameter of the best model: value, 95 % interval (SI), unit."""
-        from hydrolek_drake.rigs.machine.rig import declaration
-
         rows = [
             {
                 "parameter": path,
                 "value": known.value,
                 "low": known.low,
                 "high": known.high,
-                "unit": declaration(self.diagnosis.rig, path).unit,
+                "unit": self.diagnosis.rig.entries[path].unit,
             }
             for path, known in self.diagnosis.intervals.items()
         ]

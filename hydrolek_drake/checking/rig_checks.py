@@ -8,7 +8,6 @@ import numpy as np
 from hydrolek_drake.checking.complaint import Complaint
 from hydrolek_drake.checking.steps import step_that_agrees
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.machine.rig import declaration
 from hydrolek_drake.rollout.one_point import inlet_conductance, stroke_and_lever
 from hydrolek_drake.yaml_files import package_yaml
 
@@ -43,7 +42,7 @@ def implausible(rig: Rig) -> list[Complaint]:
         value = rig.value(path)
         if math.isnan(value) or limits[0] <= value <= limits[1]:
             continue
-        unit = declaration(rig, path).unit
+        unit = rig.entries[path].unit
         scale = _that_mends(value, limits)
         mend = f"{{value: {value * scale:.4g}, unit: {unit}, ...}}" if scale else ""
         found.append(

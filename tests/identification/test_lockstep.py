@@ -80,6 +80,17 @@ def test_who_would_not_catch_up_with_the_steps_that_are_left_ends(problem) -> No
         assert ending.least(best) == 0.0
 
 
+def test_a_fit_that_would_not_come_to_what_is_known_already_ends(problem) -> None:
+    """Alone it is the best of its race and goes on to the bottom."""
+    with ThreadPoolExecutor(2) as pool:
+        [bottom] = descend([_begun(problem, 0.2)], 25, pool, 2, behind=0.01)
+        [begun] = descend([_begun(problem, 0.2)], 0, pool, 2)
+        goal = -100.0 * begun.objective  # farther away than any step leads
+        [ended] = descend([_begun(problem, 0.2)], 25, pool, 2, behind=0.01, goal=goal)
+    assert ended.ended and ended.objective == begun.objective
+    assert bottom.objective < 0.1 * begun.objective
+
+
 class Threshold(Problem):
     """What the first number is beyond a place makes no difference."""
 

@@ -99,8 +99,36 @@ def test_settings_take_units_or_si_and_leave_the_original_alone():
 
 
 @pytest.mark.parametrize(
+    ("rig", "path", "text", "value"),
+    [
+        ("emps", "linkage.backlash.gap_rad", "5 mm", 5e-3),  # where the load slides an angle is a length
+        ("emps", "linkage.backlash.gap_rad", "0.005 rad", 5e-3),  # as files of older versions say it
+        ("emps", "sensor.drift.rate_rad_per_min", "1 mm/min", 1e-3),
+        ("emps", "base.compliance.stiffness_Nm_per_rad", "2 kN/m", 2e3),
+        ("joint_bench", "linkage.backlash.gap_rad", "1 deg", np.radians(1)),
+        ("hopsan_link", "load.coulomb_friction.force_N", "40 N m", 40.0),
+        ("hydrolek_left_j4", "cylinder.coulomb_friction.coulomb_N", "3 N m", 3.0),
+    ],
+)
+def test_an_effect_is_stated_in_the_unit_that_it_has_at_its_joint(rig, path, text, value):
+    loaded = load_rig(rig)
+    full = f"joints.{loaded.joints[0]}.effects.{path}"
+    assert load_rig(rig, {full: text}).value(full) == pytest.approx(value)
+
+
+def test_an_effect_of_a_slide_is_written_with_the_unit_of_a_slide(tmp_path):
+    path = "joints.axis.effects.linkage.backlash.gap_rad"
+    tree = load_rig("emps", {path: "5 mm"}).as_tree()
+    assert tree["joints"]["axis"]["effects"]["linkage.backlash"]["gap_rad"]["unit"] == "m"
+    file = tmp_path / "worn.yaml"
+    file.write_text(yaml.safe_dump(tree))
+    assert load_rig(file).value(path) == pytest.approx(5e-3)
+
+
+@pytest.mark.parametrize(
     ("path", "text", "match"),
     [
+        ("effects.linkage.backlash.gap_rad", "5 mm", "does not say of which angle; use deg or rad"),
         ("supply.presure", "1 MPa", "no parameter 'supply.presure'; nearest: supply.pressure"),
         ("supply.pressure", "12 kg", "'kg' does not measure.*use Pa"),
         ("supply.pressure", "twelve", "'twelve' is not a number with a unit"),

@@ -20,6 +20,7 @@ def race(
     entrants: Sequence[Entrant],
     rungs: Sequence[Rung],
     seen: Callable[[Sequence[Runner], Rung], None] = lambda runners, rung: None,
+    goal: float = math.inf,
 ) -> list[Hypothesis]:
     """Fit structures, the better ones to the end.
 
@@ -28,11 +29,12 @@ def race(
         entrants: structures and starts.
         rungs: of the race.
         seen: told how the fits stand after each rung.
+        goal: squares of a known fit to the same data, as of `lockstep.descend`.
 
     Returns:
         Those that ended on the last rung, the best first.
     """
-    runners = run(bench, entered(bench, entrants, rungs[0]), rungs, seen)
+    runners = run(bench, entered(bench, entrants, rungs[0]), rungs, seen, goal)
     return hypotheses_of(bench, runners, rungs[-1])
 
 
@@ -41,6 +43,7 @@ def run(
     runners: Sequence[Runner],
     rungs: Sequence[Rung],
     seen: Callable[[Sequence[Runner], Rung], None] = lambda runners, rung: None,
+    goal: float = math.inf,
 ) -> list[Runner]:
     """Structures on their way through rungs, the best first.
 
@@ -49,6 +52,7 @@ def run(
         runners: structures and where they stand.
         rungs: of the race.
         seen: told how the fits stand after each rung.
+        goal: squares of a known fit to the same data, as of `lockstep.descend`.
     """
     now = list(runners)
     for number, rung in enumerate(rungs):
@@ -61,6 +65,7 @@ def run(
             bench.cores,
             share=rung.share,
             behind=rung.behind,
+            goal=goal,
             leading=max(bench.coarsest / rung.coarse, 1.0),
             stop=told,
         )

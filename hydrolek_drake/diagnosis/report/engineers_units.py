@@ -1,7 +1,7 @@
 """Sizes of effects in the units of gauges and data sheets: l/min at a pressure drop, bar, mm, degrees, ms."""
 
 from hydrolek_drake.diagnosis.intervals.curvature import Interval
-from hydrolek_drake.diagnosis.report.words import TURNING, unit_at, with_interval
+from hydrolek_drake.diagnosis.report.words import unit_at, with_interval
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.replay.display import display_unit, shown
@@ -45,7 +45,7 @@ def in_engineers_units(rig: Rig, candidate: Candidate, parameter: Parameter, kno
         return f"{_told(_times(known, drop * si_factor('m^3/s', _FLOW)), _FLOW)} {at}"
     if parameter.name.endswith(_SHARE):
         return _told(_times(known, si_factor("1", "%")), "%")
-    if unit in ("N", TURNING["N"]) and candidate.effect.stage == "cylinder":
+    if unit in ("N", "N m") and candidate.effect.stage == "cylinder":
         section = f"joints.{candidate.joint}.cylinder"
         if rig.variant(candidate.joint, "cylinder") not in _HYDRAULIC:
             return ""

@@ -16,7 +16,6 @@ from hydrolek_drake.diagnosis.report.words import behind, off_zero_sentences, qu
 from hydrolek_drake.diagnosis.settings import EVIDENCE
 from hydrolek_drake.identification.experiments.thinning import STEPS
 from hydrolek_drake.replay.display import ratio, three_digits
-from hydrolek_drake.rigs.machine.rig import declaration
 
 PROBABILITY = (
     "Probability: how likely it is that this is truly missing, which is the posterior probability among all models "
@@ -179,7 +178,7 @@ def parameters(diagnosis: Diagnosis) -> str:
     """Every parameter that was fitted."""
     rows = []
     for path, known in diagnosis.intervals.items():
-        unit = declaration(diagnosis.rig, path).unit
+        unit = diagnosis.rig.entries[path].unit
         nominal = diagnosis.rig.value(path)
         short = path.removeprefix(f"joints.{diagnosis.rig.joints[0]}.")
         value, low, high = with_interval(known, unit)

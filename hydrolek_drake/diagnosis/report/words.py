@@ -13,18 +13,12 @@ from hydrolek_drake.physics.parameters import Parameter
 from hydrolek_drake.replay.display import display_factor, display_unit, ratio, shown, three_digits
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.machine.rig import declaration
-
-TURNING = {"N": "N m", "N s/m": "N m s/rad", "m/s": "rad/s", "m": "rad"}
-"""Units at a rod or a slide -> the same at a shaft."""
+from hydrolek_drake.rigs.parameters.declarations import unit_there
 
 
 def unit_at(rig: Rig, candidate: Candidate, unit: str) -> str:
     """The unit of an effect's parameter at its joint: of a length where the load slides, of an angle where it turns."""
-    if rig.variant(candidate.joint, "load") == "sliding":
-        return unit.replace("rad", "m")
-    stage = candidate.effect.stage
-    shaft = stage == "cylinder" and rig.variant(candidate.joint, "cylinder") in ("vane", "hydraulic_motor")
-    return TURNING.get(unit, unit) if shaft or stage == "load" else unit
+    return unit_there(unit, candidate.effect, f"joints.{candidate.joint}", rig.variants)
 
 
 def sizes(candidate: Candidate, diagnosis: Diagnosis) -> str:

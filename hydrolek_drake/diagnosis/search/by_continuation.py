@@ -18,11 +18,12 @@ from hydrolek_drake.diagnosis.structures.addition import names_of
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.cost import cost
 from hydrolek_drake.diagnosis.structures.law_terms import of_additions
+from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.least_squares.lockstep import descend
 
 
-def continued(bench: Workbench, opening: Opening, left: float) -> list[Runner]:
+def continued(bench: Workbench, opening: Opening, left: float) -> tuple[list[Runner], list[Hypothesis]]:
     """A race by continuation, from the rig's own numbers; near the noise from where the structure was fitted too.
 
     Slower observers are asked only for what a faster one leaves clearly less of than free rollouts do, since these
@@ -34,7 +35,8 @@ def continued(bench: Workbench, opening: Opening, left: float) -> list[Runner]:
         left: by the best free rollout, over the noise.
 
     Returns:
-        What goes on, the best first.
+        What goes on, the best first; and where nothing does although an observer followed some additions to the noise
+        and others not, those: one of them is right, and its fit has ended in a local minimum of a slower observer.
     """
     parent = opening.parent
     far = parent.fit.over_noise > NOISE.far  # its numbers are bent there
@@ -48,6 +50,8 @@ def continued(bench: Workbench, opening: Opening, left: float) -> list[Runner]:
     ]
     heats = steps_for(bench.settings.continued, not far)
     runners = _in_time(bench, entered(bench, entrants, heats[0]))
+    followed: list[Hypothesis] = []
+    told_apart = False
     for heat, taken in zip(heats, bench.settings.long, strict=False):
         runners = run(bench, runners, (heat,), traced("observed")) if runners else []
         if runners and above_noise(runners[0]):  # the best one as long as it takes
@@ -57,7 +61,39 @@ def continued(bench: Workbench, opening: Opening, left: float) -> list[Runner]:
         most = min(bench.settings.nearer * left, NOISE.far if heat.coarse == 1.0 else math.inf)
         if bench.settings.nearer * left > NOISE.explained:
             runners = [r for r in runners if over_noise_of(r) < most]
-    return runners
+        runners = _decided(runners, heat)
+        at_noise = [r for r in runners if not above_noise(r)]
+        told_apart = told_apart or 0 < len(at_noise) < len(runners)
+        if at_noise:
+            followed = hypotheses_of(bench, at_noise, heat)
+        _weigh_for_next(bench, runners, heat, heats)
+    return runners, followed if told_apart and not runners else []
+
+
+def _decided(runners: Sequence[Runner], rung: Rung) -> list[Runner]:
+    """Those at the noise alone, where a fit is that of a free rollout, or of the slowest observer over all data.
+
+    That one leaves nearly as much.
+    """
+    free = math.isinf(rung.observer_s) or math.isinf(rung.seconds)
+    return ([r for r in runners if not above_noise(r)] if free else []) or list(runners)
+
+
+def _weigh_for_next(bench: Workbench, runners: Sequence[Runner], rung: Rung, rungs: Sequence[Rung]) -> None:
+    """Weigh the data by the best structure of a rung, if it is at the noise there, as the next observer sees it.
+
+    What the integration leaves where a joint chatters, and what a recorded pressure does between its samples, shows
+    beside a structure that is nearly right, and the more the longer an observer remembers. With the data weighed as the
+    nominal model far from the noise told, a right structure would leave more than noise from here on.
+    """
+    number = rungs.index(rung) + 1
+    last = number == len(rungs)
+    if not runners or above_noise(runners[0]) or (last and math.isinf(rung.observer_s)):
+        return
+    following = math.inf if last else rungs[number].observer_s
+    [leader] = hypotheses_of(bench, runners[:1], rung)
+    bench.training = tuple(weighted_by(bench, leader, bench.training, following))
+    trace(f"    weighed by {names_of(leader.effects)}, observer {following} s")
 
 
 def continued_nominal(bench: Workbench, direct: Hypothesis, reach: float) -> Hypothesis | None:
@@ -151,8 +187,8 @@ def _long_race(bench: Workbench, entrants: Sequence[Entrant], left: float, reach
             ended = run(bench, runners, (rung,), traced("to the end"))
             long = rung.coarse > 1.0  # what a long step leaves of its own tells nothing
             runners = [r for r in ended if long or over_noise_of(r) < reach or not above_noise(r)]
-            if math.isinf(rung.observer_s):
-                runners = [each for each in runners if not above_noise(each)] or runners
+            runners = _decided(runners, rung)
+            _weigh_for_next(bench, runners, rung, rungs)
     return hypotheses_of(bench, runners, rungs[-1])
 
 

@@ -45,7 +45,7 @@ def without_each(bench: Workbench, found: Tried, candidates: Sequence[Candidate]
     entrants += _across(best)
     entrants += _named_in_place(bench, best, candidates)
     rung = replace(bench.settings.again, keep=len(entrants))
-    fitted = race(bench, entrants, (rung,))
+    fitted = race(bench, entrants, (rung,), goal=best.fit.objective)
     if len(best.effects) > 1:  # the nominal model was fitted so before
         own = [Entrant(each.effects, of_additions(each.values)) for each in entrants]
         rungs = (*steps_for(bench.settings.continued, best.fit.over_noise < NOISE.far), bench.settings.again)

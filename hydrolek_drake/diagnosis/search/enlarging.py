@@ -11,6 +11,7 @@ from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.lost_commands.search import with_windows
 from hydrolek_drake.diagnosis.search.by_continuation import (
     continued,
+    continued_to_the_end,
     out_of_local_minima,
     over_noise_of,
     steps_for,
@@ -22,7 +23,7 @@ from hydrolek_drake.diagnosis.search.weighed_anew import weigh_anew
 from hydrolek_drake.diagnosis.settings import GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, widenings
 from hydrolek_drake.diagnosis.structures.cost import gain_needed
-from hydrolek_drake.diagnosis.structures.workbench import Workbench
+from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 
 
 def enlarged(bench: Workbench, opening: Opening, candidates: Sequence[Candidate], found: Tried) -> None:
@@ -56,31 +57,38 @@ def _raced(bench: Workbench, opening: Opening, candidates: Sequence[Candidate], 
     integration leaves where a joint chatters: it is fitted again with the data so weighed before anything else is.
     """
     parent, enough = opening.parent, opening.enough
-    reached, runners = math.inf, list[Runner]()
+    reached, runners, ended = math.inf, list[Runner](), list[Runner]()
     far = parent.fit.over_noise > NOISE.far
     for by_observers in (True, False) if far else (False, True):
         if reached <= enough:
             break
-        left = min(reached, parent.fit.over_noise)
-        first, rest = (
-            _by_observers(bench, opening, left) if by_observers else (_freely(bench, opening, candidates), [])
-        )
+        if by_observers:
+            ended, rest, followed = _by_observers(bench, opening, min(reached, parent.fit.over_noise))
+            for each in continued_to_the_end(bench, followed, parent) if followed else []:
+                found.keep(each)
+            if followed and found.best.fit.over_noise <= enough:
+                return []
+            first = ended
+        else:
+            first = rest = _freely(bench, opening, candidates)
         reached = min((over_noise_of(r) for r in first), default=math.inf)
-        runners += [*first, *rest]
+        runners += rest
         if enough < reached < bench.settings.nearer * found.weighed_at:
             for each in hypotheses_of(bench, first, bench.settings.ended[-1]):
                 found.keep(each)
             weigh_anew(bench, found)
-            reached = found.best.fit.over_noise
-    return _ended(bench, runners, enough)
+            reached, ended = found.best.fit.over_noise, []
+    return _ended(bench, runners, ended, enough)
 
 
-def _by_observers(bench: Workbench, opening: Opening, left: float) -> tuple[list[Runner], list[Runner]]:
-    """A race by continuation: the best, fitted to its end, and the rest."""
+def _by_observers(
+    bench: Workbench, opening: Opening, left: float
+) -> tuple[list[Runner], list[Runner], list[Hypothesis]]:
+    """A race by continuation: the best, fitted to its end, the rest, and what `continued` is to be gone on with."""
     if opening.parent.fit.over_noise <= opening.enough:
-        return [], []
-    runners = continued(bench, opening, left)
-    return run(bench, runners[:1], bench.settings.ended, traced("first to the end")), runners[1:]
+        return [], [], []
+    runners, followed = continued(bench, opening, left)
+    return run(bench, runners[:1], bench.settings.ended, traced("first to the end")), runners[1:], followed
 
 
 def _freely(bench: Workbench, opening: Opening, candidates: Sequence[Candidate]) -> list[Runner]:
@@ -96,16 +104,27 @@ def _freely(bench: Workbench, opening: Opening, candidates: Sequence[Candidate])
     return runners
 
 
-def _ended(bench: Workbench, runners: Sequence[Runner], enough: float) -> list[Runner]:
-    """The end of the races; to the last square only what is at the noise, or not clearly behind what is."""
+def _ended(
+    bench: Workbench, runners: Sequence[Runner], ended: Sequence[Runner], enough: float
+) -> list[Runner]:
+    """The end of the races; to the last square only what is at the noise, or not clearly behind what is.
+
+    Args:
+        bench: data and problems.
+        runners: still to be fitted to their end.
+        ended: fitted so already.
+        enough: times the noise that need not be explained.
+    """
     first, last = bench.settings.ended
-    ended = run(bench, runners, (first,), traced("end")) if runners else []
-    if not ended or over_noise_of(ended[0]) > enough:
-        return ended
-    reach = over_noise_of(ended[0]) / bench.settings.nearer
-    behind = [r for r in ended if over_noise_of(r) > reach]
-    near = [r for r in ended if over_noise_of(r) <= reach]
-    return [*run(bench, near, (last,), traced("end")), *behind]
+    goal = min((r.place.objective for r in ended), default=math.inf)
+    now = run(bench, runners, (first,), traced("end"), goal) if runners else []
+    best = min((over_noise_of(r) for r in (*ended, *now)), default=math.inf)
+    if best > enough:
+        return [*ended, *now]
+    reach = best / bench.settings.nearer
+    near = [r for r in now if over_noise_of(r) <= reach]
+    behind = [r for r in now if over_noise_of(r) > reach]
+    return [*ended, *(run(bench, near, (last,), traced("end"), goal) if near else []), *behind]
 
 
 def _led_on(bench: Workbench, opening: Opening, candidates: Sequence[Candidate]) -> list[Runner]:

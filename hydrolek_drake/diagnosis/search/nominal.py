@@ -52,7 +52,8 @@ def _go_on(bench: Workbench, found: Tried) -> None:
     found.weighed_at = best.fit.over_noise
     without = [Entrant(best.without(c), best.values_without(c)) for c in best.effects]
     if without:
-        for each in race(bench, without, (replace(bench.settings.again, keep=len(without)),)):
+        rung = replace(bench.settings.again, keep=len(without))
+        for each in race(bench, without, (rung,), goal=best.fit.objective):
             found.keep(each)
     if found.best.effects:  # where a fit to other data ended is another local minimum of it, so both are told
         out_of_local_minima(bench, [*fits, *found.seeds], found)

@@ -88,8 +88,9 @@ class Rung:
         seconds: so much of the recordings is seen.
         rounds: steps of a fit.
         keep: so many fits go on.
-        share: fits end where a step takes less than this share of what is left, ...
-        behind: ... or of how far they are behind the best of them, or behind the noise.
+        share: fits end where a step takes less than this share of what is left, an eighth of what one more addition
+            must bring (`Gains`): what takes less decides nothing; ...
+        behind: or of how far they are behind the best of them, or behind the noise.
         elsewhere: whether what has no slope is tried elsewhere.
         each: so many fits of a structure go on at most, in different minima.
     """
@@ -148,13 +149,13 @@ class Settings:
 
     ended: tuple[Rung, ...] = (
         Rung(math.inf, 1.0, math.inf, 8, 4, behind=FITS.behind),
-        Rung(math.inf, 1.0, math.inf, 32, 4, share=1e-4, behind=FITS.behind, elsewhere=True),
+        Rung(math.inf, 1.0, math.inf, 32, 4, behind=FITS.behind, elsewhere=True),
     )
     """The end of both races."""
 
     long: tuple[Rung, ...] = (
         *_continued((12, 40, 40, 40, 40, 40), (6, 4, 4, 4, 4, 4), 3e-4, 0.0, 3),
-        Rung(math.inf, 1.0, math.inf, 60, 4, share=1e-4, elsewhere=True),
+        Rung(math.inf, 1.0, math.inf, 60, 4, elsewhere=True),
     )
     """Continuation of the nominal model, and of the best structures of a race, where these leave more than noise, with
     as many steps as they take, from several starts. A Stribeck friction whose joint sticks and slips ended at 9.7 times
@@ -174,7 +175,7 @@ class Settings:
 
     near: tuple[Rung, ...] = (
         Rung(0.5, 1.0, math.inf, 6, 4, each=4),
-        Rung(math.inf, 1.0, math.inf, 20, 1, share=1e-4),
+        Rung(math.inf, 1.0, math.inf, 20, 1),
     )
     """Fits from places near one that ended."""
 
@@ -184,7 +185,7 @@ class Settings:
     near_rounds: int = 6
     """So often they are looked for at most."""
 
-    again: Rung = Rung(math.inf, 1.0, math.inf, 32, 1, share=1e-4, behind=FITS.behind)
+    again: Rung = Rung(math.inf, 1.0, math.inf, 32, 1, behind=FITS.behind)
     """Fits that begin where nearly the same one ended."""
 
     again_within: float = 2.0

@@ -32,7 +32,10 @@ from hydrolek_drake.rollout.together.together import Together
 
 
 def weighted_by(
-    bench: Workbench, hypothesis: Hypothesis, experiments: Sequence[Experiment]
+    bench: Workbench,
+    hypothesis: Hypothesis,
+    experiments: Sequence[Experiment],
+    observer_s: float = math.inf,
 ) -> list[Experiment]:
     """The same experiments with noise, model error and response to the start as they show beside this model.
 
@@ -42,8 +45,15 @@ def weighted_by(
     is told by rolling out all joints where the model is near the noise, and known to `DATA.others_unknown` elsewhere.
     What a signal that is recorded in place of a part of the model does between its samples is told by leaving out every
     other one.
+
+    Args:
+        bench: data and problems.
+        hypothesis: the model.
+        experiments: training or held-out data.
+        observer_s: time constant of the observer that follows them [s]; infinite for free rollouts.
     """
     of_training = experiments is bench.training
+    pull_time = None if math.isinf(observer_s) else observer_s
     step = bench.step_for(hypothesis.effects)
     problem = bench.problem(hypothesis.effects, step, experiments)
     records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
@@ -52,13 +62,19 @@ def weighted_by(
     better = []
     arrived = arrivals(hypothesis.effects, hypothesis.values, experiments)
     for recorded, experiment in zip(experiments, arrived, strict=True):
-        coarse = experiment.simulate(records, step).signals
-        fine = experiment.simulate(records, 0.5 * step).signals
+        coarse = experiment.simulate(records, step, pull_time=pull_time).signals
+        fine = experiment.simulate(records, 0.5 * step, pull_time=pull_time).signals
         alone = None
         if experiment.others is not None and experiment.others_error is None:
-            alone = replace(experiment, others=None).simulate(records, 0.5 * step).signals
+            alone = (
+                replace(experiment, others=None).simulate(records, 0.5 * step, pull_time=pull_time).signals
+            )
         sparse = experiment.with_every_other_of_recorded()
-        between = fine if sparse is experiment else sparse.simulate(records, 0.5 * step).signals
+        between = (
+            fine
+            if sparse is experiment
+            else sparse.simulate(records, 0.5 * step, pull_time=pull_time).signals
+        )
         channels = []
         for number, channel in enumerate(experiment.channels):
             model = getattr(fine, channel.model)

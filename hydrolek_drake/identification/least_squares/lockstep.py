@@ -33,6 +33,7 @@ def descend(
     share: float = 1e-3,
     behind: float = 0.0,
     leading: float = 2.0,
+    goal: float = math.inf,
     renewing: bool = True,
     stop: Callable[[], None] = lambda: None,
 ) -> list[Place]:
@@ -50,6 +51,7 @@ def descend(
             that would not come to where the best one is with all the steps that are left, each as good as the next.
         leading: Jacobians are told by rollouts with steps so many times as long, which is enough to lead a fit; 1 for
             the problem's own.
+        goal: squares of a fit to the same data that is known already: in a race it is one of them.
         renewing: whether slopes are computed where a place has none that hold; without, a fit ends there, and costs
             a rollout a step.
         stop: asked before each round; it raises what ends the descent.
@@ -64,7 +66,7 @@ def descend(
             break
         for i, place in zip(going, with_slopes([now[i] for i in going], pool, cores, leading), strict=True):
             now[i] = place
-        best = min(p.objective for p in now if p.residuals is not None)
+        best = min(goal, *(p.objective for p in now if p.residuals is not None))
         ahead = min(best, *(p.problem.counted for p in now))
         ending = Ending(worth, share, behind, ahead, best, rounds - number if behind else math.inf)
         for i, place in zip(going, _stepped([now[i] for i in going], pool, cores, ending), strict=True):

@@ -6,7 +6,6 @@ from typing import Any
 
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.rigs import Rig
-from hydrolek_drake.rigs.machine.rig import declaration
 from hydrolek_drake.yaml_files import package_yaml
 
 MASSES = ("inertia", "gravity_cos", "gravity_sin")
@@ -55,7 +54,6 @@ def with_ranges(rig: Rig, ranges: dict[str, tuple[float, float, str]]) -> Rig:
         entries[path] = replace(
             entries[path],
             value=rig.value(path),
-            unit=declaration(rig, path).unit,
             range=(low, high),
             scale=scale,
             same_as=None,

@@ -14,7 +14,7 @@ from hydrolek_drake.rigs.machine.driven_by import read_driven_by
 from hydrolek_drake.rigs.machine.rig import Rig
 from hydrolek_drake.rigs.machine.short_law import LawTerm, read_law
 from hydrolek_drake.rigs.parameters.arm_loads import FROM_ARM, arm_entries
-from hydrolek_drake.rigs.parameters.declarations import OF_INTEGRATION
+from hydrolek_drake.rigs.parameters.declarations import OF_INTEGRATION, at_joint
 from hydrolek_drake.rigs.parameters.entries import Entry, parse_entry
 from hydrolek_drake.rigs.parameters.keys import refuse_unknown
 
@@ -42,8 +42,9 @@ def rig_from_tree(tree: dict[str, Any], path: Path) -> Rig:
             _read_stage(sections.get(name), stage, f"joints.{joint}.{name}", path, variants, entries)
         _read_effects(
             {**everywhere, **_effects_section(sections, f"{path}: joints.{joint}.effects")},
-            f"joints.{joint}.effects",
+            f"joints.{joint}",
             path,
+            variants,
             entries,
         )
         if law := read_law(sections.get("law"), f"joints.{joint}.law", path):
@@ -136,7 +137,14 @@ def _effects_section(sections: Mapping[str, Any], where: str) -> Mapping[str, An
     return section
 
 
-def _read_effects(section: Mapping[str, Any], where: str, path: Path, entries: dict[str, Entry]) -> None:
+def _read_effects(
+    section: Mapping[str, Any],
+    joint: str,
+    path: Path,
+    variants: Mapping[str, str],
+    entries: dict[str, Entry],
+) -> None:
+    where = f"{joint}.effects"
     for effect_id in section:
         if effect_id not in EFFECTS:
             try:
@@ -146,12 +154,13 @@ def _read_effects(section: Mapping[str, Any], where: str, path: Path, entries: d
     for effect in EFFECTS.values():
         given = section.get(effect.id) or {}
         refuse_unknown(given, tuple(p.name for p in effect.parameters), f"{path}: {where}.{effect.id}")
-        for p in effect.parameters:
+        for declared in effect.parameters:
+            p = at_joint(declared, effect, joint, variants)
             full = f"{where}.{effect.id}.{p.name}"
             if p.name in given:
                 entries[full] = parse_entry(given[p.name], p, f"{path}: {full}")
             else:
-                entries[full] = Entry(float(p.neutral or 0.0), p.unit, "neutral: effect is off")
+                entries[full] = Entry(float(p.neutral or 0.0), p.unit.split("|")[0], "neutral: effect is off")
         _check_same_as(f"{where}.{effect.id}", tuple(p.name for p in effect.parameters), path, entries)
 
 
