@@ -72,7 +72,7 @@ USUAL = Settings()
 WITHOUT: dict[str, list[Replaced]] = {
     "nothing": [],
     "continuation": [
-        (enlarging, "continued", lambda bench, opening, left: []),
+        (enlarging, "continued", lambda bench, opening, left: ([], [])),
         (nominal, "continued_nominal", lambda bench, direct, reach: None),
         (by_continuation, "continued_to_the_end", lambda bench, fits, best: []),
         (elimination, "steps_for", lambda rungs, fine: ()),

@@ -71,11 +71,8 @@ def continued(bench: Workbench, opening: Opening, left: float) -> tuple[list[Run
 
 
 def _decided(runners: Sequence[Runner], rung: Rung) -> list[Runner]:
-    """Those at the noise alone, where a fit is that of a free rollout, or of the slowest observer over all data.
-
-    That one leaves nearly as much.
-    """
-    free = math.isinf(rung.observer_s) or math.isinf(rung.seconds)
+    """Those at the noise alone, where a fit is a free rollout's or that of the slowest observer, which leaves as much."""
+    free = rung.observer_s >= FITS.horizons[-1][0]
     return ([r for r in runners if not above_noise(r)] if free else []) or list(runners)
 
 
