@@ -71,9 +71,9 @@ def continued(bench: Workbench, opening: Opening, left: float) -> tuple[list[Run
 
 
 def _decided(runners: Sequence[Runner], rung: Rung) -> list[Runner]:
-    """Those at the noise alone, where a fit is a free rollout's or that of the slowest observer, which leaves as much."""
-    free = rung.observer_s >= FITS.horizons[-1][0]
-    return ([r for r in runners if not above_noise(r)] if free else []) or list(runners)
+    """Those at the noise alone, once free rollouts are fitted, or a slow observer that leaves as much over all data."""
+    told = math.isinf(rung.observer_s) or math.isinf(rung.seconds)
+    return ([r for r in runners if not above_noise(r)] if told else []) or list(runners)
 
 
 def _weigh_for_next(bench: Workbench, runners: Sequence[Runner], rung: Rung, rungs: Sequence[Rung]) -> None:

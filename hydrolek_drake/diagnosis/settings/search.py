@@ -12,15 +12,15 @@ class Fits:
         (0.03, 10.0),
         (0.1, 10.0),
         (0.3, 20.0),
-        (0.3, math.inf),
+        (1.0, 20.0),
+        (math.inf, 20.0),
         (1.0, math.inf),
     )
     """Continuation: time constants of the observer [s], each three times the one before, and how much of the
     recordings each is shown [s]. What an observer forgets makes few local minima, what it remembers tells slow things;
     the fastest remembers some samples of a recording, and one swing of a joint against its oil, and sees three hundred
-    of these in 10 s. What the rest of a recording asks for is asked by an observer first that remembers little: free
-    rollouts that had explained 20 s of a boom with air in its oil ended at 1.6 times the noise of all, and an observer
-    of 1 s that had explained 20 s of a wrist that sticks and slips at 1.5."""
+    of these in 10 s. What the rest of a recording asks for is asked by an observer first: free rollouts that had
+    explained 20 s of a boom with air in its oil ended at 1.6 times the noise of all."""
 
     coarse: float = 4.0
     """Steps so many times the rig's own lead fits until their end, and tell what an addition changes where they are on
@@ -141,7 +141,9 @@ class Settings:
     )
     """A race of free rollouts, from where the structure before it led."""
 
-    continued: tuple[Rung, ...] = _continued((6, 8, 12, 12, 12), (16, 8, 6, 4, 4), 5e-4, FITS.behind, 2)
+    continued: tuple[Rung, ...] = _continued(
+        (6, 8, 12, 12, 12, 12), (16, 8, 6, 4, 4, 4), 5e-4, FITS.behind, 2
+    )
     """A race by continuation, from the rig's own numbers: prediction errors of an observer forget, so that they have
     few local minima (Ljung, System Identification, 1999, chapter 7); free rollouts see what is slow."""
 
@@ -152,7 +154,7 @@ class Settings:
     """The end of both races."""
 
     long: tuple[Rung, ...] = (
-        *_continued((12, 40, 40, 40, 40), (6, 4, 4, 4, 4), 3e-4, 0.0, 3),
+        *_continued((12, 40, 40, 40, 40, 40), (6, 4, 4, 4, 4, 4), 3e-4, 0.0, 3),
         Rung(math.inf, 1.0, math.inf, 60, 4, elsewhere=True),
     )
     """Continuation of the nominal model, and of the best structures of a race, where these leave more than noise, with
