@@ -133,7 +133,7 @@ def _led_by(
     for place in places:
         assert place.residuals is not None
         led.append((place.problem, place.residuals))
-    left = [i for i, place in enumerate(places) if asked[i] and not place.exact and not place.problem.leaps]
+    left = [i for i, place in enumerate(places) if asked[i] and not place.exact]
     times = leading
     while left and times > 1.0:
         longer = [
