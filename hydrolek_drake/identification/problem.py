@@ -92,11 +92,6 @@ class Problem:
         self.counted = sum(experiment.counted for experiment in self.experiments)
         self.unsure = sum(experiment.unsure for experiment in self.experiments)
 
-    @property
-    def leaps(self) -> bool:
-        """Whether residuals change by leaps, so that wide differences lead a fit at first."""
-        return len(self.scales) > 1
-
     def pulled(self: Own, pull_time: float) -> Own:
         """The same with rollouts that are pulled to what was measured, with a time constant [s]."""
         other = self._anew()

@@ -17,15 +17,10 @@ import numpy as np
 from hydrolek_drake.identification.least_squares.acceptance import Ending, Trial, after
 from hydrolek_drake.identification.least_squares.normal_equations import NormalEquations
 from hydrolek_drake.identification.least_squares.place import Place
-from hydrolek_drake.identification.problem import ALIKE, Problem
 from hydrolek_drake.identification.rolling import Request, residuals_at
 
 TRIED = (1e-2, 1.0, 1e2)
 """Dampings that are tried at once, as multiples of the last one that helped."""
-
-LEAPING = 2.0
-"""Slopes of residuals that leap are told by steps so many times the problem's own at most: the rig's, of which such a
-structure takes half."""
 
 
 def descend(
@@ -54,8 +49,8 @@ def descend(
         behind: ... or less than this share of how far it is behind the best of them and behind the noise: who loses
             by thousands of squares need not be known to one. Where it is above zero the fits race, and one ends too
             that would not come to where the best one is with all the steps that are left, each as good as the next.
-        leading: Jacobians are told by rollouts with steps at most so many times as long, if their residuals are nearly
-            the same; 1 for the problem's own.
+        leading: Jacobians are told by rollouts with steps so many times as long, which is enough to lead a fit; 1 for
+            the problem's own.
         goal: squares of a fit to the same data that is known already: in a race it is one of them.
         renewing: whether slopes are computed where a place has none that hold; without, a fit ends there, and costs
             a rollout a step.
@@ -90,66 +85,36 @@ def _with_residuals(places: Sequence[Place], pool: Executor, cores: int) -> list
 
 
 def with_slopes(places: Sequence[Place], pool: Executor, cores: int, leading: float = 2.0) -> list[Place]:
-    """The same places with slopes where they are not known, and residuals; `leading` as of `descend`."""
-    now = _with_residuals(places, pool, cores)
-    wanted = [_unknown(place) for place in now]
-    led = _led_by(now, [columns.size > 0 for columns in wanted], pool, cores, leading)
-    requests = []
-    for place, columns, (problem, _) in zip(now, wanted, led, strict=True):
-        steps = problem.differences(place.unit, place.problem.scales[place.scale])
+    """The same places with slopes where they are not known, and residuals."""
+    requests: list[Request] = []
+    wanted = [_unknown(place) for place in places]
+    for place, columns in zip(places, wanted, strict=True):
+        requests.append(Request(place.problem, (place.unit,) if place.residuals is None else ()))
+        longer = place.problem.with_step(1.0 if place.exact else leading)
+        steps = longer.differences(place.unit, place.problem.scales[place.scale])
         moved = [place.unit + steps * (np.arange(place.unit.size) == i) for i in columns]
-        requests.append(Request(problem, tuple(moved)))
+        requests.append(Request(longer, (place.unit, *moved) if moved else ()))
     answers = residuals_at(requests, pool, cores)
-    for number, (place, columns, (problem, there)) in enumerate(zip(now, wanted, led, strict=True)):
-        if not columns.size:
-            continue
-        steps = problem.differences(place.unit, place.problem.scales[place.scale])
-        slopes = np.zeros((there.size, place.unit.size)) if place.slopes is None else place.slopes.copy()
-        for i, value in zip(columns, answers[number], strict=True):
-            slopes[:, i] = (value - there) / steps[i]
-        now[number] = replace(place, slopes=slopes, fresh=columns.size == np.count_nonzero(place.moving))
+    now = []
+    for number, (place, columns) in enumerate(zip(places, wanted, strict=True)):
+        own_there, beside = answers[2 * number : 2 * number + 2]
+        if own_there:
+            place = replace(place, residuals=own_there[0])
+        if columns.size:
+            assert place.residuals is not None
+            longer, scale = requests[2 * number + 1].problem, place.problem.scales[place.scale]
+            steps = longer.differences(place.unit, scale)
+            slopes = (
+                np.zeros((place.residuals.size, place.unit.size))
+                if place.slopes is None
+                else place.slopes.copy()
+            )
+            there, *moved_there = beside
+            for i, value in zip(columns, moved_there, strict=True):
+                slopes[:, i] = (value - there) / steps[i]
+            place = replace(place, slopes=slopes, fresh=columns.size == np.count_nonzero(place.moving))
+        now.append(place)
     return now
-
-
-def _led_by(
-    places: Sequence[Place], asked: Sequence[bool], pool: Executor, cores: int, leading: float
-) -> list[tuple[Problem, np.ndarray]]:
-    """Whose rollouts tell the slopes of each place, and the residuals there: those of the longest step that does.
-
-    Slopes lead a fit as long as a longer step gives nearly the same residuals (`ALIKE`; inexact Newton methods: Dembo,
-    Eisenstat, Steihaug, 1982). Residuals that leap, as of a joint that sticks and slips, do so elsewhere in longer
-    steps, whose slopes lead nowhere: with four times the step fits of a Stribeck friction ended at 3.4 times the noise
-    from eight starts by an observer of 0.3 s, with twice the step one at 1.0, and with the step itself at 0.9, each of
-    whose Jacobians takes twice as long (wrist that sticks and slips, 84/m02_c). For these it is `LEAPING` at most.
-
-    Args:
-        places: with residuals.
-        asked: whether a place is asked for slopes.
-        pool: threads.
-        cores: that roll out at the same time.
-        leading: step over the problem's own that is tried first; then halves of it.
-    """
-    led = []
-    for place in places:
-        assert place.residuals is not None
-        led.append((place.problem, place.residuals))
-    left = [i for i, place in enumerate(places) if asked[i] and not place.exact]
-    times = leading
-    while left and times > 1.0:
-        longer = [
-            places[i].problem.with_step(min(times, LEAPING) if places[i].problem.leaps else times)
-            for i in left
-        ]
-        told = residuals_at(
-            [Request(p, (places[i].unit,)) for i, p in zip(left, longer, strict=True)], pool, cores
-        )
-        for i, problem, (there,) in zip(left, longer, told, strict=True):
-            own = led[i][1]
-            if np.linalg.norm(there - own) < ALIKE * np.linalg.norm(own):
-                led[i] = (problem, there)
-        left = [i for i in left if led[i][0] is places[i].problem]
-        times *= 0.5
-    return led
 
 
 def _unknown(place: Place) -> np.ndarray:
