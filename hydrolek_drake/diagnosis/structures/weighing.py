@@ -78,7 +78,8 @@ def weighted_by(
         channels = []
         for number, channel in enumerate(experiment.channels):
             model = getattr(fine, channel.model)
-            level = noise_level(channel.measured - model)
+            # an observer takes a share of the noise into its state, so that what it leaves does not tell the noise
+            level = noise_level(channel.measured - model) if pull_time is None else channel.noise
             error = 4.0 / 3.0 * np.abs(getattr(coarse, channel.model) - model)
             if sparse is not experiment:
                 error = np.hypot(error, getattr(between, channel.model) - model)
@@ -95,7 +96,7 @@ def weighted_by(
             )
         response = experiment.responding(records, 0.5 * step, fine)
         better.append(replace(recorded, channels=tuple(channels), start_response=response))
-    if not bench.signals_apart:
+    if not bench.signals_apart or pull_time is not None:
         return better
     shares = _discrepancies(better, arrived, records) if of_training else _told(bench.training)
     return [_with_discrepancies(e, shares) for e in better]
