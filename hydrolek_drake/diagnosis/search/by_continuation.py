@@ -35,8 +35,8 @@ def continued(bench: Workbench, opening: Opening, left: float) -> tuple[list[Run
         left: by the best free rollout, over the noise.
 
     Returns:
-        What goes on, the best first; and where nothing does although an observer followed some additions to the noise
-        and others not, those: one of them is right, and its fit has ended in a local minimum of a slower observer.
+        What goes on, the best first. Where an observer followed some additions to the noise and others not, and a slower
+        one none, nothing but those: one of them is right, and its fit has ended in a local minimum.
     """
     parent = opening.parent
     far = parent.fit.over_noise > NOISE.far  # its numbers are bent there
@@ -66,8 +66,10 @@ def continued(bench: Workbench, opening: Opening, left: float) -> tuple[list[Run
         told_apart = told_apart or 0 < len(at_noise) < len(runners)
         if at_noise:
             followed = hypotheses_of(bench, at_noise, heat)
+        elif followed and told_apart:
+            return [], followed
         _weigh_for_next(bench, runners, heat, heats)
-    return runners, followed if told_apart and not runners else []
+    return runners, []
 
 
 def _decided(runners: Sequence[Runner], rung: Rung) -> list[Runner]:
