@@ -35,8 +35,8 @@ def continued(bench: Workbench, opening: Opening, left: float) -> tuple[list[Run
         left: by the best free rollout, over the noise.
 
     Returns:
-        What goes on, the best first. Where an observer followed some additions to the noise and others not, and a slower
-        one none, nothing but those: one of them is right, and its fit has ended in a local minimum.
+        What goes on, the best first. Where an observer followed some additions to the noise and others not, and a
+        slower one none, nothing but those: one of them is right, and its fit has ended in a local minimum.
     """
     parent = opening.parent
     far = parent.fit.over_noise > NOISE.far  # its numbers are bent there
@@ -51,7 +51,7 @@ def continued(bench: Workbench, opening: Opening, left: float) -> tuple[list[Run
     heats = steps_for(bench.settings.continued, not far)
     runners = _in_time(bench, entered(bench, entrants, heats[0]))
     followed: list[Hypothesis] = []
-    told_apart = False
+    told_apart, weighed = False, bench.training
     for heat, taken in zip(heats, bench.settings.long, strict=False):
         runners = run(bench, runners, (heat,), traced("observed")) if runners else []
         if runners and above_noise(runners[0]):  # the best one as long as it takes
@@ -67,8 +67,11 @@ def continued(bench: Workbench, opening: Opening, left: float) -> tuple[list[Run
         if at_noise:
             followed = hypotheses_of(bench, at_noise, heat)
         elif followed and told_apart:
+            bench.training = weighed
             return [], followed
         _weigh_for_next(bench, runners, heat, heats)
+    if not runners or above_noise(runners[0]):
+        bench.training = weighed  # by what free rollouts led to; the weights for an observer are not theirs
     return runners, []
 
 
@@ -179,7 +182,7 @@ def _long_race(bench: Workbench, entrants: Sequence[Entrant], left: float, reach
         left: over the noise, by the best structure so far.
         reach: what leaves less over the noise goes on, and what is at the noise.
     """
-    rungs = steps_for(bench.settings.long, left < NOISE.far)
+    rungs, weighed = steps_for(bench.settings.long, left < NOISE.far), bench.training
     runners = _in_time(bench, entered(bench, entrants, rungs[0])) if entrants else []
     for rung in rungs:
         if runners:
@@ -188,6 +191,8 @@ def _long_race(bench: Workbench, entrants: Sequence[Entrant], left: float, reach
             runners = [r for r in ended if long or over_noise_of(r) < reach or not above_noise(r)]
             runners = _decided(runners, rung)
             _weigh_for_next(bench, runners, rung, rungs)
+    if not runners or above_noise(runners[0]):
+        bench.training = weighed
     return hypotheses_of(bench, runners, rungs[-1])
 
 
