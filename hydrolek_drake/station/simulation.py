@@ -13,6 +13,7 @@ from pydrake.trajectories import PiecewisePolynomial
 
 from hydrolek_drake.physics import cylinder, load
 from hydrolek_drake.rollout.rest import rest_pressures, rest_tilt_and_lead
+from hydrolek_drake.station.plant import Payload
 from hydrolek_drake.station.station import Station
 from hydrolek_drake.station.step_sizes import INTEGRATORS
 
@@ -55,6 +56,15 @@ def command_source(times: np.ndarray, values: np.ndarray) -> TrajectorySource:
     return source
 
 
+def without_payloads_to_come(station: Station, context: Context) -> list[Payload]:
+    """Take from the tools what is picked up later than the context's time; what that is."""
+    plant_context = station.plant.GetMyMutableContextFromRoot(context)
+    to_come = [payload for payload in station.payloads if payload.time > context.get_time()]
+    for payload in to_come:
+        payload.body.SetMass(plant_context, 0.0)
+    return to_come
+
+
 def initial_context(station: Station, positions: np.ndarray | None = None) -> Context:
     """A context at rest in balance at the given joint positions (the rig's own if None)."""
     context = station.diagram.CreateDefaultContext()
@@ -66,9 +76,7 @@ def initial_context(station: Station, positions: np.ndarray | None = None) -> Co
         station.plant.SetPositions(
             plant_context, _placed(station, plant_context, joint.position_start(), value)
         )
-    for payload in station.payloads:
-        if payload.time > context.get_time():
-            payload.body.SetMass(plant_context, 0.0)
+    without_payloads_to_come(station, context)
     gravity = station.plant.CalcGravityGeneralizedForces(plant_context)
     needed = np.array(
         [-gravity[station.plant.GetJointByName(name).velocity_start()] for name in station.rig.joints]

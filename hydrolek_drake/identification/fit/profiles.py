@@ -49,17 +49,30 @@ class RigProfile:
     def sentence(self) -> str:
         """The interval, and what is odd about it."""
         low, high = self.interval
-        lowest, highest = self.free.lower, self.free.upper
         text = (
             f"{self.free.path}: profile likelihood, {100 * CONFIDENCE:g} %: "
-            f"{f'{low:.6g}' if low is not None else f'not bounded above {lowest:.6g}'} to "
-            f"{f'{high:.6g}' if high is not None else f'not bounded below {highest:.6g}'} {self.unit}"
+            f"{self._end(low, 0)} to {self._end(high, -1)} {self.unit}"
         )
         if self.curve.improved > self.curve.threshold:
             text += "; on the way a better fit was found: fit again from there, or with more starts"
         if self.curve.interrupted:
             text += "; interrupted"
         return text
+
+    def _end(self, value: float | None, last: int) -> str:
+        """An end of the interval; of a side that has none whether its range ended before, or the curve was cut off.
+
+        Args:
+            value: the end (SI); None where there is none.
+            last: of the curve's places on that side, 0 or -1.
+        """
+        if value is not None:
+            return f"{value:.6g}"
+        place = float(self.curve.places[last])
+        told = f"{self.free.from_unit(place):.6g}"
+        if place == (0.0 if last == 0 else 1.0):
+            return f"not bounded {'above' if last == 0 else 'below'} {told}"
+        return f"{'less' if last == 0 else 'more'} than {told}, how far was not computed"
 
 
 def check_profiled(rig: Rig, wanted: Sequence[str], fitted: Sequence[str]) -> list[str]:

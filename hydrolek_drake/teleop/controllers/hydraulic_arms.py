@@ -17,7 +17,7 @@ from hydrolek_drake.errors import InputError
 from hydrolek_drake.kinematics.chain import SIDES
 from hydrolek_drake.rigs import Rig, load_rig
 from hydrolek_drake.station.plant import RigPlant
-from hydrolek_drake.station.simulation import initial_context
+from hydrolek_drake.station.simulation import initial_context, without_payloads_to_come
 from hydrolek_drake.station.station import Station, make_station
 from hydrolek_drake.station.step_sizes import StepSizes
 from hydrolek_drake.teleop.configuration import teleop_entries
@@ -141,10 +141,7 @@ class HydraulicArms:
         self._inner.SetContinuousState(rest.get_continuous_state_vector().CopyToVector())
         for group in range(rest.num_discrete_state_groups()):
             self._inner.SetDiscreteState(group, rest.get_discrete_state(group).get_value())
-        plant_context = self._station.plant.GetMyMutableContextFromRoot(context)
-        self._to_pick_up = [payload for payload in self._station.payloads if payload.time > 0.0]
-        for payload in self._to_pick_up:
-            payload.body.SetMass(plant_context, 0.0)
+        self._to_pick_up = without_payloads_to_come(self._station, context)
         self._places = [self.rig.joints.index(joint) for joint in JOINTS]
         self._fix(context, None, None, None)
         self._diagram.GetInputPort("pressure_available").FixValue(context, [1.0])
