@@ -17,6 +17,10 @@ PER_TURN = 2.0 * math.pi
 MORE_THAN_ALL = 2.0
 """A pump that gives so many times what the wide open valve takes at its full pressure was not chosen for it."""
 
+ENDLESS = 600.0
+"""A stop of a joint that turns, or a slide, so far away [rad or m] stands for none: nobody's stop is 100 turns off in
+degrees either."""
+
 _OF_OIL = ("supply", "fluid")
 """Sections that an electric machine has for form's sake."""
 
@@ -41,6 +45,8 @@ def implausible(rig: Rig) -> list[Complaint]:
             continue
         value = rig.value(path)
         if math.isnan(value) or limits[0] <= value <= limits[1]:
+            continue
+        if name in ("lower_stop", "upper_stop") and abs(value) >= ENDLESS:
             continue
         unit = rig.entries[path].unit
         scale = _that_mends(value, limits)
@@ -83,6 +89,11 @@ def _outside_their_ranges(rig: Rig) -> list[Complaint]:
                 )
             )
     return found
+
+
+def at_a_glance(rig: Rig) -> list[Complaint]:
+    """What a rig's numbers alone tell: those far from what machines have, else those outside their own ranges."""
+    return implausible(rig) or _outside_their_ranges(rig)
 
 
 def check_rig(rig: Rig) -> list[Complaint]:

@@ -73,7 +73,7 @@ def tell_of_clocks(recording: "Recording", console: "Console") -> None:
 def tell_what_looks_wrong(
     rig: "Rig", recordings: "Sequence[Recording]", console: "Console", *, clocks: bool = True
 ) -> None:
-    """Say before anything long what looks wrong about recordings of a machine, as `hydrolek rig check` does.
+    """Say before anything long what looks wrong about a machine's numbers and recordings, as `hydrolek rig check` does.
 
     Args:
         rig: the machine.
@@ -82,7 +82,10 @@ def tell_what_looks_wrong(
         clocks: also say what was done to signals with clocks of their own.
     """
     from hydrolek_drake.checking.recording_checks import check_recording
+    from hydrolek_drake.checking.rig_checks import at_a_glance
 
+    for complaint in at_a_glance(rig):
+        console.print(f"looks wrong: rig {rig.name}: {complaint.sentence()}", markup=False, soft_wrap=True)
     for recording in recordings:
         if clocks:
             tell_of_clocks(recording, console)

@@ -1,8 +1,12 @@
 """Slips in a rig that is loaded without a word: they are told, with the line that mends them."""
 
+import io
+
 import pytest
+from rich.console import Console
 
 from hydrolek_drake.checking.rig_checks import check_rig
+from hydrolek_drake.cli.inputs import tell_what_looks_wrong
 from hydrolek_drake.rigs import built_in_rigs, load_rig
 
 
@@ -45,3 +49,22 @@ def test_a_value_outside_its_range_is_told_since_a_fit_begins_at_the_end_of_it()
     rig = load_rig("hopsan_link", {"load.mass": "500 kg"})
     [told] = [complaint for complaint in check_rig(rig) if complaint.about.endswith("load.mass")]
     assert "500 lies outside its range" in told.says and "500]" in told.line
+
+
+@pytest.mark.parametrize("name", built_in_rigs())
+def test_nothing_is_said_of_a_built_in_rig_before_a_command(name):
+    console = Console(file=io.StringIO())
+    tell_what_looks_wrong(load_rig(name), [], console)
+    assert console.file.getvalue() == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [("500 kg", "outside its range of"), ("50000000 kg", "far from what machines have")],
+)
+def test_what_looks_wrong_about_a_rig_is_said_before_a_fit_begins(text, says):
+    console = Console(file=io.StringIO(), width=400)
+    tell_what_looks_wrong(load_rig("hopsan_link", {"load.mass": text}), [], console)
+    told = console.file.getvalue()
+    assert told.startswith("looks wrong: rig hopsan_link: joints.joint.load.mass")
+    assert says in told and told.count("\n") == 1
