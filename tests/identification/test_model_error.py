@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hydrolek_drake.diagnosis.settings import GAINS
-from hydrolek_drake.diagnosis.structures.cost import gain_needed
+from hydrolek_drake.diagnosis.structures.cost import cost_of, gain_needed
 from hydrolek_drake.identification.experiments.recorded import experiments_of
 from hydrolek_drake.identification.least_squares.least_squares import fit_from
 from hydrolek_drake.identification.parameter_set import ParameterSet, free_parameters
@@ -49,3 +49,27 @@ def test_what_is_named_must_bring_more_than_that() -> None:
     assert gain_needed(fit) == pytest.approx(experiment.unsure)
     assert gain_needed(fit) > max(GAINS.needed, GAINS.fidelity * experiment.counted)
     assert math.sqrt(fit.chi_squared / fit.counted) == pytest.approx(1.0, abs=0.15)
+
+
+@pytest.mark.parametrize("share", ["0 %", "1 %", "5 %"])
+def test_the_cost_prefers_what_explains_more_than_that_and_not_what_explains_less(share: str) -> None:
+    rig, experiment = _experiment(share)
+    parameters = ParameterSet(rig, free_parameters(rig))
+    problem = Problem(parameters, [experiment], experiment.longest_step)
+    fit = fit_from(problem, parameters.unit({}))
+    floor = fit.counted + fit.unsure
+    far = 3.0 * floor  # what the nominal model leaves
+    nominal = cost_of(fit, far, 0)
+    assert cost_of(fit, 0.5 * fit.counted + 0.1 * floor, 1) < nominal  # takes two and a half times the floor
+    assert cost_of(fit, far - 0.3 * GAINS.of_one_more(fit.counted, fit.unsure), 1) > nominal
+
+
+def test_without_a_stated_error_squares_count_near_the_noise_and_shares_far_from_it() -> None:
+    rig, experiment = _experiment("0 %")
+    parameters = ParameterSet(rig, free_parameters(rig))
+    fit = fit_from(Problem(parameters, [experiment], experiment.longest_step), parameters.unit({}))
+    count = fit.counted
+    assert cost_of(fit, 0.9 * count, 0) == pytest.approx(0.9 * count)
+    assert cost_of(fit, 40.0 * count, 0) - cost_of(fit, 20.0 * count, 0) == pytest.approx(
+        count * math.log(2.0)
+    )

@@ -13,12 +13,12 @@ from hydrolek_drake.diagnosis.fitting.local_search import has_other_minima, sear
 from hydrolek_drake.diagnosis.fitting.race import above_noise, hypotheses_of, run
 from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.search.openings import Opening, observed, surely_above
-from hydrolek_drake.diagnosis.settings import FITS, NOISE, Rung, Settings
+from hydrolek_drake.diagnosis.settings import FITS, NOISE, Rung
 from hydrolek_drake.diagnosis.structures.addition import names_of
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.cost import cost
 from hydrolek_drake.diagnosis.structures.law_terms import of_additions
-from hydrolek_drake.diagnosis.structures.weighing import weighted_by
+from hydrolek_drake.diagnosis.structures.weighing import far_over_noise, weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
 from hydrolek_drake.identification.least_squares.lockstep import descend
 
@@ -39,7 +39,8 @@ def continued(bench: Workbench, opening: Opening, left: float) -> tuple[list[Run
         slower one none, nothing but those: one of them is right, and its fit has ended in a local minimum.
     """
     parent = opening.parent
-    far = parent.fit.over_noise > NOISE.far  # its numbers are bent there
+    limit = far_over_noise(bench.training)
+    far = parent.fit.over_noise > limit
     own, fitted = Start(parent.effects, opening.sizes), Start(parent.effects, parent.values)
     pulled = opening.pulled or observed(bench, parent, opening.own)[0]
     entrants = [
@@ -48,7 +49,7 @@ def continued(bench: Workbench, opening: Opening, left: float) -> tuple[list[Run
         for start in p.starts[: None if p.candidate.sudden else bench.settings.starts if far else 1]
         for begun in ((own,) if far else (own, fitted))
     ]
-    heats = steps_for(bench.settings.continued, not far)
+    heats = steps_for(bench.settings.continued, parent.fit.over_noise <= NOISE.far)
     runners = _in_time(bench, entered(bench, entrants, heats[0]))
     followed: list[Hypothesis] = []
     told_apart, weighed = False, bench.training
@@ -58,7 +59,7 @@ def continued(bench: Workbench, opening: Opening, left: float) -> tuple[list[Run
             on = replace(heat, rounds=taken.rounds, share=taken.share, behind=0.0)
             runners = [*run(bench, runners[:1], (on,), traced("best")), *runners[1:]]
         # what an observer with the rig's own step leaves far from the noise is led nowhere by slower ones
-        most = min(bench.settings.nearer * left, NOISE.far if heat.coarse == 1.0 else math.inf)
+        most = min(bench.settings.nearer * left, limit if heat.coarse == 1.0 else math.inf)
         if bench.settings.nearer * left > NOISE.explained:
             runners = [r for r in runners if over_noise_of(r) < most]
         runners = _decided(runners, heat)
@@ -166,9 +167,7 @@ def continued_to_the_end(bench: Workbench, fits: Sequence[Hypothesis], best: Hyp
     ranked = sorted(fits, key=cost)
     chosen = list(dict.fromkeys(each.ids for each in ranked))[: bench.settings.to_the_end]
     entrants = [
-        entrant
-        for ids in chosen
-        for entrant in _starts([h for h in ranked if h.ids == ids], left, bench.settings)
+        entrant for ids in chosen for entrant in _starts(bench, [h for h in ranked if h.ids == ids], left)
     ]
     return _long_race(bench, entrants, left, left)
 
@@ -196,22 +195,22 @@ def _long_race(bench: Workbench, entrants: Sequence[Entrant], left: float, reach
     return hypotheses_of(bench, runners, rungs[-1])
 
 
-def _starts(fits: Sequence[Hypothesis], left: float, settings: Settings) -> list[Entrant]:
+def _starts(bench: Workbench, fits: Sequence[Hypothesis], left: float) -> list[Entrant]:
     """Where a structure is continued from: the minima in which it ended, and the rig's own numbers.
 
     Far from the noise also both with what was added last at each place where its search begins: a soft base rings, and
     its fit has a local minimum for every swing that its frequency is off.
 
     Args:
+        bench: data and problems.
         fits: of the structure, the best first.
         left: over the noise, by the best structure.
-        settings: of the search.
     """
     best = fits[0]
     own = of_additions(best.values)
-    begun = [own, *(each.values for each in fits[: settings.starts])]
+    begun = [own, *(each.values for each in fits[: bench.settings.starts])]
     last = best.effects[-1] if best.effects else None
-    if isinstance(last, Candidate) and left > NOISE.far:
+    if isinstance(last, Candidate) and left > far_over_noise(bench.training):
         begun += [{**values, **start} for start in last.starts for values in (own, best.values)]
     return [Entrant(best.effects, values) for values in begun]
 

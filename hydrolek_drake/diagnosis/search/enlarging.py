@@ -58,7 +58,7 @@ def _raced(bench: Workbench, opening: Opening, candidates: Sequence[Candidate], 
     """
     parent, enough = opening.parent, opening.enough
     reached, runners, ended = math.inf, list[Runner](), list[Runner]()
-    far = parent.fit.over_noise > NOISE.far
+    far = parent.fit.over_noise > opening.far
     for by_observers in (True, False) if far else (False, True):
         if reached <= enough:
             break

@@ -11,7 +11,7 @@ from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal, o
 from hydrolek_drake.diagnosis.search.weighed_anew import as_weighed
 from hydrolek_drake.diagnosis.settings import NOISE
 from hydrolek_drake.diagnosis.structures.cost import gain_needed
-from hydrolek_drake.diagnosis.structures.weighing import weighted_by
+from hydrolek_drake.diagnosis.structures.weighing import far_over_noise, weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 
 
@@ -31,7 +31,7 @@ def fit_nominal(bench: Workbench, found: Tried) -> None:
     if best.fit.over_noise > NOISE.at:
         left = best.fit.over_noise
         # far from it no further than to an observer that surely leaves more than noise: something is missing then
-        reach = left if left <= NOISE.far else NOISE.above
+        reach = left if left <= far_over_noise(bench.training) else NOISE.above
         better = continued_nominal(bench, best, reach)
         if better is not None and best.fit.objective - better.fit.objective > gain_needed(best.fit):
             best = as_weighed(bench, better)

@@ -14,9 +14,10 @@ from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS, GAINS, NOISE, Rung
 from hydrolek_drake.diagnosis.structures.addition import Sized, names_of
 from hydrolek_drake.diagnosis.structures.candidates import redundant
-from hydrolek_drake.diagnosis.structures.cost import dispersion, gain_needed
+from hydrolek_drake.diagnosis.structures.cost import cost_of, dispersion, gain_needed
 from hydrolek_drake.diagnosis.structures.law_terms import of_additions
 from hydrolek_drake.diagnosis.structures.lost_windows import LostWindows
+from hydrolek_drake.diagnosis.structures.weighing import far_over_noise
 from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
 from hydrolek_drake.identification.least_squares.lockstep import descend
 from hydrolek_drake.identification.least_squares.place import Place
@@ -37,6 +38,7 @@ class Opening:
         left: times the noise that it is promised to leave.
         lost: windows of lost commands that may be added too.
         enough: times the noise that need not be explained unless something promises to.
+        far: times the noise beyond which a structure's numbers are bent.
         told: largest fall of the squares that is promised, in free rollouts or to an observer.
     """
 
@@ -50,6 +52,7 @@ class Opening:
     left: float = math.inf
     lost: LostWindows | None = None
     enough: float = NOISE.at
+    far: float = NOISE.far
     told: float = 0.0
 
     @property
@@ -81,7 +84,7 @@ class Opening:
         if not self.own or not _worth_while(self.parent, self.own[0], self.promising, self.enough):
             return False
         fit = self.parent.fit
-        holds = bool(self.parent.effects) and fit.over_noise <= NOISE.far
+        holds = bool(self.parent.effects) and fit.over_noise <= self.far
         return not holds or self.told >= GAINS.promising * self.own[0].cost * gain_needed(fit)
 
 
@@ -129,7 +132,7 @@ def opened(
     left = max(parent.fit.objective - max(shares) * excess, count)
     needed = gain_needed(parent.fit)
     costs = sum(c.cost for c in parent.effects) + own[0].cost
-    expected = count * (1.0 + math.log(left / count)) + needed * costs
+    expected = cost_of(parent.fit, left, costs)
     trace(
         f"  open {kind} beside {names_of(parent.effects)} {parent.fit.over_noise:.4f}, expected "
         f"{math.sqrt(left / count):.3f}: needed {needed:.0f}; free "
@@ -140,7 +143,18 @@ def opened(
     over_noise = math.sqrt(left / count)
     told = max(free[0].gain, max(shares) * excess)
     return Opening(
-        parent, kind, own, tuple(free), tuple(pulled), sizes, expected, over_noise, lost, enough, told
+        parent,
+        kind,
+        own,
+        tuple(free),
+        tuple(pulled),
+        sizes,
+        expected,
+        left=over_noise,
+        lost=lost,
+        enough=enough,
+        far=far_over_noise(bench.training),
+        told=told,
     )
 
 

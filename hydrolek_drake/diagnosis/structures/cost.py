@@ -10,18 +10,27 @@ from hydrolek_drake.identification.least_squares.least_squares import Fit
 def cost(structure: Hypothesis) -> float:
     """Twice the negative log-likelihood of the training data, and what its additions and their parameters cost."""
     additions = sum(c.cost for c in structure.effects)
-    return misfit(structure.fit) + gain_needed(structure.fit) * additions + 2.0 * structure.extra
+    return cost_of(structure.fit, structure.fit.objective, additions) + 2.0 * structure.extra
 
 
-def misfit(fit: Fit) -> float:
-    """Twice the negative log-likelihood of what a fit leaves, with the discrepancy of its model as a parameter.
+def cost_of(fit: Fit, squares: float, additions: float) -> float:
+    """Twice the negative log-likelihood of squares that are left of a fit's data, and what additions cost.
 
     A model that is right leaves squares as many as there are values, n; one that leaves s n has a discrepancy, whose
     variance, as large as it is most likely, makes that n (1 + log s) (profile likelihood). What takes a share of a
-    misfit then counts by that share, and near the noise by its squares.
+    misfit then counts by that share, and near the noise by its squares. Where a rig says what its equations leave at
+    best, that is part of the noise here, for the misfit and for what an addition must bring alike.
+
+    Args:
+        fit: to these data.
+        squares: that are left, in units of the sensors' noise.
+        additions: how many, a law for more than one.
     """
-    share = fit.objective / max(fit.counted, 1)
-    return fit.counted * (1.0 + math.log(share)) if share > 1.0 else fit.objective
+    count = max(fit.counted, 1)
+    admitted = 1.0 + fit.unsure / count
+    left = squares / admitted
+    misfit = count * (1.0 + math.log(left / count)) if left > count else left
+    return misfit + gain_needed(fit) / admitted * additions
 
 
 def dispersion(squares: float, counted: int, parameters: int) -> float:

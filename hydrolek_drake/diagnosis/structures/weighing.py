@@ -211,3 +211,14 @@ def least_over_noise(experiments: Sequence[Experiment]) -> float:
         return 1.0  # what other joints do is no error of the equations
     behind = [e.behind_cut() for e in experiments]
     return math.sqrt(1.0 + sum(e.unsure for e in behind) / max(sum(e.counted for e in behind), 1))
+
+
+def far_over_noise(experiments: Sequence[Experiment]) -> float:
+    """Times the noise that a structure leaves which is far from what its equations leave at best.
+
+    Its numbers are bent then by what it lacks; what leaves less leads on from where it was fitted.
+
+    Args:
+        experiments: whose.
+    """
+    return NOISE.far * least_over_noise(experiments)
