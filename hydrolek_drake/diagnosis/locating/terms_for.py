@@ -71,7 +71,8 @@ def terms_for(
     record = parameters.records(parameters.unit(values))[bench.training[0].index]
     span = _span(bench, seen.signals, record, joint)
     promised = [term for gain, term in terms_seen(seen, record, joint, span) if gain > 0.0]
-    ranked = [replace(t, across=across.get(t.input.probe)) for t in promised if t.size_path not in parent.ids]
+    own = [t for t in promised if t.size_path not in parent.ids and not t.is_listed]
+    ranked = [replace(t, across=across.get(t.input.probe)) for t in own]
     taken: dict[str, int] = {}
     first: list[LawTerm] = []
     rest: list[LawTerm] = []

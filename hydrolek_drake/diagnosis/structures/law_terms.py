@@ -66,6 +66,11 @@ class LawTerm:
         return self.input.stage
 
     @property
+    def is_listed(self) -> bool:
+        """Whether an effect of the list does the same (`Term.is_listed`)."""
+        return self.term is not None and self.term.is_listed(self.input)
+
+    @property
     def id(self) -> str:
         """As in reports."""
         return f"unlisted.{self.input.stage}"

@@ -48,6 +48,10 @@ class Term:
         """Whether it has a physical meaning at an input."""
         return given.stage in self.stages and (not given.one_sided or self.name == CONSTANT)
 
+    def is_listed(self, given: Input) -> bool:
+        """Whether it says nothing at an input that an effect of the list does not: Coulomb friction."""
+        return self.name == "sign(v)" and given.stage in _FORCES
+
     @property
     def name(self) -> str:
         """As in an equation."""

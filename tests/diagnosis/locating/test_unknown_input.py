@@ -10,7 +10,7 @@ from hydrolek_drake.diagnosis.laws.law import FRICTIONS
 from hydrolek_drake.diagnosis.locating.knot_responses import squared
 from hydrolek_drake.diagnosis.locating.terms_for import Slightly, terms_seen
 from hydrolek_drake.diagnosis.locating.unknown_input import unknown_inputs
-from hydrolek_drake.diagnosis.structures.inputs import inputs_of
+from hydrolek_drake.diagnosis.structures.inputs import Input, inputs_of
 from hydrolek_drake.diagnosis.structures.term_forms import TERMS, law_record, span_of
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
@@ -95,3 +95,11 @@ def test_products_of_responses_are_those_of_the_whole_matrices(covered: int) -> 
         for channel in range(2):
             whole[channel * samples + rows, knot] = generator.standard_normal(rows.size)
     np.testing.assert_allclose(squared(csc_matrix(whole)), whole.T @ whole, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["sign(v)", "z sign(v)", "v"])
+@pytest.mark.parametrize("stage", ["cylinder", "load"])
+def test_of_frictions_only_the_one_that_is_in_the_list_is_no_law(name: str, stage: str) -> None:
+    force = Input(stage, stage, "force added", "N", 100.0)
+    [form] = [term for term in TERMS if term.name == name and term.meant_for(force)]
+    assert form.is_listed(force) is (name == "sign(v)")
