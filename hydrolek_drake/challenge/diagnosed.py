@@ -12,7 +12,7 @@ from hydrolek_drake.challenge.cases import read_case, record
 from hydrolek_drake.challenge.plants import Plant, record_plant
 from hydrolek_drake.challenge.scoring import score
 from hydrolek_drake.diagnosis.diagnosis import diagnose
-from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
+from hydrolek_drake.diagnosis.remarks import INTERRUPTED
 from hydrolek_drake.diagnosis.report.as_json import as_json
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.files import read_kept, write_whole

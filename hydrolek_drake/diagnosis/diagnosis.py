@@ -12,7 +12,7 @@ from hydrolek_drake.diagnosis.evidence.judged import Conclusion, Judged
 from hydrolek_drake.diagnosis.evidence.judging import judge_given_up
 from hydrolek_drake.diagnosis.evidence.proposal import Proposal, propose
 from hydrolek_drake.diagnosis.fitting.tried import Tried
-from hydrolek_drake.diagnosis.inquiry import INTERRUPTED, Inquiry
+from hydrolek_drake.diagnosis.inquiry import Inquiry
 from hydrolek_drake.diagnosis.intervals.curvature import Interval, intervals_of
 from hydrolek_drake.diagnosis.intervals.last_numbers import intervals_of_moments, with_last_numbers
 from hydrolek_drake.diagnosis.intervals.visible import Visible, visible_sizes
@@ -22,6 +22,7 @@ from hydrolek_drake.diagnosis.laws.located import locate_law
 from hydrolek_drake.diagnosis.locating.place import Location, locate
 from hydrolek_drake.diagnosis.locating.unknown_input import Estimate
 from hydrolek_drake.diagnosis.progress import Progress
+from hydrolek_drake.diagnosis.remarks import INTERRUPTED
 from hydrolek_drake.diagnosis.settings import FITS, NOISE
 from hydrolek_drake.diagnosis.structures.as_rig import room_for_law
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of

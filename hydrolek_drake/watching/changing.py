@@ -15,7 +15,8 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
-from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
+from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.experiments.experiment import Experiment

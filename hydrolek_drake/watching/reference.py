@@ -12,7 +12,8 @@ from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal
 from hydrolek_drake.diagnosis.search.weighed_anew import as_weighed
 from hydrolek_drake.diagnosis.settings import NOISE
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, candidates_of
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.errors import InputError
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.experiments.natural_scales import natural_scales

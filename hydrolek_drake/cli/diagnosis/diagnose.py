@@ -65,7 +65,7 @@ def diagnose(
     loaded, (train, held) = rig_and_recordings(rig, set_, recordings, holdout)
 
     from hydrolek_drake.diagnosis.diagnosis import diagnose as run_diagnosis
-    from hydrolek_drake.diagnosis.inquiry import INTERRUPTED
+    from hydrolek_drake.diagnosis.remarks import INTERRUPTED
     from hydrolek_drake.diagnosis.report.files import write_report
     from hydrolek_drake.diagnosis.report.table import summary
     from hydrolek_drake.runs.report import prepare_folder

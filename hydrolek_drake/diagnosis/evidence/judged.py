@@ -14,9 +14,9 @@ import numpy as np
 from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.cost import cost, dispersion
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.splitting import short_blocks
 from hydrolek_drake.diagnosis.structures.weighing import least_over_noise
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 from hydrolek_drake.identification.experiments.experiment import Experiment
 
 

@@ -31,8 +31,9 @@ from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.settings import EVIDENCE, GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.cost import cost, gain_needed
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.lost_windows import recording_of
-from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.least_squares import Fit
 from hydrolek_drake.identification.least_squares.lockstep import with_slopes

@@ -15,7 +15,8 @@ from hydrolek_drake.diagnosis.evidence.judged import Conclusion
 from hydrolek_drake.diagnosis.fitting.problems import hypothesis_of
 from hydrolek_drake.diagnosis.fitting.projection import Across
 from hydrolek_drake.diagnosis.settings import EXPERIMENTS, GAINS
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.channel import Channel
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.lockstep import with_slopes

@@ -6,7 +6,8 @@ from dataclasses import replace
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant
 from hydrolek_drake.diagnosis.fitting.parts import acts_behind, behind_supply
 from hydrolek_drake.diagnosis.fitting.race import race
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench, key_of
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis, key_of
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 
 
 def behind_of(bench: Workbench, seeds: Sequence[Hypothesis]) -> list[Hypothesis]:

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 
 from hydrolek_drake.diagnosis.settings import Rung
 from hydrolek_drake.diagnosis.structures.addition import Addition
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.place import Place, fit_of
 from hydrolek_drake.identification.problem import Problem

@@ -11,7 +11,8 @@ from hydrolek_drake.diagnosis.fitting.elsewhere import tried_elsewhere
 from hydrolek_drake.diagnosis.fitting.entrants import Entrant, Runner, entered
 from hydrolek_drake.diagnosis.fitting.problems import hypothesis_of, problem_of
 from hydrolek_drake.diagnosis.settings import FITS, GAINS, NOISE, Rung
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.least_squares.lockstep import descend
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from hydrolek_drake.diagnosis.fitting.promise import Promise
 from hydrolek_drake.diagnosis.settings import GAINS, Settings
 from hydrolek_drake.diagnosis.structures.cost import cost
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 
 
 @dataclass

@@ -27,8 +27,9 @@ from hydrolek_drake.diagnosis.intervals.curvature import (
 )
 from hydrolek_drake.diagnosis.intervals.step_error import without_step_error
 from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis, moments_of
 from hydrolek_drake.diagnosis.structures.weighing import felt_together
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench, moments_of
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.least_squares import Fit
 from hydrolek_drake.identification.least_squares.profile import (

@@ -14,8 +14,8 @@ from dataclasses import replace
 import numpy as np
 
 from hydrolek_drake.diagnosis.settings import FITS
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.lost_windows import arrivals
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.problem import Problem
 

@@ -17,7 +17,8 @@ from hydrolek_drake.diagnosis.fitting.promise import Promise
 from hydrolek_drake.diagnosis.settings import EXPERIMENTS, FITS, GAINS
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.cost import gain_needed
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.effects import EFFECTS
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from hydrolek_drake.diagnosis.laws.law import FoundLaw, records_of
 from hydrolek_drake.diagnosis.structures.as_rig import SOURCE
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.machine.short_law import terms_of
 

@@ -11,6 +11,7 @@ from hydrolek_drake.diagnosis.evidence.nuisance import with_stands
 from hydrolek_drake.diagnosis.intervals.curvature import intervals_of
 from hydrolek_drake.diagnosis.laws.law import FRICTIONS, FoundLaw, Law
 from hydrolek_drake.diagnosis.settings import DROPOUTS, LOCATING, NOISE
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.inputs import SIDES, Input
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.structures.lost_windows import (
@@ -22,7 +23,7 @@ from hydrolek_drake.diagnosis.structures.lost_windows import (
     recording_of,
 )
 from hydrolek_drake.diagnosis.structures.term_forms import Term
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.least_squares import Fit
 from hydrolek_drake.physics.law import PLACED

@@ -9,7 +9,8 @@ from hydrolek_drake.diagnosis.locating.place import (
     share_of,
     told_condition,
 )
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 
 
 def locate_law(bench: Workbench, best: Hypothesis, baseline: Hypothesis, law: FoundLaw) -> Location:

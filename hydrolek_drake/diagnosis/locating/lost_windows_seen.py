@@ -8,6 +8,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.locating.unknown_input import Unknown, near, unknown_inputs
 from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.inputs import Input
 from hydrolek_drake.diagnosis.structures.lost_windows import (
     NONE,
@@ -19,7 +20,7 @@ from hydrolek_drake.diagnosis.structures.lost_windows import (
     too_much,
 )
 from hydrolek_drake.diagnosis.structures.term_forms import Span
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.rollout.run import Run
 

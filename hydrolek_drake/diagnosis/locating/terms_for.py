@@ -15,11 +15,12 @@ from hydrolek_drake.diagnosis.locating.unknown_input import (
     unknown_inputs,
 )
 from hydrolek_drake.diagnosis.settings import LOCATING
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.inputs import SIDES, Input, inputs_of
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.structures.lost_windows import LostWindows
 from hydrolek_drake.diagnosis.structures.term_forms import TERMS, Span, law_record, span_of
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.physics.probes import PROBES

@@ -21,10 +21,11 @@ from hydrolek_drake.diagnosis.fitting.problems import hypothesis_of
 from hydrolek_drake.diagnosis.fitting.projection import Across
 from hydrolek_drake.diagnosis.locating.knot_responses import Trial, response, rolled, squared
 from hydrolek_drake.diagnosis.settings import FITS, LOCATING
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.inputs import Input
 from hydrolek_drake.diagnosis.structures.law_terms import of_additions
 from hydrolek_drake.diagnosis.structures.lost_windows import arrivals
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.least_squares.lockstep import descend, with_slopes
 from hydrolek_drake.identification.least_squares.place import Place
 from hydrolek_drake.rollout.rollout import Signals

@@ -14,6 +14,7 @@ from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.locating.lost_windows_seen import lost_seen
 from hydrolek_drake.diagnosis.settings import DROPOUTS, GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.addition import Addition
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.law_terms import of_additions
 from hydrolek_drake.diagnosis.structures.lost_windows import (
     NONE,
@@ -23,7 +24,7 @@ from hydrolek_drake.diagnosis.structures.lost_windows import (
     recording_of,
 )
 from hydrolek_drake.diagnosis.structures.weighing import least_over_noise
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.least_squares.lockstep import descend
 from hydrolek_drake.identification.least_squares.place import Place

@@ -6,7 +6,7 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.diagnosis import Diagnosis
 from hydrolek_drake.diagnosis.laws.law import FoundLaw
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.replay.display import display_factor, display_unit
 from hydrolek_drake.replay.panels import (

@@ -17,9 +17,10 @@ from hydrolek_drake.diagnosis.settings import FITS, NOISE, Rung
 from hydrolek_drake.diagnosis.structures.addition import names_of
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
 from hydrolek_drake.diagnosis.structures.cost import cost
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.law_terms import of_additions
 from hydrolek_drake.diagnosis.structures.weighing import far_over_noise, weighted_by
-from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import SPREAD, Workbench
 from hydrolek_drake.identification.least_squares.lockstep import descend
 
 

@@ -23,7 +23,8 @@ from hydrolek_drake.diagnosis.search.weighed_anew import weigh_anew
 from hydrolek_drake.diagnosis.settings import GAINS, NOISE
 from hydrolek_drake.diagnosis.structures.candidates import Candidate, widenings
 from hydrolek_drake.diagnosis.structures.cost import gain_needed
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 
 
 def enlarged(bench: Workbench, opening: Opening, candidates: Sequence[Candidate], found: Tried) -> None:

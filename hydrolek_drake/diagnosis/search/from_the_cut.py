@@ -17,8 +17,9 @@ from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.search.best_first import Unlisted, search_structures
 from hydrolek_drake.diagnosis.structures.addition import Sized
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.lost_windows import LostWindows
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 
 
 def search_machine(

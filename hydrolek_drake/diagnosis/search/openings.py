@@ -15,10 +15,11 @@ from hydrolek_drake.diagnosis.settings import EVIDENCE, FITS, GAINS, NOISE, Rung
 from hydrolek_drake.diagnosis.structures.addition import Sized, names_of
 from hydrolek_drake.diagnosis.structures.candidates import redundant
 from hydrolek_drake.diagnosis.structures.cost import cost_of, dispersion, gain_needed
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.law_terms import of_additions
 from hydrolek_drake.diagnosis.structures.lost_windows import LostWindows
 from hydrolek_drake.diagnosis.structures.weighing import far_over_noise
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.least_squares.lockstep import descend
 from hydrolek_drake.identification.least_squares.place import Place
 

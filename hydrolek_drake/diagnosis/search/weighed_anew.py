@@ -8,8 +8,9 @@ from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.settings import FITS, NOISE
 from hydrolek_drake.diagnosis.structures.cost import cost
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.weighing import weighted_by
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 
 
 def as_weighed(bench: Workbench, structure: Hypothesis) -> Hypothesis:

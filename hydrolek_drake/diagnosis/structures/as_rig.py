@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 from hydrolek_drake.physics.law import MOST_TERMS
 from hydrolek_drake.rigs import Rig
 from hydrolek_drake.rigs.machine.short_law import terms_of

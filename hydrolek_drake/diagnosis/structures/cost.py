@@ -3,7 +3,7 @@
 import math
 
 from hydrolek_drake.diagnosis.settings import GAINS, NOISE
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.identification.least_squares.least_squares import Fit
 
 

@@ -20,8 +20,9 @@ import numpy as np
 
 from hydrolek_drake.diagnosis.settings import DATA, NOISE
 from hydrolek_drake.diagnosis.structures.as_rig import rig_of
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.lost_windows import arrivals
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis, Workbench
+from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.identification.experiments.channel import faithful
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.experiments.neighbours import probes_of

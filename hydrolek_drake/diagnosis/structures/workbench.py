@@ -5,7 +5,7 @@ import math
 import threading
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor, wait
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,11 +14,11 @@ from hydrolek_drake.diagnosis.progress import Progress
 from hydrolek_drake.diagnosis.settings import FITS, Settings
 from hydrolek_drake.diagnosis.structures.addition import Addition
 from hydrolek_drake.diagnosis.structures.candidates import Candidate
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis, moments_of
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm, WithTerms
 from hydrolek_drake.diagnosis.structures.lost_windows import LostProblem, LostWindows, WithWindows
 from hydrolek_drake.identification.experiments.experiment import Experiment
 from hydrolek_drake.identification.experiments.recorded_together import OneRecording
-from hydrolek_drake.identification.least_squares.least_squares import Fit
 from hydrolek_drake.identification.parameter_set import Free, ParameterSet
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.identification.problem_together import ProblemTogether
@@ -31,62 +31,6 @@ SPREAD = 1.0 / math.sqrt(12.0)
 Used as a weak prior about the rig's own values: what a recording does not tell stays where the rig has it,
 instead of wandering off to make up for physics that is missing.
 """
-
-
-@dataclass(frozen=True)
-class Hypothesis:
-    """The nominal model with some effects, fitted.
-
-    Attributes:
-        effects: what is added to the nominal model; empty for the nominal model itself.
-        values: full path -> fitted value (SI), nominal parameters first.
-        fit: how well it follows the training data, and its Jacobian.
-        step: integration step with which it was fitted [s].
-    """
-
-    effects: tuple[Addition, ...]
-    values: dict[str, float]
-    fit: Fit
-    step: float
-
-    @property
-    def ids(self) -> frozenset[str]:
-        """What identifies it: id and joint of its effects."""
-        return key_of(self.effects)
-
-    @property
-    def listed(self) -> tuple[Candidate, ...]:
-        """Its effects."""
-        return tuple(c for c in self.effects if isinstance(c, Candidate))
-
-    def without(self, effect: Addition) -> tuple[Addition, ...]:
-        """Its effects but for one."""
-        return tuple(c for c in self.effects if c is not effect)
-
-    def values_without(self, *additions: Addition) -> dict[str, float]:
-        """Its values but for those of some of its additions: full path -> value."""
-        own = tuple(c.path + "." for c in additions)
-        return {path: value for path, value in self.values.items() if not path.startswith(own)}
-
-    @property
-    def label(self) -> str:
-        """What tells it from others in tables."""
-        return " + ".join(c.label for c in self.effects) or "nominal model"
-
-    @property
-    def extra(self) -> int:
-        """Parameters that the nominal model does not have."""
-        return sum(len(candidate.free) for candidate in self.effects)
-
-
-def key_of(effects: Iterable[Addition]) -> frozenset[str]:
-    """A set of effects, whatever their order."""
-    return frozenset(candidate.size_path for candidate in effects)
-
-
-def moments_of(effects: Iterable[Addition]) -> list[Free]:
-    """Parameters of some effects that say when something happens."""
-    return [free for candidate in effects for free in candidate.moments]
 
 
 class Workbench:

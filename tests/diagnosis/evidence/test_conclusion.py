@@ -15,8 +15,8 @@ from hydrolek_drake.diagnosis.evidence.judged import (
 )
 from hydrolek_drake.diagnosis.evidence.judging import pays, predicts
 from hydrolek_drake.diagnosis.structures.candidates import candidates_of
+from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.weighing import least_over_noise
-from hydrolek_drake.diagnosis.structures.workbench import Hypothesis
 from hydrolek_drake.identification.least_squares.least_squares import Fit
 
 COUNTED = 4000

@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 from scipy.stats import norm
 
-from hydrolek_drake.diagnosis.inquiry import BY_BOTH, INTERRUPTED
 from hydrolek_drake.diagnosis.intervals.curvature import NORMAL, intervals_of
+from hydrolek_drake.diagnosis.remarks import BY_BOTH, INTERRUPTED
 from hydrolek_drake.diagnosis.settings import NOISE, Settings
 
 COULOMB, STRIBECK = "cylinder.coulomb_friction", "cylinder.stribeck_friction"

@@ -14,7 +14,7 @@ from hydrolek_drake.identification.parameter_set import ParameterSet, free_param
 from hydrolek_drake.identification.problem import Problem
 from hydrolek_drake.recordings import read_recording
 
-BENCH = Path(__file__).parents[1] / "data" / "bench"
+BENCH = Path(__file__).parents[2] / "data" / "bench"
 
 PATHS = ["supply.pressure", "valve.max_area_a", "load.gravity_cos", "command.delay"]
 

@@ -10,7 +10,7 @@ from scipy.stats import norm
 from hydrolek_drake.cli.app import run
 from hydrolek_drake.identification.least_squares.profile import profile
 
-BENCH = Path(__file__).parents[1] / "data" / "bench" / "practice_01"
+BENCH = Path(__file__).parents[2] / "data" / "bench" / "practice_01"
 
 
 class Linear:

@@ -16,7 +16,7 @@ from hydrolek_drake.recordings import Recording, read_recording
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout import roll_out
 
-SHARED = Path(__file__).parents[3] / "shared" / "recordings" / "hopsan_link"
+SHARED = Path(__file__).parents[4] / "shared" / "recordings" / "hopsan_link"
 
 TRUE = {
     "supply.displacement": "29 cm^3/rev",
