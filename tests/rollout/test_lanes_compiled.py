@@ -1,5 +1,6 @@
 """Which loops of lanes are compiled, when, and by whom."""
 
+import math
 import os
 import subprocess
 import sys
@@ -11,7 +12,7 @@ from lane_runs import SIZES, STEP, drawn_law, in_lanes, varied, with_effect
 
 from hydrolek_drake.effects import EFFECTS
 from hydrolek_drake.physics.law import TERM_NAMES
-from hydrolek_drake.physics.records import position_of
+from hydrolek_drake.physics.records import flat, position_of
 from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.rollout.lanes import compiling as lane_compiling
 from hydrolek_drake.rollout.lanes.kinds import kind_of
@@ -32,6 +33,19 @@ def test_a_loop_knows_of_no_friction_where_nothing_rubs():
     for effect in EFFECTS.values():
         if {"rod_friction", "rod_damping", "load_friction"} & set(effect.hooks):
             assert position_of(effect.key, effect.size) in known, effect.id
+
+
+def test_what_a_variant_does_not_have_costs_nothing():
+    """Numbers of other variants are not numbers, and constants of the loop: what they would do is left out of it."""
+    joint = load_rig("hydrolek_right_j2").records()[:1]
+    absent, there = position_of("fluid", "air_exponent"), position_of("cylinder", "stroke")
+    known = dict(kind_of(joint, 1).known)
+    assert math.isnan(flat(joint)[0][absent]) and math.isnan(known[absent])
+    assert there not in known
+    # though no NaN is equal to another one, machines that differ in numbers only are of one kind
+    longer = joint.copy()
+    flat(longer)[0][there] *= 1.1
+    assert kind_of(longer, 1) == kind_of(joint, 1)
 
 
 def test_until_a_loop_is_compiled_machines_go_one_by_one_and_nobody_waits(monkeypatch, tmp_path):

@@ -1,5 +1,6 @@
 """Which machines a compiled loop over lanes does for: what is a constant in it, and what a number of each lane."""
 
+import math
 from functools import cache
 
 import numpy as np
@@ -50,6 +51,9 @@ def kind_of(joint: np.ndarray, spool_steps: int, law: np.ndarray | None = None, 
         if all(numbers[size] == neutral for size, neutral in sizes):
             known |= {place: float(neutral) for place, neutral in places}
     known |= {place: 0.0 for place in sometimes if not numbers[place] > 0.0}
+    known |= dict.fromkeys(
+        np.flatnonzero(np.isnan(numbers)).tolist(), math.nan
+    )  # of variants that it has not
     steps = int(_steps_in(spool_steps, joint))
     if law is None:
         return _kind(tuple(sorted(known.items())), steps, 0, False, probed)
