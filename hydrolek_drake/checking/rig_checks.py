@@ -21,6 +21,9 @@ ENDLESS = 600.0
 """A stop of a joint that turns, or a slide, so far away [rad or m] stands for none: nobody's stop is 100 turns off in
 degrees either."""
 
+ROUNDING = 1e-6
+"""A value that a fit left at an end of its range is beyond it by no more than so much of the range."""
+
 _OF_OIL = ("supply", "fluid")
 """Sections that an electric machine has for form's sake."""
 
@@ -78,7 +81,8 @@ def _outside_their_ranges(rig: Rig) -> list[Complaint]:
         if entry.range is None or entry.same_as is not None or ".effects." in path:
             continue
         value, (low, high) = rig.value(path), entry.range
-        if value < low or value > high:
+        room = ROUNDING * (high - low)
+        if value < low - room or value > high + room:
             found.append(
                 Complaint(
                     path,

@@ -30,7 +30,7 @@ from hydrolek_drake.diagnosis.structures.hypothesis import Hypothesis
 from hydrolek_drake.diagnosis.structures.law_terms import LawTerm
 from hydrolek_drake.diagnosis.structures.lost_windows import LostWindows, lost_in
 from hydrolek_drake.diagnosis.structures.splitting import halves, mixed
-from hydrolek_drake.diagnosis.structures.weighing import weighted_by
+from hydrolek_drake.diagnosis.structures.weighing import far_over_noise, weighted_by
 from hydrolek_drake.diagnosis.structures.workbench import Workbench
 from hydrolek_drake.effects.scales import Scales
 from hydrolek_drake.identification.experiments.experiment import Experiment
@@ -263,13 +263,14 @@ def _far_in_all(known: Known) -> bool:
     residuals = known.judged[0].hypothesis.fit.residuals
     begin = 0
     squares: dict[str, list[np.ndarray]] = {}
+    limit = far_over_noise(known.bench.training)
     for experiment in known.bench.training:
         for channel in experiment.channels:
             own = residuals[begin : begin + experiment.time.size]
             counts = experiment.used & np.isfinite(channel.measured)
             squares.setdefault(channel.key, []).append(own[counts] ** 2)
             begin += experiment.time.size
-    return len(squares) > 1 and all(np.concatenate(s).mean() > NOISE.far**2 for s in squares.values())
+    return len(squares) > 1 and all(np.concatenate(s).mean() > limit**2 for s in squares.values())
 
 
 def _told_apart(bench: Workbench) -> str:

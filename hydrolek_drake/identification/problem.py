@@ -91,6 +91,7 @@ class Problem:
         self.evaluations = 0
         self.counted = sum(experiment.counted for experiment in self.experiments)
         self.unsure = sum(experiment.unsure for experiment in self.experiments)
+        self.admitted = sum(experiment.admitted for experiment in self.experiments)
 
     def pulled(self: Own, pull_time: float) -> Own:
         """The same with rollouts that are pulled to what was measured, with a time constant [s]."""

@@ -111,7 +111,7 @@ def _ranked(runners: Sequence[Runner]) -> list[Runner]:
 def _at_noise(runner: Runner) -> float:
     """Squares up to which a fit may be at the noise, to two standard deviations of them, or at what equations leave."""
     count = runner.place.problem.counted
-    return NOISE.at**2 * count + 2.0 * math.sqrt(2.0 * count) + runner.place.problem.unsure
+    return NOISE.at**2 * count + 2.0 * math.sqrt(2.0 * count) + runner.place.problem.admitted
 
 
 def above_noise(runner: Runner) -> bool:

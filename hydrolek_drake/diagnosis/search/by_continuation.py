@@ -55,6 +55,7 @@ def continued(bench: Workbench, opening: Opening, left: float) -> tuple[list[Run
     followed: list[Hypothesis] = []
     told_apart, weighed = False, bench.training
     for heat, taken in zip(heats, bench.settings.long, strict=False):
+        begun = {r.key for r in runners}
         runners = run(bench, runners, (heat,), traced("observed")) if runners else []
         if runners and above_noise(runners[0]):  # the best one as long as it takes
             on = replace(heat, rounds=taken.rounds, share=taken.share, behind=0.0)
@@ -65,7 +66,7 @@ def continued(bench: Workbench, opening: Opening, left: float) -> tuple[list[Run
             runners = [r for r in runners if over_noise_of(r) < most]
         runners = _decided(runners, heat)
         at_noise = [r for r in runners if not above_noise(r)]
-        told_apart = told_apart or 0 < len(at_noise) < len(runners)
+        told_apart = told_apart or (bool(at_noise) and {r.key for r in at_noise} < begun)
         if at_noise:
             followed = hypotheses_of(bench, at_noise, heat)
         elif followed and told_apart:
@@ -191,8 +192,9 @@ def _long_race(bench: Workbench, entrants: Sequence[Entrant], left: float, reach
             runners = [r for r in ended if long or over_noise_of(r) < reach or not above_noise(r)]
             runners = _decided(runners, rung)
             _weigh_for_next(bench, runners, rung, rungs)
-    if not runners or above_noise(runners[0]):
+    if bench.training is not weighed and (not runners or above_noise(runners[0])):
         bench.training = weighed
+        runners = run(bench, runners, (replace(rungs[-1], rounds=0, elsewhere=False),)) if runners else []
     return hypotheses_of(bench, runners, rungs[-1])
 
 

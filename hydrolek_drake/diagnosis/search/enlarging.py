@@ -68,7 +68,7 @@ def _raced(bench: Workbench, opening: Opening, candidates: Sequence[Candidate], 
             for each in continued_to_the_end(bench, followed, parent) if followed else []:
                 found.keep(each)
             if followed and found.best.fit.over_noise <= enough:
-                return []
+                return _ended(bench, runners, [], enough)
             first = ended
         else:
             first = rest = _freely(bench, opening, candidates)

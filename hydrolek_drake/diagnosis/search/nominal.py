@@ -8,7 +8,7 @@ from hydrolek_drake.diagnosis.fitting.longest_step import no_longer_than_borne
 from hydrolek_drake.diagnosis.fitting.race import race
 from hydrolek_drake.diagnosis.fitting.tried import Tried
 from hydrolek_drake.diagnosis.search.by_continuation import continued_nominal, out_of_local_minima
-from hydrolek_drake.diagnosis.search.weighed_anew import as_weighed
+from hydrolek_drake.diagnosis.search.weighed_anew import as_weighed, told_anew
 from hydrolek_drake.diagnosis.settings import NOISE
 from hydrolek_drake.diagnosis.structures.cost import gain_needed
 from hydrolek_drake.diagnosis.structures.weighing import far_over_noise, weighted_by
@@ -32,7 +32,10 @@ def fit_nominal(bench: Workbench, found: Tried) -> None:
         left = best.fit.over_noise
         # far from it no further than to an observer that surely leaves more than noise: something is missing then
         reach = left if left <= far_over_noise(bench.training) else NOISE.above
+        weighed = bench.training
         better = continued_nominal(bench, best, reach)
+        if bench.training is not weighed:
+            [best] = told_anew(bench, [best])
         if better is not None and best.fit.objective - better.fit.objective > gain_needed(best.fit):
             best = as_weighed(bench, better)
     found.keep(best)

@@ -1,5 +1,6 @@
 """Data that are weighed anew by what they are fitted with: a better structure tells their noise better."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from hydrolek_drake.diagnosis import trace
@@ -25,6 +26,12 @@ def as_weighed(bench: Workbench, structure: Hypothesis) -> Hypothesis:
     return now
 
 
+def told_anew(bench: Workbench, fits: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """The same fits, what they leave told with the present weights of the data, the best first."""
+    rung = replace(bench.settings.again, rounds=0, keep=len(fits), each=len(fits))
+    return race(bench, [Entrant(h.effects, h.values) for h in fits], (rung,)) if fits else []
+
+
 def weigh_anew(bench: Workbench, found: Tried) -> None:
     """Weigh the data by the best structure where it tells their noise better, and fit what is near it again.
 
@@ -37,8 +44,9 @@ def weigh_anew(bench: Workbench, found: Tried) -> None:
         return
     bench.training = tuple(weighted_by(bench, best, bench.training))
     bench.progress.anew()
-    ranked = sorted(found.hypotheses.values(), key=lambda h: h.fit.objective)
-    within = bench.settings.again_within**2 * best.fit.objective
+    # a continuation may have weighed the data since some of them were fitted
+    ranked = told_anew(bench, list(found.hypotheses.values()))
+    within = bench.settings.again_within**2 * ranked[0].fit.objective
     near = [h for h in ranked if h.fit.objective < within][: bench.settings.most_again]
     again = race(
         bench,

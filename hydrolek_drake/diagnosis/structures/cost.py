@@ -27,7 +27,7 @@ def cost_of(fit: Fit, squares: float, additions: float) -> float:
         additions: how many, a law for more than one.
     """
     count = max(fit.counted, 1)
-    admitted = 1.0 + fit.unsure / count
+    admitted = 1.0 + fit.admitted / count
     left = squares / admitted
     misfit = count * (1.0 + math.log(left / count)) if left > count else left
     return misfit + gain_needed(fit) / admitted * additions

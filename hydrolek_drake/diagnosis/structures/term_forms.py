@@ -49,8 +49,11 @@ class Term:
         return given.stage in self.stages and (not given.one_sided or self.name == CONSTANT)
 
     def is_listed(self, given: Input) -> bool:
-        """Whether it says nothing at an input that an effect of the list does not: Coulomb friction."""
-        return self.name == "sign(v)" and given.stage in _FORCES
+        """Whether it says nothing at an input that an effect of the list does not: Coulomb friction of the rod.
+
+        That of the joint is only searched where a rig has a link that weighs, or no oil.
+        """
+        return self.name == "sign(v)" and given.stage == "cylinder"
 
     @property
     def name(self) -> str:

@@ -58,7 +58,9 @@ def weighted_by(
     step = bench.step_for(hypothesis.effects)
     problem = bench.problem(hypothesis.effects, step, experiments)
     records = problem.parameters.records(problem.parameters.unit(hypothesis.values))
-    if hypothesis.fit.over_noise < NOISE.far and any(e.others is not None for e in experiments):
+    # an observer holds the others to what was measured, which its fit need not foretell
+    near = pull_time is None and hypothesis.fit.over_noise < NOISE.far
+    if near and any(e.others is not None for e in experiments):
         experiments = felt_in_each(partial(_rig_in, bench, hypothesis), experiments)
     better = []
     arrived = arrivals(hypothesis.effects, hypothesis.values, experiments)
@@ -95,7 +97,7 @@ def weighted_by(
                     model_error=np.nan_to_num(error),
                 )
             )
-        response = experiment.responding(records, 0.5 * step, fine)
+        response = experiment.responding(records, 0.5 * step, fine, pull_time)
         better.append(replace(recorded, channels=tuple(channels), start_response=response))
     if not bench.signals_apart or pull_time is not None:
         return better
@@ -211,7 +213,7 @@ def least_over_noise(experiments: Sequence[Experiment]) -> float:
     if any(e.others is not None for e in experiments):
         return 1.0  # what other joints do is no error of the equations
     behind = [e.behind_cut() for e in experiments]
-    return math.sqrt(1.0 + sum(e.unsure for e in behind) / max(sum(e.counted for e in behind), 1))
+    return math.sqrt(1.0 + sum(e.admitted for e in behind) / max(sum(e.counted for e in behind), 1))
 
 
 def far_over_noise(experiments: Sequence[Experiment]) -> float:

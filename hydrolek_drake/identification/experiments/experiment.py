@@ -244,20 +244,24 @@ class Experiment:
             others_error=None if self.others_error is None else self.others_error[:, :count],
         )
 
-    def responding(self, records: np.ndarray, longest_step: float, signals: Signals) -> np.ndarray | None:
+    def responding(
+        self, records: np.ndarray, longest_step: float, signals: Signals, pull_time: float | None = None
+    ) -> np.ndarray | None:
         """How a model's channels respond to the start, by a rollout that begins one standard deviation off.
 
         Args:
             records: of all joints of the rig. # (joints,)
             longest_step: [s].
             signals: of the same model, from the start as it is.
+            pull_time: time constant of the observer that gave these [s]; None for a free rollout.
 
         Returns:
             None where the start is known. # (channels, n)
         """
         if self.start is None or self.start_error == 0.0:
             return None
-        off = replace(self, start=self.start + self.start_error).simulate(records, longest_step).signals
+        begun = replace(self, start=self.start + self.start_error)
+        off = begun.simulate(records, longest_step, pull_time=pull_time).signals
         changes = [getattr(off, c.model) - getattr(signals, c.model) for c in self.channels]
         return np.nan_to_num(np.array(changes) / self.start_error)
 
@@ -272,10 +276,15 @@ class Experiment:
 
         These are errors over the whole recording and not of each sample, so a wrong model may take all of them.
         """
-        left = sum(np.sum(c.least_left[self._counts(c)]) for c in self.channels)
+        left = self.admitted
         if self.others is not None:
             left += sum(np.sum(c.model_share[self._counts(c)]) for c in self.channels)
         return float(left)
+
+    @property
+    def admitted(self) -> float:
+        """Squared residuals that the rig says its equations leave at best, in units of the noise."""
+        return float(sum(np.sum(c.least_left[self._counts(c)]) for c in self.channels))
 
     def counted_of(self, channel: Channel) -> int:
         """How many measured values of one of its channels count."""

@@ -48,6 +48,11 @@ class LeastSquares(Land, Protocol):
         """Squared residuals that what is known but roughly may leave; see `Experiment.unsure`."""
         ...
 
+    @property
+    def admitted(self) -> float:
+        """Squared residuals that equations leave at best; see `Experiment.admitted`."""
+        ...
+
 
 @dataclass(frozen=True)
 class Fit:
@@ -63,6 +68,7 @@ class Fit:
         counted: values that count; where a sample does not count its residual is zero.
         evaluations: rollouts of all experiments that it took, but for those of a Jacobian at its end.
         unsure: squared residuals that what is known but roughly may leave.
+        admitted: those among them that equations leave at best.
     """
 
     unit: np.ndarray
@@ -73,6 +79,7 @@ class Fit:
     counted: int
     evaluations: int
     unsure: float = 0.0
+    admitted: float = 0.0
 
     @property
     def jacobian(self) -> np.ndarray:
@@ -147,6 +154,7 @@ def fit_from(
         counted=problem.counted,
         evaluations=problem.evaluations - before,
         unsure=problem.unsure,
+        admitted=problem.admitted,
     )
 
 

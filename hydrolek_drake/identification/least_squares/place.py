@@ -79,6 +79,7 @@ def fit_of(place: Place) -> Fit:
         counted=problem.counted,
         evaluations=problem.evaluations,
         unsure=problem.unsure,
+        admitted=problem.admitted,
     )
 
 

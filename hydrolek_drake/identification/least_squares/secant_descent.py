@@ -71,7 +71,7 @@ class SecantDescent:
         def slopes() -> np.ndarray:
             return self._slopes(unit, left, self.moving)
 
-        return Fit(unit, left, off, slopes, self._prior, problem.counted, 0, problem.unsure)
+        return Fit(unit, left, off, slopes, self._prior, problem.counted, 0, problem.unsure, problem.admitted)
 
     def from_start(self, start: np.ndarray) -> Fit:
         """Where it ends from a place in the unit cube, with new Jacobians as long as they help. # start: (n,)."""

@@ -31,7 +31,7 @@ class Drawn:
     differ by: held to any size, the nominal parameter follows and leaves the curve alone.
     """
 
-    evaluations, counted, unsure, longest_step = 0, 16, 0.0, 5e-4
+    evaluations, counted, unsure, admitted, longest_step = 0, 16, 0.0, 0.0, 5e-4
     experiments = ()  # curvature alone: of no recording there are blocks
     parameters = SimpleNamespace(
         paths=[OWN, SIZE],

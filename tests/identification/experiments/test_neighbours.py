@@ -111,6 +111,7 @@ def test_what_is_known_but_roughly_may_leave_its_share_of_the_squared_residuals(
     together = replace(experiment, channels=(rough,))
     assert experiment.unsure == 0.0
     assert together.unsure == pytest.approx(0.5 * together.counted)  # half of the variance is the model's
+    assert together.admitted == 0.0  # which is in the deviations already
     assert (
         replace(together, others=None).unsure == 0.0
     )  # of one that moves alone only the step's error is left

@@ -107,3 +107,16 @@ def test_a_stop_ends_what_a_wrong_start_does(rig) -> None:
     assert response is not None
     assert response[0, 10] == pytest.approx(1.0, abs=0.05)
     assert np.abs(response[0, -200:]).max() < 0.2
+
+
+def test_an_observer_forgets_the_start_where_a_free_rollout_does_not(rig) -> None:
+    """Both rollouts of a response are pulled: else it would be what the observer corrects, which is no start's."""
+    (experiment,) = experiments_of(rig, _recording(rig, 1, 25.0))
+    records, step, pull = rig.records(), experiment.longest_step, 0.1
+    free = experiment.responding(records, step, experiment.simulate(records).signals)
+    followed = experiment.simulate(records, step, pull_time=pull).signals
+    pulled = experiment.responding(records, step, followed, pull)
+    late = experiment.time > experiment.time[0] + 20.0 * pull
+    assert np.abs(pulled[0, late]).max() < 0.1 * np.abs(free[0, late]).max()
+    mixed = experiment.responding(records, step, followed)
+    assert np.abs(mixed[0, late]).max() > np.abs(pulled[0, late]).max()

@@ -12,7 +12,7 @@ OFF = 0.3
 class Land:
     """Residuals that bend a little, under noise; slopes that lead are off by `OFF` of themselves, or there are none."""
 
-    counted, unsure = VALUES, 0.0
+    counted, unsure, admitted = VALUES, 0.0, 0.0
 
     def __init__(self, *, leads: bool) -> None:
         rng = np.random.default_rng(8)

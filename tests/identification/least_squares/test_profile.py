@@ -18,7 +18,7 @@ class Linear:
 
     def __init__(self, matrix, measured):
         self.matrix, self.measured = matrix, measured
-        self.evaluations, self.counted, self.unsure = 0, len(measured), 0.0
+        self.evaluations, self.counted, self.unsure, self.admitted = 0, len(measured), 0.0, 0.0
 
     def residuals(self, unit):
         self.evaluations += 1

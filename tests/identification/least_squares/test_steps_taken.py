@@ -13,7 +13,7 @@ class Bent:
     """Residuals that bend and have kinks, with a prior."""
 
     counted = VALUES
-    unsure = 0.0
+    unsure = admitted = 0.0
 
     def __init__(self, rng: np.random.Generator) -> None:
         self.waves, self.kinks = rng.normal(size=(2, VALUES, PARAMETERS))
