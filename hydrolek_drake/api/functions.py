@@ -202,7 +202,7 @@ def watch(
 
     loaded = load_rig(rig)
     references, given = _paths(reference), _paths(recordings)
-    told = limits_of([f"{name}={size}" for name, size in (limits or {}).items()])
+    told = limits_of([f"{name}={size}" for name, size in (limits or {}).items()], loaded)
     drifts = {"": drift} if isinstance(drift, int | float) else dict(drift or {})
     folder = None if out is None else Path(out)
     with telling(progress, "watching") as tell:

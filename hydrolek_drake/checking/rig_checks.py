@@ -17,9 +17,9 @@ PER_TURN = 2.0 * math.pi
 MORE_THAN_ALL = 2.0
 """A pump that gives so many times what the wide open valve takes at its full pressure was not chosen for it."""
 
-ENDLESS = 600.0
-"""A stop of a joint that turns, or a slide, so far away [rad or m] stands for none: nobody's stop is 100 turns off in
-degrees either."""
+ENDLESS_RAD, ENDLESS_M = 600.0, 1e5
+"""A stop so far away stands for none: nobody's is 100 turns off, nor a slide's so many meters, also where it was stated
+in mm."""
 
 ROUNDING = 1e-6
 """A value that a fit left at an end of its range is beyond it by no more than so much of the range."""
@@ -49,7 +49,8 @@ def implausible(rig: Rig) -> list[Complaint]:
         value = rig.value(path)
         if math.isnan(value) or limits[0] <= value <= limits[1]:
             continue
-        if name in ("lower_stop", "upper_stop") and abs(value) >= ENDLESS:
+        endless = ENDLESS_RAD if entry.unit in ("rad", "deg") else ENDLESS_M
+        if name in ("lower_stop", "upper_stop") and abs(value) >= endless:
             continue
         unit = rig.entries[path].unit
         scale = _that_mends(value, limits)

@@ -51,6 +51,20 @@ def test_a_value_outside_its_range_is_told_since_a_fit_begins_at_the_end_of_it()
     assert "500 lies outside its range" in told.says and "500]" in told.line
 
 
+@pytest.mark.parametrize("value", [250, 800, 1200])
+def test_a_stop_of_a_slide_in_mm_that_stands_in_m_is_told_however_long_the_slide(value):
+    told = [
+        c for c in check_rig(load_rig("emps", {"load.upper_stop": f"{value} m"})) if "upper_stop" in c.about
+    ]
+    assert any("is the unit right?" in each.says for each in told)
+
+
+def test_a_value_that_a_fit_left_at_the_end_of_its_range_lies_in_it():
+    _, highest = load_rig("hopsan_link").entries["joints.joint.load.mass"].range
+    rig = load_rig("hopsan_link", {"load.mass": f"{highest * (1.0 + 1e-12)!r} kg"})
+    assert [c for c in check_rig(rig) if c.about.endswith("load.mass")] == []
+
+
 @pytest.mark.parametrize("name", built_in_rigs())
 def test_nothing_is_said_of_a_built_in_rig_before_a_command(name):
     console = Console(file=io.StringIO())

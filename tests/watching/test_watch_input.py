@@ -1,9 +1,12 @@
 """What is wrong with a watch's arguments is said in one line, exit status 2."""
 
+import math
+
 import pytest
 
 from hydrolek_drake.cli.app import run
 from hydrolek_drake.errors import InputError
+from hydrolek_drake.rigs import load_rig
 from hydrolek_drake.watching.limits import limits_of
 
 
@@ -29,10 +32,30 @@ def test_one_line_and_exit_status_2(extra, said, tmp_path, monkeypatch, capsys):
 
 
 def test_limits_take_units():
-    [one, other] = limits_of(["sensor.nonlinearity=1 deg", "cylinder.cross_port_leakage=2e-12"])
+    bench = load_rig("joint_bench")
+    [one, other] = limits_of(["sensor.nonlinearity=1 deg", "cylinder.cross_port_leakage=2e-12"], bench)
     assert one.size == pytest.approx(0.0174533, rel=1e-5) and other.size == 2e-12
     with pytest.raises(InputError, match="finite"):
-        limits_of(["cylinder.coulomb_friction=inf"])
+        limits_of(["cylinder.coulomb_friction=inf"], bench)
+
+
+@pytest.mark.parametrize(
+    ("rig", "text", "size"),
+    [
+        ("emps", "linkage.backlash=5 mm", 5e-3),
+        ("emps", "load.coulomb_friction=40 N", 40.0),
+        ("joint_bench", "linkage.backlash=2 deg", math.radians(2.0)),
+        ("joint_bench", "load.coulomb_friction=40 N m", 40.0),
+    ],
+)
+def test_limits_take_the_unit_that_an_effect_has_at_the_rigs_joint(rig, text, size):
+    [limit] = limits_of([text], load_rig(rig))
+    assert limit.size == pytest.approx(size)
+
+
+def test_a_unit_that_no_joint_has_is_told_for_the_one_that_it_has():
+    with pytest.raises(InputError, match="the size is in m,"):
+        limits_of(["linkage.backlash=3 kg"], load_rig("emps"))
 
 
 @pytest.mark.parametrize(

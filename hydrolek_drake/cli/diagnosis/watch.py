@@ -142,7 +142,7 @@ def watch(
 
     from hydrolek_drake.watching.limits import limits_of
 
-    limits = limits_of(limit or [])
+    limits = limits_of(limit or [], loaded)
     for path in reference:
         if not path.exists():
             raise InputError(f"reference {path}: no such file")
